@@ -1,5 +1,6 @@
 """Points, rows and tables for tests, made from their classes: by simple laws, or as a test says."""
 
+import json
 import math
 from functools import cached_property
 
@@ -8,6 +9,8 @@ import numpy as np
 from twodiscs.comparison.tables.theory import Theory
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
+from twodiscs.points.base import content_of, with_arrays
+from twodiscs.points.digests import write_json
 from twodiscs.points.dynamics import DynamicsPoint
 from twodiscs.points.intervals import IntervalsPoint, WideBins
 from twodiscs.points.monte_carlo import Hits, MonteCarloPoint
@@ -47,9 +50,9 @@ def hits_point(radius=0.1, samples=1000, **hits):
 def counts_point(radius=0.37, event="vertical_hop", total=0, squares=0, **fields):
     """Return a dynamics point with Σ N and Σ N² of one event, and other ``fields``."""
     given = {
-        **{"radius": radius, "duration": 10.0, "replicas": 2048, "rounds": 1, "events": 10**6},
+        **{"radius": radius, "duration": 10.0, "replicas": 2048, "events": 10**6},
         **{"counts": {event: total}, "products": {f"{event}*{event}": squares}, "strips": {}},
-        **{"target": {event: 3e-4}, "status": {event: "budget"}},
+        **{"target": {event: 3e-4}},
     }
     return DynamicsPoint(**given | fields)
 
@@ -63,6 +66,39 @@ def bins_point(radius=0.1, counts=(7, 5, 0), **fields):
         **{"wide": WideBins(edges=[*range(len(counts) + 1)], **found)},
     }
     return IntervalsPoint(**given | found | fields)
+
+
+def all_reached(point):
+    """Return whether the errors of all events of a dynamics ``point`` are those asked for."""
+    estimates = {event: point.estimate(event) for event in point.counted}
+    return all(e and e.relative_stderr <= point.target[event] for event, e in estimates.items())
+
+
+def through_json(pieces):
+    """Return ``pieces`` of a run as they come back from a file."""
+    content = content_of("simulate", {}, {}, {"all": {"sums": pieces}})
+    return with_arrays(json.loads(json.dumps(content))["parts"])["all"]["sums"]
+
+
+def write(point, path):
+    """Write the file of a job with the sums of a fabricated ``point`` of one block."""
+    if point.stage == "dynamics":
+        sums, products = np.zeros(len(EVENTS), int), np.zeros((len(EVENTS), len(EVENTS)), int)
+        for event, count in point.counts.items():
+            sums[EVENTS.index(event)] = count
+        for pair, product in point.products.items():
+            products[tuple(EVENTS.index(event) for event in pair.split("*"))] = product
+        part = {"duration": point.duration, "replicas": point.replicas, "target": point.target}
+        part["sums"] = {(0, 1): [sums, products]}
+    else:
+        quantities = {
+            name: {"place": place, "measure": hits.measure, "epsilon": hits.epsilon}
+            for place, (name, hits) in enumerate(point.quantities.items())
+        }
+        hits = [hits.hits for hits in point.quantities.values()]
+        part = {"method": point.method, "samples": point.samples, "quantities": quantities}
+        part |= {"right_and_top": len(hits), "sums": {(0, 1): [[*hits, point.right_and_top]]}}
+    write_json(path, content_of("", {"radius": point.radius}, {}, {"all": part}))
 
 
 # By laws ----------------------------------------------------------------------------------------
@@ -120,7 +156,6 @@ class Laws:
             radius=self.scene.radius,
             duration=duration,
             replicas=replicas,
-            rounds=1,
             events=10**6,
             counts={event: int(counts[event].sum()) for event in events},
             products={
@@ -129,7 +164,6 @@ class Laws:
                 for b in events[i:]
             },
             target=dict.fromkeys(events, relative),
-            status={e: "reached" if e in self.times else "impossible" for e in events},
             strips={},
         )
 

@@ -85,7 +85,7 @@ MUTANTS = [
     ("dynamics/two/lockstep.py", "wrong wall", "hit(code, WALL_Y1, WALL_Y2,", "hit(code, WALL_Y1, WALL_X2,"),
     ("dynamics/two/lockstep.py", "missing product", "for f in range(e, N):", "for f in range(e + 1, N):"),
     ("dynamics/two/lockstep.py", "wrong disc at a wall in a field", "else b[3], side, gravity)", "else b[1], side, gravity)"),
-    ("dynamics/two/strip.py", "time of a strip", 'duration=2 * ', 'duration=1 * '),
+    ("dynamics/two/strip.py", "time of a strip", '"duration": 2 * ', '"duration": 1 * '),
     ("dynamics/two/strip.py", "paths end too soon", "<= fastest * left else", "<= 0.5 * fastest * left else"),
     ("dynamics/two/returns.py", "off by one return", "wanted + (1.0 if rising < 0.0 else 0.0)", "wanted"),
     ("dynamics/two/returns.py", "age after a hop", "age[i] = time - until if hop", "age[i] = time if hop"),

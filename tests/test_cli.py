@@ -67,7 +67,6 @@ def test_the_table_holds_every_digit(monkeypatch, capsys):
         ([*BOX], "the following arguments are required: --radius"),
         ([*BOX, "--radius", "0.1", "--rad", "2"], "unrecognized arguments: --rad 2"),
         ([*BOX, "--radius", "0.1", "--mass_ratio=2"], "=2; did you mean --mass-ratio?"),
-        ([*BOX, "--radius", "0.1", "--gravity", "1"], "--gravity 1; did you mean --field?"),
         (["--width", "1", "--height", "1e99", "--radius", "0.1"], "height must lie between"),
         ([*BOX, "--radius", "0.1", "--mass-ratio", "two"], "argument --mass-ratio: must be a num"),
     ],

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scalar_many
-from factory import POINTS
+from factory import POINTS, through_json
 
 import twodiscs as td
 from twodiscs.comparison.measured.measurements import Measurements
@@ -24,6 +24,7 @@ from twodiscs.model.checks import InputError
 from twodiscs.model.events import AXIS, EVENTS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
+from twodiscs.points.base import content_of, with_arrays
 from twodiscs.sampling import montecarlo, starts
 from twodiscs.sampling.blocks import rounds
 from twodiscs.theory import exact, virial
@@ -72,7 +73,7 @@ def test_rates_are_those_of_area_and_volume():
 
 @pytest.fixture(scope="module", params=SCENES)
 def measured(request):
-    """A scene, its points as the pipeline writes them, and the rows of its check."""
+    """A scene, its points as they come back from files, and the rows of its check."""
     scene = SCENES[request.param]
     target = dict.fromkeys(scene.events, 5e-3)
     quantities = ["volume", *(f"{event}_area" for event in scene.events)]
@@ -82,8 +83,11 @@ def measured(request):
     }
     box = Box.of(scene)
     for stage, some in points.items():
-        content = json.dumps([point.content() for point in some])
-        points[stage] = [*map(POINTS[stage].of, json.loads(content))]
+        contents = [content_of(stage, {}, {}, point.parts) for point in some]
+        points[stage] = [
+            POINTS[stage].of(scene.radius, with_arrays(content["parts"]))
+            for content in json.loads(json.dumps(contents))
+        ]
     theory = Theory.rows(box, [scene.radius])
     return request.param, scene, points, Check.rows(box, theory, points)
 
@@ -113,7 +117,10 @@ def test_rows_say_what_was_seen_where_nothing_is_known(measured, tmp_path):
     for table, found in (("mean_times", rows), ("volume", volume), ("areas", areas)):
         SCENE_TABLES[table].write(tmp_path / f"{table}.csv", found)
         assert SCENE_TABLES[table].read(tmp_path / f"{table}.csv") == found
-    assert "not known" in str(Measurements("simulate", scene, rows, {}, {})) or name in KNOWN
+    assert (
+        "not known" in str(Measurements("simulate", scene, rows, {}, points["dynamics"][0]))
+        or name in KNOWN
+    )
 
 
 def test_a_wrong_rate_is_found_without_an_exact_value(measured):
@@ -180,11 +187,7 @@ def test_shards_add_up_to_the_point(measured):
     for work in (run, counting_run):
         (part,) = work.parts.values()
         ends = [(0, 1), (1, part.planned)] if part.planned > 1 else [(0, 1)]
-        pieces = [
-            {"first": a, "stop": b, "sums": [array.tolist() for array in part.work(a, b)]}
-            for a, b in ends
-        ]
-        joined = rounds.joined(part, json.loads(json.dumps(pieces)))
+        joined = rounds.joined(part, through_json({each: part.work(*each) for each in ends}))
         assert work.point({"all": joined}) == work.point({"all": rounds.all_at_once(part)})
 
 

@@ -43,7 +43,7 @@ def test_an_error_smaller_than_asked_needs_its_own_initial_states(replicas, stat
     total = 1000 * replicas
     point = counts_point(
         scene.radius, event, total, 1010 * total,
-        replicas=replicas, target={event: 0.5}, status={event: "reached"},
+        replicas=replicas, target={event: 0.5},
     )  # fmt: skip
     theory = rows_of({(scene.radius, f"{event}_time"): 1.0})
     (row,) = MeanTimes.rows(Box.of(scene), theory, {"dynamics": [point]})

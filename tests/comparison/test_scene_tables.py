@@ -29,7 +29,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
-from twodiscs.points.dynamics import Strata, StripCount
+from twodiscs.points.dynamics import StripCount
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
 from twodiscs.theory.exact import rate
@@ -228,9 +228,9 @@ def test_a_rare_hop_has_the_row_of_its_strip(theory, laws):
     # The first of two strata has a few starts too many.
     slow, fast = count // 4, count // 4 * 3
     strip = StripCount(
-        duration=0.125, share=0.004, replicas=2 * n, count=count, squares=count, status="reached",
-        rounds=1, events=10**8,
-        strata=Strata([[0.499, 0.501]], [[n, n]], [[slow, fast]], [[slow, fast]]),
+        duration=0.125, share=0.004, replicas=2 * n, count=count, squares=count,
+        events=10**8,
+        strata=([[0.499, 0.501]], [[n, n]], [[slow, fast]], [[slow, fast]]),
     )  # fmt: skip
     point = replace(point, strips={"horizontal_hop": strip})
     found = {row["event"]: row for row in MeanTimes.rows(BOX, theory, {"dynamics": [point]})}

@@ -144,7 +144,7 @@ def test_a_watch_block_is_everything_that_is_watched():
     assert request.keys["monte_carlo"] == request.keys["intervals"] == {}
     assert tuple(request.keys["dynamics"].values()) == request.radii
     assert request.exact_radii("theory") == request.exact_radii("grid") == [*request.radii]
-    assert "hop" not in repr(request.arguments("dynamics", request.radii[0]))
+    assert "hop" not in repr(request.arguments("dynamics")["error"])
     assert request.tables == ("grid", "theory", "mean_times", "check", "cost")
 
 
@@ -153,10 +153,10 @@ def test_what_is_false_is_off():
     request = one(watch=watch)
     assert request.quantities.names == {"volume"}
     assert request.keys["dynamics"] == {}
-    assert request.arguments("monte_carlo", 0.01)["quantities"] == ["volume"]
+    assert request.arguments("monte_carlo")["quantities"] == ["volume"]
     assert request.tables == ("grid", "theory", "volume", "check", "cost")
     thicker = one(watch=watch, monte_carlo={"shell": 0.1})
-    assert thicker.arguments("monte_carlo", 0.01) == request.arguments("monte_carlo", 0.01)
+    assert thicker.arguments("monte_carlo") == request.arguments("monte_carlo")
 
 
 def test_hop_histograms_have_three_forms():
@@ -173,8 +173,8 @@ def test_hop_histograms_have_three_forms():
     }  # fmt: skip
     block = one(watch={"hop_histogram": {"event": "horizontal_hop", "intervals": "1e4"}})
     assert block.quantities.hop_histogram == (0.025, 0.075, 0.125, 0.175)
-    asked = block.arguments("intervals", 0.025)
-    assert (asked["event"], asked["intervals"]) == ("horizontal_hop", 10**4)
+    asked = block.arguments("intervals")
+    assert (asked["hop"], asked["number"]) == ("horizontal_hop", 10**4)
 
 
 def test_accuracy_has_three_forms():
@@ -223,9 +223,7 @@ def jobs(request):
         "seed": request.trajectory_seed,
     }
     return every | {
-        (stage, key): request.arguments(stage, key)
-        for stage in STAGES
-        for key in request.keys[stage]
+        (stage, key): request.arguments(stage) for stage in STAGES for key in request.keys[stage]
     }
 
 
@@ -268,7 +266,8 @@ def test_seeds_differ_between_scenes_methods_and_radii_and_follow_the_root():
     for seed in (1, 2):
         mapping = {"seed": seed, "scenes": [PLAIN["scenes"][0] | BASE | {"name": n} for n in "ab"]}
         for request in load.load(mapping).scenes:
-            every += [p["seed"] for job, p in jobs(request).items() if "seed" in p]
+            every.append(request.trajectory_seed)
+            every += [request.seed_of(*job) for job in jobs(request) if len(job) == 2]
     assert len(set(every)) == len(every) == 2 * 2 * (2 + 2 + 4 + 1)
     assert one(watch=True).trajectory_seed == stream_seed(1908, "one", "trajectory", "0.24")
     # theory.csv also holds the radii of the histograms, whose exact means are compared.

@@ -1,11 +1,11 @@
 """Intervals between hops: exact draws, whose mean and density at zero are known."""
 
-import json
 import math
 
 import numpy as np
 import pytest
 from effect_scenes import SCENES
+from factory import through_json
 
 from twodiscs.dynamics import intervals, trajectory
 from twodiscs.dynamics.law import law_of
@@ -13,6 +13,7 @@ from twodiscs.dynamics.many import lockstep as many
 from twodiscs.dynamics.two import returns
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
+from twodiscs.points.intervals import GROWTH
 from twodiscs.sampling.blocks import rounds
 from twodiscs.sampling.many import initial, insertions
 from twodiscs.sampling.starts import origins
@@ -94,8 +95,8 @@ def test_wide_bins_widen():
     edges = intervals.wide_edges()
     assert edges[:14] == list(range(14))
     growth = np.diff(edges) / np.maximum(edges[:-1], 1)
-    assert (growth >= intervals.GROWTH).all()
-    assert edges[-1] <= intervals.BINS < (1 + intervals.GROWTH) * edges[-1]
+    assert (growth >= GROWTH).all()
+    assert edges[-1] <= intervals.BINS < (1 + GROWTH) * edges[-1]
 
 
 def test_a_blocked_hop_has_no_intervals():
@@ -177,12 +178,8 @@ def test_intervals_of_many_do_not_depend_on_who_draws_them():
     run = intervals.IntervalRun(*MANY["three"], 150_000, 3)
     (part,) = run.parts.values()
     assert part.planned == 3
-    pieces = [
-        {"first": a, "stop": b, "sums": [array.tolist() for array in part.work(a, b)]}
-        for a, b in ((0, 1), (1, 3))
-    ]
-    joined = rounds.joined(part, json.loads(json.dumps(pieces)))
-    assert run.point({"all": joined}) == run.run()
+    pieces = through_json({ends: part.work(*ends) for ends in ((0, 1), (1, 3))})
+    assert run.point({"all": rounds.joined(part, pieces)}) == run.run()
 
 
 def test_what_is_not_known_of_many_is_refused():

@@ -15,7 +15,7 @@ from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.comparison.tables.theory import Theory
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.model.events import EVENTS
-from twodiscs.points.digests import read_json
+from twodiscs.points.base import pieces_of, reached
 from twodiscs.points.dynamics import DynamicsPoint
 from twodiscs_paper.catalogue import STUDY_TABLES, TABLES
 from twodiscs_paper.configuration.load import load, read
@@ -365,12 +365,10 @@ def test_the_long_run_is_what_its_shards_counted_and_agrees():
         assert ours["count"] == theirs["count"]
         assert ours["estimate"] == pytest.approx(theirs["estimate"], rel=1e-12)
         assert abs(ours["z"]) < 5  # ten scores: a false alarm in 2e5 seeds
-    shards = [read_json(path) for path in folder.glob("shards/all-*.json")]
-    used = [shard for shard in shards if shard["stop"] * REPLICAS <= point.replicas]
-    assert sum(shard["stop"] - shard["first"] for shard in used) * REPLICAS == point.replicas
-    counted = [sum(counts) for counts in zip(*(shard["sums"][0] for shard in used), strict=True)]
-    # Events that were declared later were not counted.
-    assert counted == [point.counts[event] for event in EVENTS if event in point.counts]
+    pieces = pieces_of(folder.glob("shards/*.json"))
+    (counts, _), blocks = reached(pieces["all"], point.replicas // REPLICAS)
+    assert blocks * REPLICAS == point.replicas
+    assert counts.tolist() == [point.counts[event] for event in EVENTS]
 
 
 def test_the_page_on_passages_has_the_numbers_of_the_build_and_of_the_long_run():

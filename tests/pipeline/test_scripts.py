@@ -7,7 +7,7 @@ from types import MappingProxyType, SimpleNamespace
 
 import numpy as np
 import pytest
-from factory import BOX, RADII, Laws, scenes
+from factory import BOX, POINTS, RADII, Laws, scenes, write
 from snakemake.iocontainers import Namedlist
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
@@ -21,17 +21,18 @@ SCRIPTS = Path(__file__).resolve().parents[2] / "workflow" / "scripts"
 PARAMETERS = BOX.parameters()
 WORK = {
     "monte_carlo": {
-        "quantities": ["volume", "top_wall_area"], "samples": 3 * 10**6, "shell": 0.1, "seed": 7,
+        "quantities": ["volume", "top_wall_area"], "samples": 3 * 10**6, "shell": 0.1,
     },
-    "dynamics": {"target": {"vertical_hop": 0.01, "top_wall": 0.1}, "budget": 10**7, "seed": 7},
-    "intervals": {"event": "vertical_hop", "intervals": 3 << 16, "budget": 10**9, "seed": 7},
+    "dynamics": {"error": {"vertical_hop": 0.01, "top_wall": 0.1}, "budget": 10**7},
+    "intervals": {"hop": "vertical_hop", "number": 3 << 16, "budget": 10**9},
 }  # fmt: skip
+WORK = {stage: settings | {"seed": 7, "name": "a"} for stage, settings in WORK.items()}
 
 #: The arguments of a shard: it does not depend on accuracy or budget.
 SHARD = {
     "monte_carlo": {"samples": 1},
-    "dynamics": {"target": {"vertical_hop": 0.5, "top_wall": 0.5}, "budget": 1},
-    "intervals": {"intervals": 1, "budget": 10**15},
+    "dynamics": {"error": {"vertical_hop": 0.5, "top_wall": 0.5}, "budget": 1},
+    "intervals": {"number": 1, "budget": 10**15},
 }
 
 
@@ -61,7 +62,7 @@ def point(run, stage, output, shards=()):
     params = {"box": PARAMETERS, "work": WORK[stage]}
     where = {"stage": stage, "radius": "0.2"}
     run("point", params, where, {"shards": [*shards]}, point=output)
-    return read_json(output)
+    return POINTS[stage].read(output)
 
 
 def shards(run, stage, pieces):
@@ -78,7 +79,7 @@ def shards(run, stage, pieces):
 @pytest.mark.parametrize("stage", ["monte_carlo", "intervals"])
 def test_work_of_known_length_gives_the_same_point_in_shards(run, stage):
     alone = point(run, stage, "alone.json")
-    assert alone["radius"] == 0.2
+    assert alone.radius == 0.2
     assert point(run, stage, "joined.json", shards(run, stage, [(2, 3), (0, 2)])) == alone
 
 
@@ -106,7 +107,7 @@ def test_a_part_of_a_point_that_is_missing_is_named(run):
 def test_an_edited_shard_is_refused(run):
     (file,) = shards(run, "monte_carlo", [(0, 3)])
     content = json.loads(Path(file).read_text())
-    content["sums"][0][0] += 1
+    content["parts"]["all"]["sums"]["0-3"][0][0] += 1
     Path(file).write_text(json.dumps(content))
     with pytest.raises(InputError, match=r"all-0-3.json is not what its job wrote; delete it"):
         point(run, "monte_carlo", "a.json", [file])
@@ -122,7 +123,7 @@ def points(run, tmp_path):
         samples = {"monte_carlo": {"samples": 10**7}, "dynamics": {}}[stage]
         files[stage] = [tmp_path / f"{stage}-{scene.radius}.json" for scene in scenes()]
         for scene, path in zip(scenes(), files[stage], strict=True):
-            getattr(Laws(scene), stage)(rng, **samples).write(path)
+            write(getattr(Laws(scene), stage)(rng, **samples), path)
     return files
 
 
@@ -141,7 +142,7 @@ def test_cost_is_the_time_of_the_jobs_and_may_be_missing(run, points):
     took = {0.1: 2.5, 0.2: 4.5}
     for path in points["dynamics"]:
         content = read_json(path)
-        write_json(path, content, took.get(content["radius"]))
+        write_json(path, content, took.get(content["scene"]["radius"]))
         assert read_json(path) == content
     run("table", MADE, files=points, table="cost.csv")
     rows = {(r["stage"], r["radius"]): r for r in SCENE_TABLES["cost"].read("cost.csv")}
@@ -154,7 +155,7 @@ def test_cost_is_the_time_of_the_jobs_and_may_be_missing(run, points):
 def test_an_edited_point_is_refused(run, points):
     path = points["dynamics"][0]
     content = json.loads(path.read_text())
-    content["counts"]["vertical_hop"] += 1
+    content["parts"]["all"]["sums"]["0-1"][0][0] += 1
     path.write_text(json.dumps(content))
     with pytest.raises(InputError, match="is not what its job wrote; delete it"):
         run("table", MADE, files=points, table="mean_times.csv")

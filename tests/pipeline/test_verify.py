@@ -189,15 +189,17 @@ def test_the_target_builds_nothing_and_names_what_differs(built):
     built.snakemake("--cores", "1", "renew")
     (built.path / "results" / "six" / "theory.csv").unlink()
     path = built.path / "results" / "six" / "points" / "dynamics" / "0.2.json"
-    count = json.loads(path.read_text())["counts"]["vertical_hop"]
-    replace(path, f'"vertical_hop": {count}', f'"vertical_hop": {count + 1}')
+    (blocks, (counts, _)), *_ = json.loads(path.read_text())["parts"]["all"]["sums"].items()
+    count = counts[0]
+    replace(path, f"{count},", f"{count + 1},")
     before = built.results()
     run = built.snakemake("--cores", "1", "verify", passes=False)
     assert run.returncode == 1
     log = (built.path / "results" / "logs" / "verify.log").read_text().splitlines()
     assert log[:-1] == [
         "six/theory.csv: is missing",
-        f"six/points/dynamics/0.2.json: counts vertical_hop is {count + 1}, expected {count}",
+        f"six/points/dynamics/0.2.json: parts all sums {blocks} 0 0 is {count + 1}, expected "
+        f"{count}",
     ]
     assert log[-1].endswith("files, 2 differ")
     assert log[0] in run.stdout + run.stderr

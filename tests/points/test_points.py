@@ -6,22 +6,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from factory import BOX, POINTS, Laws, bins_point, counts_point, hits_point, theory_rows
+from factory import BOX, POINTS, Laws, bins_point, counts_point, hits_point
 
-from twodiscs.comparison.scene_tables import SCENE_TABLES
+import twodiscs as td
+from twodiscs.comparison.tables.base import by_radius
 from twodiscs.model.checks import InputError
-from twodiscs.model.events import EVENTS
-from twodiscs.points.base import by_radius
-from twodiscs.points.digests import read_json, write_json
-from twodiscs.points.dynamics import Strata, StripCount
+from twodiscs.points.dynamics import StripCount
 from twodiscs.points.intervals import WideBins
 from twodiscs.points.monte_carlo import Hits, InsertionPoint, MonteCarloPoint, Weights
 
 LAW = Laws(BOX.scene(0.1))
 RNG = np.random.default_rng(6)
 STRIP = StripCount(
-    duration=0.1, share=0.5, replicas=18, count=3, squares=5, status="reached", rounds=1, events=9,
-    strata=Strata([[0.5, 0.5]], [[9, 9]], [[1, 2]], [[1, 4]]),
+    duration=0.1, share=0.5, replicas=18, count=3, squares=5, events=9,
+    strata=([[0.5, 0.5]], [[9, 9]], [[1, 2]], [[1, 4]]),
 )  # fmt: skip
 INSERTED = InsertionPoint(
     radius=0.1, method="insertion", samples=10**6, unit=2**20,
@@ -30,19 +28,31 @@ INSERTED = InsertionPoint(
     },
     products={"volume*top_wall_area": 3 * 10**11},
 )  # fmt: skip
-HALF = {"counts": [7, 5], "squares": [9, 7], "products": [20, 15]}
-GOOD = {
-    "monte_carlo": LAW.monte_carlo(RNG, 10**5),
-    "insertion": INSERTED,
-    "dynamics": replace(
-        LAW.dynamics(RNG, 256, 1e-2, ("vertical_hop", "any_wall")),
-        strips={"vertical_hop": STRIP},
-    ),
-    "intervals": bins_point(
-        0.1, (7, 5), chains=12, intervals=36, intervals_squared=120, products=HALF["products"],
-        squares=HALF["squares"], wide=WideBins(edges=[0, 1, 2], **HALF),
-    ),
-}  # fmt: skip
+COUNTED = replace(
+    LAW.dynamics(RNG, 256, 1e-2, ("vertical_hop", "any_wall")), strips={"vertical_hop": STRIP}
+)
+SCENES = {"plain": td.Scene(1.5, 1.0, 0.249), "three": td.Scene(1.5, 1.0, 0.2, discs=3)}
+
+#: A result of each stage; the hop of the plain scene is counted in a strip as well.
+RESULTS = {
+    "dynamics": lambda scene: td.simulate(scene, 0.3, seed=5),
+    "monte_carlo": lambda scene: td.sample(scene, 1, seed=5),
+    "intervals": lambda scene: td.intervals(scene, "vertical_hop", 1, seed=5),
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("stage", RESULTS)
+def test_a_saved_result_is_a_point_and_no_other_point(tmp_path, stage, name):
+    result, path = RESULTS[stage](SCENES[name]), tmp_path / "a.json"
+    result.save(path)
+    point = POINTS[stage].read(path)
+    assert point.radius == SCENES[name].radius
+    assert point == type(point).of(point.radius, result.parts)
+    assert point.parts.keys() == result.parts.keys()
+    for other in POINTS.keys() - {stage}:
+        with pytest.raises(InputError, match=rf"must be a point of {other}, but was made by"):
+            POINTS[other].read(path)
 
 
 def places(content, above=()):
@@ -54,122 +64,26 @@ def places(content, above=()):
             yield from places(value, (*above, name))
 
 
-def changed(content, place, *value):
-    """Return a copy of a dict with another ``value`` at a ``place``, or with none."""
-    content = json.loads(json.dumps(content))
-    block = content
-    for name in place[:-1]:
-        block = block[name]
-    if value:
-        block[place[-1]] = value[0]
-    else:
-        del block[place[-1]]
-    return content
-
-
-def read(tmp_path, stage, content):
-    """Return the point of a file that has the right digest of some ``content``."""
-    path = tmp_path / "0.1.json"
-    write_json(path, content)
-    return POINTS[stage].read(path)
-
-
-def refusal(tmp_path, stage, content):
-    with pytest.raises(InputError) as caught:
-        read(tmp_path, stage, content)
-    start = f"{tmp_path / '0.1.json'} must be a point of {stage}, but was made by another version: "
-    end = "; delete it, and it is made again"
-    said = str(caught.value)
-    assert said.startswith(start)
-    assert said.endswith(end)
-    return said.removeprefix(start).removesuffix(end)
-
-
-@pytest.mark.parametrize("name", GOOD)
-def test_a_point_is_read_as_it_was_written(tmp_path, name):
-    point = GOOD[name]
-    point.write(tmp_path / "a.json", seconds=1.5)
-    assert type(point).read(tmp_path / "a.json") == POINTS[point.stage].read(tmp_path / "a.json")
-    assert POINTS[point.stage].read(tmp_path / "a.json") == point
-    assert type(point).of(read_json(tmp_path / "a.json")) == point
-
-
-@pytest.mark.parametrize("stage", POINTS)
-@pytest.mark.parametrize("name", GOOD)
-def test_a_point_of_another_stage_is_refused(tmp_path, stage, name):
-    if GOOD[name].stage != stage:
-        refusal(tmp_path, stage, GOOD[name].content())
-
-
-@pytest.mark.parametrize("name", GOOD)
-def test_what_is_missing_or_not_known_is_named(tmp_path, name):
-    """Lists are shorter, and keys gone: either may leave a point, of which there are tables."""
-    point, kept = GOOD[name], []
-    content = point.content()
-    for place in places(content):
-        try:
-            read(tmp_path, point.stage, changed(content, place))
-        except InputError:
-            said = refusal(tmp_path, point.stage, changed(content, place))
-            assert said.count("\n") == 0
-        else:
-            kept.append(".".join(map(str, place)))
-    # A point without these is a point, too.
-    assert {*kept} <= {"right_and_top", "strips.vertical_hop"} | {
-        f"quantities.{quantity}" for quantity in ("volume", *(f"{e}_area" for e in EVENTS))
-    }
-    assert refusal(tmp_path, point.stage, content | {"colour": 1}) == "colour is not known"
-
-
-DEEP = []
-for _ in range(400):
-    DEEP = [DEEP]
-
-
-VALUES = (None, True, -1, 0, 0.5, 1.7e308, 2**127, 10**400, "x", [], {}, DEEP)
-
-
-@pytest.mark.parametrize("value", VALUES, ids=range(len(VALUES)))
-@pytest.mark.parametrize("name", GOOD)
-def test_whatever_stands_at_whatever_place_is_refused_or_has_rows(tmp_path, name, value):
-    """Nothing but one sentence comes of a file of the right digest and another shape."""
-    point, theory = GOOD[name], theory_rows([0.1])
-    content = point.content()
-    assert refusal(tmp_path, point.stage, {"radius": value})
-    for place in places(content):
-        try:
-            other = read(tmp_path, point.stage, changed(content, place, value))
-            points = {point.stage: [other]}
-            SCENE_TABLES["check"].rows(BOX, theory, points)
-        except InputError:
+@pytest.mark.parametrize("value", [None, True, -1, 10**400, "x", [], {}], ids=range(7))
+def test_a_file_that_was_edited_anywhere_is_refused_in_one_sentence(tmp_path, value):
+    result, path = RESULTS["dynamics"](SCENES["plain"]), tmp_path / "a.json"
+    result.save(path)
+    original = path.read_text()
+    for place in places(json.loads(original)):
+        content = json.loads(original)
+        block = content
+        for name in place[:-1]:
+            block = block[name]
+        if block[place[-1]] == value:
             continue
-
-
-@pytest.mark.parametrize(
-    ("place", "value", "said"),
-    [
-        (("radius",), [0.1], "radius must be a finite number, not of type list"),
-        (("counts",), [], "counts must be an object, not of type list"),
-        (("counts", "any_wall"), DEEP, "counts.any_wall must be an integer from 0 to 2**127, not"),
-        (("counts", "any_wall"), True, "counts.any_wall must be an integer"),
-        (("counts", "colour"), 1, "counts.colour is not known"),
-        (("products", "any_wall*any_wall"), None, "products.any_wall*any_wall must be an integer"),
-        (("replicas",), 0, "replicas must be larger than 0, not 0"),
-        (("strips", "top_wall"), None, "strips.top_wall must be an object"),
-        (("strips", "vertical_hop", "strata", "shares"), [[0.5, 0.6]], "shares of strata must add"),
-        (("strips", "vertical_hop", "strata", "starts"), [[9]], "strata must be in arrays"),
-        (
-            ("strips", "vertical_hop", "replicas"),
-            19,
-            "replicas of a strip is 19, but in its strata",
-        ),
-        (("strips", "vertical_hop", "count"), 4, "count of a strip is 4, but in its strata 3"),
-        (("strips", "vertical_hop", "squares"), 4, "squares of a strip is 4, but in its strata 5"),
-    ],
-)
-def test_another_shape_is_said(tmp_path, place, value, said):
-    content = changed(GOOD["dynamics"].content(), place, value)
-    assert refusal(tmp_path, "dynamics", content).startswith(said)
+        block[place[-1]] = value
+        path.write_text(json.dumps(content))
+        with pytest.raises(
+            InputError, match=r"^path must be a file that save\(\) wrote, or a point of a"
+        ):
+            td.load_result(path)
+        with pytest.raises(InputError, match="is not what its job wrote; delete it"):
+            POINTS["dynamics"].read(path)
 
 
 def test_a_point_gives_estimates_by_name():
@@ -181,7 +95,7 @@ def test_a_point_gives_estimates_by_name():
     assert counts.estimate("vertical_hop").value == 2048 * 10.0 / 400
     assert counts.estimate("vertical_hop", copies=2).value == 2 * 2048 * 10.0 / 400
     assert counts_point().estimate("vertical_hop") is None
-    assert GOOD["dynamics"].estimate("vertical_hop") == STRIP.estimate()
+    assert COUNTED.estimate("vertical_hop") == STRIP.estimate()
     assert STRIP.estimate().value == pytest.approx(0.1 / 0.5 / (3 / 18))
     bins = bins_point(counts=(7, 5, 0))
     assert bins.estimate("mean").stderr == 0.1

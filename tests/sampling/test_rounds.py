@@ -1,18 +1,19 @@
 """Work in rounds and in pieces: the same bits however it is cut, and nothing is done twice."""
 
-import json
 import math
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
+from factory import all_reached, through_json
 from hypothesis import given
 from hypothesis import strategies as st
 
 from twodiscs.dynamics import counting, intervals
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.model.box import Box
+from twodiscs.model.events import EVENTS
+from twodiscs.points.base import reached
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.blocks import rounds
 
@@ -21,16 +22,9 @@ UNEQUAL = Box(1.5, 1.0, {"radius_ratio": 0.6, "mass_ratio": 3.0})
 
 
 def done_in_pieces(run, per_piece):
-    """Return the ``Progress`` of a run from its pieces, last one first, by way of JSON."""
-    parts = [
-        {
-            "first": first,
-            "stop": stop,
-            "sums": [entry.tolist() for entry in run.work(first, stop)],
-        }
-        for first, stop in rounds.pieces(run.planned, per_piece)
-    ]
-    return rounds.joined(run, json.loads(json.dumps(parts[::-1])))
+    """Return the pieces of a run, last one first, by way of JSON."""
+    ends = rounds.pieces(run.planned, per_piece)[::-1]
+    return rounds.joined(run, through_json({each: run.work(*each) for each in ends}))
 
 
 def fabricated(error, budget=math.inf, block_events=1000):
@@ -80,26 +74,29 @@ def test_the_grid_is_the_same_at_every_scale():
 @pytest.mark.parametrize("per_piece", [1, 16, 256, 4096])
 def test_pieces_have_the_sums_of_the_whole(per_piece):
     run, counts = fabricated(0.01)
-    found = done_in_pieces(run, per_piece)
-    assert (found.blocks, found.sums[0].tolist()) == (1000, [counts[:1000].sum()])
-    assert found.excess == rounds.all_at_once(run).excess == run.excess_of(found.sums, 1000)
+    for pieces in (done_in_pieces(run, per_piece), rounds.all_at_once(run)):
+        (sums,), blocks = reached(pieces)
+        assert (blocks, sums.tolist()) == (1000, [counts[:1000].sum()])
 
 
 @pytest.mark.parametrize(
     "ends", [[], [(0, 999)], [(1, 1000)], [(0, 500), (501, 1000)], [(0, 500), (400, 1000)],
-             [(0, 1000), (0, 1000)], [(0, 1000), (1000, 1001)]],
+             [(0, 1000), (0, 500)], [(0, 1000), (1000, 1001)]],
 )  # fmt: skip
 def test_pieces_that_miss_or_repeat_a_block_are_refused(ends):
     run, counts = fabricated(0.01)
-    parts = [{"first": a, "stop": b, "sums": [[int(counts[a:b].sum())]]} for a, b in ends]
+    parts = {(a, b): [counts[a:b].sum()] for a, b in ends}
     with pytest.raises(ValueError, match=r"pieces must cover blocks 0 to 1000 without gap or over"):
         rounds.joined(run, parts)
 
 
 def test_sums_beyond_64_bits_are_exact():
     run, _ = fabricated(0.01)
-    parts = [{"first": 500 * i, "stop": 500 * (i + 1), "sums": [[2**62, i]]} for i in range(2)]
-    assert rounds.joined(run, parts).sums[0].tolist() == [2**63, 1]
+    pieces = {(500 * i, 500 * (i + 1)): [np.array([2**62, i])] for i in range(2)}
+    (sums,), _ = reached(through_json(rounds.joined(run, pieces)))
+    assert sums.tolist() == [2**63, 1]
+    (sums,), _ = reached(through_json({(0, 1): [sums]}))
+    assert sums.tolist() == [2**63, 1]
 
 
 @pytest.mark.parametrize("budget", [1e12, 5e6])
@@ -107,14 +104,15 @@ def test_rounds_end_where_the_error_is_reached_or_the_budget_spent(budget):
     seen = []
     run, counts = fabricated(0.003, budget)
     done = rounds.in_rounds(run, lambda *given: seen.append(given))
-    total = int(counts[: done.blocks].sum())
-    assert int(done.sums[0][0]) == total
-    assert (done.excess[0] <= 1) == (budget == 1e12)
+    sums, blocks = reached(done)
+    total = int(counts[:blocks].sum())
+    assert int(sums[0][0]) == total
+    assert (run.excess_of(sums, blocks)[0] <= 1) == (budget == 1e12)
     assert 200 * total <= budget
     # The reported work grows to the whole work.
     known = [(now, all_of_it) for now, all_of_it in seen if now is not None]
     assert known == sorted(known, key=lambda pair: pair[0])
-    assert known[-1][0] == done.blocks * run.block_work
+    assert known[-1][0] == blocks * run.block_work
     assert known[-1][0] <= known[-1][1]
 
 
@@ -129,7 +127,7 @@ def test_a_budget_has_as_many_whole_blocks_as_it_can_pay(budget):
         budget,
         planned=1,
     )
-    assert rounds.in_rounds(run).blocks == budget // 10
+    assert reached(rounds.in_rounds(run))[1] == budget // 10
 
 
 @pytest.mark.parametrize("cores", [1, 3])
@@ -139,21 +137,32 @@ def test_an_error_asked_for_later_has_the_sums_of_one_asked_for_at_once(monkeypa
     kept = {}
     for error in (0.1, 0.03, 0.01, 0.003, 0.02):
         run, _ = fabricated(error, 1e12)
-        later, at_once = rounds.in_rounds(run, None, cores, kept), rounds.in_rounds(run)
-        assert later[1:3] == at_once[1:3]
-        assert later.sums[0].tolist() == at_once.sums[0].tolist()
+        kept = rounds.in_rounds(run, None, cores, kept)
+        (later, blocks), (at_once, known) = reached(kept), reached(rounds.in_rounds(run))
+        assert blocks == known
+        assert later[0].tolist() == at_once[0].tolist()
 
 
 def test_what_is_kept_is_not_done_again():
     run, _ = fabricated(0.01, 1e12)
     done, work = [], run.work
     run = replace(run, work=lambda *ends: done.append(ends) or work(*ends))
-    kept = {}
-    rounds.in_rounds(run, kept=kept)
-    once = len(done)
-    assert done == [(a, b) for a, b in pairwise([0, *sorted(kept)])]
-    rounds.in_rounds(run, kept=kept)
-    assert len(done) == once
+    kept = rounds.in_rounds(run)
+    assert done == [*kept]
+    assert [first for first, _ in done] == [0, *(stop for _, stop in done[:-1])]
+    assert rounds.in_rounds(run, kept=kept) == kept
+    assert done == [*kept]
+
+
+def test_a_run_goes_on_from_shards():
+    """Only the first round and the rest are done: the pieces between them join up."""
+    run, counts = fabricated(0.003, 1e12)
+    shards, done, work = done_in_pieces(run, 256), [], run.work
+    run = replace(run, work=lambda *ends: done.append(ends) or work(*ends))
+    found = reached(rounds.in_rounds(run, kept=shards))
+    assert found[1] > 1000
+    assert found[0][0].tolist() == [counts[: found[1]].sum()]
+    assert sum(stop - first for first, stop in done) < found[1] - 700
 
 
 #: A wall and all of them: the kernel is the one that counts everything.
@@ -178,10 +187,8 @@ def test_counts_in_pieces_are_those_of_their_blocks_and_reach_what_is_asked(box,
     blocks = found[0].replicas // REPLICAS
     assert blocks == run.parts["all"].planned
     sums, _ = counting.run_blocks(scene, [*TARGET], 3, 0, blocks, found[0].duration)
-    assert [*found[0].counts.values()] == [
-        sums[counting.EVENTS.index(event)] for event in found[0].counts
-    ]
-    assert {*found[0].status.values()} == {"reached"}
+    assert [*found[0].counts.values()] == [sums[EVENTS.index(event)] for event in found[0].counts]
+    assert all_reached(found[0])
     for hop, one in found[0].strips.items():
         assert one.estimate().relative_stderr <= TARGET[hop]
 

@@ -61,9 +61,9 @@ def test_shards_have_the_random_numbers_of_their_point():
     """Those of another radius would make errors of two radii the same."""
     radii = [0.05, 0.24, 0.245]
     (scene,) = load(TINY | {"scenes": [TINY["scenes"][0] | {"radii": radii}]}).scenes
-    seeds = [scene.arguments("dynamics", radius)["seed"] for radius in radii]
-    assert len({*seeds}) == 3
-    assert [scene.shard_arguments("dynamics", radius)["seed"] for radius in radii] == seeds
+    assert len({scene.seed_of("dynamics", radius) for radius in radii}) == 3
+    whole, shard = scene.arguments("dynamics"), scene.shard_arguments("dynamics")
+    assert all(whole[key] == shard[key] for key in ("seed", "name"))
 
 
 @pytest.mark.slow

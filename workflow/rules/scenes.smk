@@ -53,7 +53,7 @@ rule monte_carlo:
         runtime=minutes,
     params:
         box=box,
-        work=lambda w: SCENES[w.scene].arguments(w.stage, w.radius),
+        work=lambda w: SCENES[w.scene].arguments(w.stage),
     script:
         "../scripts/point.py"
 
@@ -84,7 +84,7 @@ use rule monte_carlo as shard with:
         stage="|".join(STAGES),
     params:
         box=box,
-        work=lambda w: SCENES[w.scene].shard_arguments(w.stage, w.radius),
+        work=lambda w: SCENES[w.scene].shard_arguments(w.stage),
 
 
 rule trajectory:

@@ -29,8 +29,8 @@ import math
 from itertools import groupby
 
 from twodiscs.comparison import scores
+from twodiscs.comparison.tables.base import by_radius
 from twodiscs.model.events import DECLARED
-from twodiscs.points.base import by_radius
 from twodiscs.points.estimates import MIN_EVENTS, Estimate
 from twodiscs.theory import virial
 from twodiscs.theory.exact import replicas_needed

@@ -1,18 +1,52 @@
 """The tables of a folder of results, as pandas reads them."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError
+from twodiscs.model.checks import (
+    InputError,
+    answering,
+)
 from twodiscs.model.plugins import plugin
 from twodiscs.points.digests import digest
 
+if TYPE_CHECKING:
+    from os import PathLike
 
-def load(folder):
-    """Return {name: ``DataFrame``} of the tables in a folder of results (see the face)."""
+    import pandas as pd
+
+
+@answering
+def load(folder: str | PathLike[str]) -> dict[str, pd.DataFrame]:
+    """Read every table in a folder of results.
+
+    Parameters
+    ----------
+    folder : path-like
+        The folder of a scene below results, such as "results/paper".
+
+    Returns
+    -------
+    dict
+        {name: ``DataFrame``}. ``attrs`` of a table has its units, the meanings of its columns, and
+        its origin: path, sha256 and the configuration.
+
+    Raises
+    ------
+    InputError
+        For a folder without tables, and for a damaged table.
+
+    Examples
+    --------
+    >>> tables = td.load("results/paper")  # doctest: +SKIP
+    >>> figure = td.plot(tables["mean_times"])  # doctest: +SKIP
+    """
     if not isinstance(folder, str | Path):
         raise InputError(f"folder must be the path of a folder, not {folder!r}")
     frames, folder = {}, Path(folder)

@@ -15,17 +15,10 @@ from twodiscs.dynamics.two import strip
 from twodiscs.model.checks import InputError, check_choice, check_error, check_integer
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene, check_scene
-from twodiscs.points.dynamics import DynamicsPoint
+from twodiscs.points.dynamics import DynamicsPoint, simulated_events
 from twodiscs.sampling.blocks.rounds import SequentialRun, all_in_rounds, on_grid
 from twodiscs.sampling.starts import require_room
 from twodiscs.theory.exact import replicas_needed
-
-COLLISIONS, ANY_WALLS = EVENTS.index("disc_collision"), EVENTS.index("any_wall")
-
-
-def simulated_events(sums):
-    """Return the number of wall hits and disc collisions among the counts of all events."""
-    return int(sums[COLLISIONS] + sums[ANY_WALLS])
 
 
 def engine_of(scene):
@@ -168,34 +161,28 @@ class CountingRun:
             engine.cost_ratio(scene),
         )
 
-    def point(self, outcomes):
-        """Return the ``DynamicsPoint``, given {name: ``Outcome``} of all parts."""
-        (sums, products), blocks, rounds, excess = outcomes["all"]
-        strips = {hop: strip.summary(self.scene, hop, outcomes[hop]) for hop in self._rare}
-        tracked = [EVENTS.index(event) for event in self._events]
-        status = dict.fromkeys(self._events, "impossible")
-        for event, value in zip(self._waited, excess, strict=True):
-            status[event] = "reached" if value <= 1.0 else "budget"
-        return DynamicsPoint(
-            radius=self.scene.radius,
-            duration=replica_duration(self.scene),
-            replicas=blocks * engine_of(self.scene).block_replicas(self.scene),
-            rounds=rounds,
-            events=simulated_events(sums) + sum(strip.events for strip in strips.values()),
-            counts={EVENTS[e]: int(sums[e]) for e in tracked},
-            products={
-                f"{EVENTS[e]}*{EVENTS[f]}": int(products[e, f])
-                for e in tracked
-                for f in tracked
-                if e <= f
-            },
-            target={event: self.target[event] for event in self._events},
-            status=status | {hop: strip.status for hop, strip in strips.items()},
-            strips=strips,
-        )
+    def point(self, pieces):
+        """Return the ``DynamicsPoint``, given {name: pieces} of all parts."""
+        engine = engine_of(self.scene)
+        constants = {
+            "duration": engine.replica_duration(self.scene),
+            "replicas": engine.block_replicas(self.scene),
+            "target": self._target,
+        }
+        parts = {"all": constants | {"sums": pieces["all"]}}
+        for hop in self._rare:
+            parts[hop] = strip.constants(self.scene, hop) | {"sums": pieces[hop]}
+        return DynamicsPoint.of(self.scene.radius, parts)
+
+    @property
+    def _target(self):
+        return {event: self.target[event] for event in self._events}
 
     def run(self, progress=None, cores=1, kept=None):
-        """Do all work in this process and return the ``DynamicsPoint`` (see ``all_in_rounds``)."""
+        """Do all work in this process and return the ``DynamicsPoint``.
+
+        ``kept`` are the parts of an earlier run, which are not done again (see ``all_in_rounds``).
+        """
         return self.point(all_in_rounds(self.parts, progress, cores, kept))
 
 

@@ -6,9 +6,7 @@ and record to their end all intervals that begin within a window of time. This h
 Palm's formula, the mean sum of these intervals over their mean number is the mean interval.
 """
 
-import math
-from dataclasses import dataclass, replace
-from fractions import Fraction
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -17,31 +15,15 @@ from twodiscs.dynamics.ensemble import RETURNS, nearest_power_of_two
 from twodiscs.model.checks import InputError, check_choice, check_integer
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene, check_scene
-from twodiscs.points.intervals import IntervalsPoint, WideBins
+from twodiscs.points.intervals import BINS, GRAIN, IntervalsPoint, wide_edges
 from twodiscs.sampling.blocks.rounds import all_in_rounds, fixed
 from twodiscs.sampling.starts import require_room
 
-#: Chains that share a stream, bins of a histogram.
+#: Chains that share a stream.
 CHAINS = 256
-BINS = 512
 
 #: The usual budget of wall and disc events.
 BUDGET = 10**11
-
-#: The least width of a wide bin, over its left edge.
-GROWTH = 0.08
-
-
-def wide_edges(bins=BINS):
-    """Return the edges of the wide bins, in units of the width of a bin.
-
-    They begin at zero, and each is one bin wide or wider than ``GROWTH`` times its left edge.
-    """
-    edges = [0]
-    for i in range(1, bins + 1):
-        if i >= (1 + GROWTH) * edges[-1]:
-            edges.append(i)
-    return edges
 
 
 def chains_of(scene):
@@ -135,7 +117,7 @@ class IntervalRun:
     @property
     def _grain(self):
         """The unit in which the times of chains are integers, the finest that doubles have."""
-        return _width(self.scene, self.event) * 2.0**-52
+        return _width(self.scene, self.event) * GRAIN
 
     @cached_property
     def _going(self):
@@ -167,35 +149,22 @@ class IntervalRun:
         ratio = chains_of(self.scene).interval_cost(self.scene)
         return {"all": fixed(work, self._blocks, self._each * self._events, ratio)}
 
-    def point(self, outcomes):
-        """Return the ``IntervalsPoint``, given {"all": its ``Outcome``}."""
-        (sums, (total, squares, *more)), blocks = outcomes["all"][:2]
-        n, total, squares = blocks * CHAINS, int(total), int(squares)
-        if more:
-            return self._of_windows(sums, n, total, squares, *map(int, more))
-        unit = self._grain / RETURNS
-        variance = (n * squares - total * total) / (n * n * (n - 1))
-        mean, stderr = total / n * unit, math.sqrt(variance) * unit
-        return _summary(self.scene, self.event, sums, n, mean, stderr)
-
-    def _of_windows(self, sums, chains, total, squares, joint, intervals, intervals_squared):
-        """Return the ``IntervalsPoint`` of more than two discs: the mean is a ratio."""
-        mean = Fraction(total, intervals)
-        spread = squares - 2 * mean * joint + mean**2 * intervals_squared
-        stderr = math.sqrt(spread * chains / (chains - 1)) / intervals
-        values = float(mean) * self._grain, stderr * self._grain
-        products = sums[2].tolist()
-        found = _summary(self.scene, self.event, sums[:2], chains, *values)
-        return replace(
-            found,
-            intervals=intervals,
-            intervals_squared=intervals_squared,
-            products=products[:BINS],
-            wide=replace(found.wide, products=products[BINS + 1 : -1]),
-        )
+    def point(self, pieces):
+        """Return the ``IntervalsPoint``, given {"all": pieces}."""
+        part = {
+            "event": self.event,
+            "bin_width": _width(self.scene, self.event),
+            "chains": CHAINS,
+            "returns": RETURNS,
+            "sums": pieces["all"],
+        }
+        return IntervalsPoint.of(self.scene.radius, {"all": part})
 
     def run(self, progress=None, cores=1, kept=None):
-        """Do all work in this process and return the ``IntervalsPoint`` (see ``all_in_rounds``)."""
+        """Do all work in this process and return the ``IntervalsPoint``.
+
+        ``kept`` are the parts of an earlier run, which are not done again (see ``all_in_rounds``).
+        """
         try:
             return self.point(all_in_rounds(self.parts, progress, cores, kept))
         except BaseException:
@@ -205,24 +174,3 @@ class IntervalRun:
 
 def _width(scene, event):
     return nearest_power_of_two(_mean(scene, event) / 16)
-
-
-def _summary(scene, event, sums, chains, mean, stderr):
-    edges, (counts, squares) = wide_edges(), sums.tolist()
-    return IntervalsPoint(
-        radius=scene.radius,
-        event=event,
-        bin_width=_width(scene, event),
-        counts=counts[:BINS],
-        squares=squares[:BINS],
-        overflow=counts[BINS],
-        wide=WideBins(
-            edges=edges,
-            counts=counts[BINS + 1 : BINS + len(edges)],
-            squares=squares[BINS + 1 : BINS + len(edges)],
-        ),
-        intervals=chains * RETURNS,
-        chains=chains,
-        mean=mean,
-        stderr=stderr,
-    )

@@ -35,6 +35,10 @@ class TimedRun(CountingRun):
     def _rare(self):
         return []
 
+    @property
+    def _target(self):
+        return dict.fromkeys(self._events)
+
     @cached_property
     def parts(self):
         """The ``SequentialRun`` of all blocks, {"all": run}."""

@@ -1,10 +1,13 @@
 """Figures and animations of results of the face, the same as those of the workflow."""
 
+from __future__ import annotations
+
 import sys
 import warnings
 from functools import partial
 from importlib import import_module
 from operator import attrgetter
+from typing import TYPE_CHECKING
 
 from twodiscs.comparison.measured.measurements import Intervals, Measurements, the_scene
 from twodiscs.comparison.measured.observe import Observed
@@ -15,7 +18,19 @@ from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.kit import style
 from twodiscs.figures.radius.over_radius import quantity_of
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, check_choice
+from twodiscs.model.checks import (
+    InputError,
+    answering,
+    check_choice,
+)
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    import pandas as pd
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 
 #: The results that can be drawn.
 DRAWN = (
@@ -24,10 +39,65 @@ DRAWN = (
 )
 
 
-def plot(result, path, figure, axes=None):
-    """Return the figure that shows ``result`` (see the face)."""
-    if axes is not None:
-        return _beside(result, path, figure, axes)
+@answering
+def plot(
+    result: object,
+    path: str | PathLike[str] | None = None,
+    *,
+    figure: str | None = None,
+    ax: Axes | None = None,
+) -> Figure:
+    """Draw a result, and write it to ``path`` if that is given.
+
+    The first of ``figure.axes`` is the main panel; the others have labels:
+    ``{a.get_label(): a for a in figure.axes}["residuals"]``. A notebook shows the returned figure,
+    a plain prompt shows a window.
+
+    Parameters
+    ----------
+    result : object
+        A trajectory, a ``Scan``, a result of ``simulate``, ``sample``, ``intervals``,
+        ``transmission``, ``observe`` or ``diffusion``, or a table of a scene from ``load``. A list
+        of results of ``simulate``, ``sample`` or ``intervals`` at several radii of one box is drawn
+        beside the exact curves. A scene or box of two plain discs has drawings of its geometry.
+    path : path-like, optional
+        A file that ends in .pdf, .png or .svg.
+    figure : str, optional
+        The name of a figure, see Notes, if several can show the result. Without it all measured
+        events are drawn; a warning names quantities that are not.
+    ax : matplotlib Axes, optional
+        Your axes: only the main panel of quantities over the radius is drawn there, with the
+        settings of your figure. A second call with the same ``ax`` adds another result, which may
+        be of another box.
+
+    Returns
+    -------
+    matplotlib Figure
+        The figure, which is the figure of ``ax`` if that is given.
+
+    Raises
+    ------
+    InputError
+        If no figure shows the result, and if the path cannot be written.
+
+    Notes
+    -----
+    Names of figures:
+
+    - mean times: ``mean_times`` (all events), ``mean_hop_time``, ``mean_collision_time``,
+      ``mean_wall_time``, ``pressure``
+    - volume and areas: ``volume``, ``areas`` (all events), ``vertical_hop_area``,
+      ``horizontal_hop_area``, ``collision_area``, ``wall_area``
+    - a scene or a box: ``model``, ``configuration_space``, ``largest_radius``,
+      ``integration_regimes``, ``surface_shell``
+    - ``hop_histogram``, ``hopping_trajectory``, ``transmission`` and ``observed``
+
+    Examples
+    --------
+    >>> figure = td.plot(scene, "model.png", figure="model")
+    """
+    if ax is not None:
+        return _beside(result, path, figure, ax)
     draw = _over_time(result, figure) or _in_catalogue(result, figure)
     with style.context():
         drawn = draw()
@@ -208,8 +278,31 @@ def rows_of(trajectory):
     return trajectory.to_dict("records")
 
 
-def animate(trajectory, path):
-    """Write the animation of a trajectory (see the face)."""
+@answering
+def animate(trajectory: pd.DataFrame, path: str | PathLike[str]) -> None:
+    """Write an animation of a trajectory.
+
+    It shows a hop of two discs, or the beginning of the trajectory. Balls are drawn as viewed along
+    z, the nearer one in front. A mark at the edge of a rough disc turns with it.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The table that ``trajectory`` returns, with all rows.
+    path : path-like
+        A file that ends in .gif, .png (an animated PNG), .html (a page with a slider, which needs
+        no network) or .mp4 (which needs the program ffmpeg).
+
+    Raises
+    ------
+    InputError
+        For anything but a trajectory, for one that does not last two frames, for a path that cannot
+        be written, and for an .mp4 without ffmpeg.
+
+    Examples
+    --------
+    >>> td.animate(td.trajectory(scene, 2, seed=1), "two.gif")
+    """
     from twodiscs.figures.motion import animation
 
     scene = the_scene(trajectory)

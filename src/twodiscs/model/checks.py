@@ -187,39 +187,6 @@ def check_ascending(name, values):
 
 # Calls --------------------------------------------------------------------------------------------
 
-#: The name of an argument here, and its names in other programs. A message proposes the first name
-#: here that the function has.
-ALIASES = {
-    "field": "gravity g acceleration",
-    "discs": "n num n_discs num_discs disks n_particles particles",
-    "samples": "n num n_samples shots steps",
-    "number": "n num size n_starts n_intervals",
-    "replicas": "n num n_replicas trajectories",
-    "hops": "n num n_hops",
-    "hop": "event events kind",
-    "events": "event hops hop quantities",
-    "quantities": "quantity events event observables",
-    "error": "tol tolerance rtol accuracy precision eps",
-    "duration": "time t t_max tmax total_time length",
-    "times": "time t",
-    "budget": "steps n_steps max_events max_steps",
-    "seed": "rng random_state random_seed",
-    "cores": "threads workers n_jobs processes n_cores",
-    "periodic": "pbc boundary boundaries periodicity",
-    "depth": "length_z lz d",
-    "radius_ratio": "radii ratio size_ratio",
-    "mass_ratio": "mass masses m ratio",
-    "moment_of_inertia": "inertia i rough roughness",
-    "path": "file filename fname output out",
-    "figure": "kind name fig",
-    "ax": "axes axis",
-    "progress": "verbose bar",
-    "radius": "r",
-    "radii": "radius r",
-    "width": "w lx",
-    "height": "h ly",
-}
-
 
 class WrongCall(InputError, TypeError):
     """A call with an unknown argument, with too many arguments or with too few."""
@@ -229,58 +196,28 @@ def did_you_mean(name, allowed):
     """Return the hint about an unknown ``name``: the nearest of ``allowed``, or ""."""
     from difflib import get_close_matches
 
-    allowed, plain = [*allowed], str(name).lower().replace(" ", "_").replace("-", "_")
-    found = [known for known in allowed if plain in ALIASES.get(known, "").split()]
-    found += [known for known in allowed if known.rpartition("_")[0] == plain]
-    found += get_close_matches(plain, allowed, 1, 0.7)
+    found = get_close_matches(str(name).lower().replace("-", "_"), [*allowed], 1)
     return f"; did you mean {found[0]}?" if found else ""
 
 
-def wrong_call(name, function, given, named):
-    """Return the ``WrongCall`` for the arguments with which ``function`` cannot be called."""
-    from inspect import Parameter, signature
+def answering(function):
+    """Return a ``function`` that raises a ``WrongCall`` for wrong arguments, or such a class."""
+    if isinstance(function, type):
+        function.__init__ = answering(function.__init__)
+        return function
 
-    parameters = signature(function).parameters.values()
-    names = [p.name for p in parameters if p.kind != Parameter.VAR_KEYWORD]
-    plain = [p.name for p in parameters if p.kind == Parameter.POSITIONAL_OR_KEYWORD]
-    unknown = [word for word in named if word not in names]
-    if unknown and len(names) == len(parameters):
-        known = [other for other in names if other != "self"]
-        hint = did_you_mean(unknown[0], [other for other in known if other not in named])
-        listed = f"{name} must be called with some of {', '.join(known)}"
-        return WrongCall(f"{listed}, not {unknown[0]}{hint}")
-    if len(given) > len(plain):
-        left = [p.name for p in parameters if p.kind == Parameter.KEYWORD_ONLY]
-        first = ", ".join(n for n in plain if n != "self")
-        return WrongCall(
-            f"{name} must be called with {', '.join(f'{n}=' for n in left)} by name: only {first} "
-            f"may be given without"
-            if left
-            else f"{name} must be called with {first} and nothing else"
-        )
-    twice = [word for word in plain[: len(given)] if word in named]
-    missing = [
-        p.name
-        for p in parameters
-        if p.default is Parameter.empty and p.name in names
-        if p.name not in (*plain[: len(given)], *named)
-    ]
-    wrong = f"{twice[0]} once" if twice else " and ".join(missing)
-    return WrongCall(f"{name} must be called with {wrong}")
-
-
-def answering(cls):
-    """Return a class whose constructor raises a ``WrongCall`` for wrong arguments."""
-    constructor = cls.__init__
-
-    @wraps(constructor)
-    def __init__(self, *given, **named):
+    @wraps(function)
+    def call(*given, **named):
         try:
-            constructor(self, *given, **named)
+            return function(*given, **named)
         except TypeError as error:
-            if error.__traceback__.tb_next is None:  # the call raised it, not the body
-                raise wrong_call(cls.__name__, constructor, (self, *given), named) from None
-            raise
+            if error.__traceback__.tb_next is not None:  # the body raised it, not the call
+                raise
+            from inspect import signature  # which takes long to import
 
-    cls.__init__ = __init__
-    return cls
+            known = signature(function).parameters
+            unknown = [name for name in named if name not in known]
+            hint = did_you_mean(unknown[0], known) if unknown else ""
+            raise WrongCall(f"{error}{hint}") from None
+
+    return call

@@ -1,17 +1,24 @@
 """Events that molecular dynamics counted at one radius, in independent replicas of a duration T."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import combinations_with_replacement
+from itertools import combinations_with_replacement, product
 from typing import ClassVar
 
 import numpy as np
 
-from twodiscs.model.checks import InputError, check_choice
+from twodiscs.model.checks import check_choice
 from twodiscs.model.events import EVENTS
 from twodiscs.points import estimates
-from twodiscs.points.base import Point, require_positive, require_same_keys
+from twodiscs.points.base import Point, reached, require_positive
 from twodiscs.points.strata import stratified_mean
+
+COLLISIONS, ANY_WALLS = EVENTS.index("disc_collision"), EVENTS.index("any_wall")
+
+
+def simulated_events(sums):
+    """Return the number of wall hits and disc collisions among the counts of all events."""
+    return int(sums[COLLISIONS] + sums[ANY_WALLS])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,7 +34,6 @@ class Count:
     replicas: int
     count: int
     squares: int
-    status: str
 
     #: A better estimate (⟨N⟩, error) than from these sums, None without one.
     mean = None
@@ -58,52 +64,45 @@ class Count:
         return estimates.mean_time_bound(self.replicas, self.time())
 
 
-@dataclass(frozen=True)
-class Strata:
-    """Strata (n, m) of initial states: exact probabilities, numbers of states, Σ N and Σ N²."""
-
-    shares: list[list[float]]
-    starts: list[list[int]]
-    counts: list[list[int]]
-    squares: list[list[int]]
-
-
 @dataclass(frozen=True, kw_only=True)
 class StripCount(Count):
     """The counts of a rare hop in a time 2T from initial states next to its surface.
 
-    ``rounds`` and ``events`` belong to its run. Raises ``InputError`` if the counts are not the
-    sums over the strata.
+    ``events`` were simulated. ``strata`` are lists (n, m): exact probabilities, numbers of initial
+    states, Σ N and Σ N².
     """
 
-    rounds: int
     events: int
-    strata: Strata
+    strata: tuple
 
-    def __post_init__(self):
-        super().__post_init__()
-        _ = self.mean
-        sums = {"replicas": "starts", "count": "counts", "squares": "squares"}
-        for name, part in sums.items():
-            total, found = np.sum(getattr(self.strata, part)), getattr(self, name)
-            if total != found:
-                raise InputError(f"{name} of a strip is {found!r}, but in its strata {total}")
+    @classmethod
+    def of(cls, part):
+        """Return the counts of a part of a run."""
+        (sums, events), blocks = reached(part["sums"])
+        return cls(
+            duration=part["duration"],
+            share=part["share"],
+            replicas=blocks * part["replicas"],
+            count=int(sums[1].sum()),
+            squares=int(sums[2].sum()),
+            events=int(events),
+            strata=(part["shares"], *sums.tolist()),
+        )
 
     @cached_property
     def mean(self):
         """⟨N⟩ and its error, from the strata."""
-        of = self.strata
-        return stratified_mean(of.shares, of.starts, of.counts, of.squares)
+        return stratified_mean(*self.strata)
 
 
 @dataclass(frozen=True)
 class DynamicsPoint(Point):
-    """The counts of events in ``replicas`` of a ``duration`` T, in some ``rounds``.
+    """The counts of events in ``replicas`` of a ``duration`` T.
 
     ``events`` is the number of wall hits and disc collisions. ``counts`` is Σ N by event,
-    ``products`` Σ N_a N_b by "a*b" of each pair in the order of ``EVENTS``, ``target`` the relative
-    error asked for by event, and ``status`` reached, budget or impossible. ``strips`` are counts of
-    rare hops from initial states next to their surface.
+    ``products`` Σ N_a N_b by "a*b" of each pair in the order of ``EVENTS``, and ``target`` the
+    relative error asked for by event, or None. ``strips`` are counts of rare hops from initial
+    states next to their surface.
     """
 
     stage: ClassVar[str] = "dynamics"
@@ -111,24 +110,38 @@ class DynamicsPoint(Point):
     radius: float
     duration: float
     replicas: int
-    rounds: int
     events: int
     counts: dict[str, int]
     products: dict[str, int]
-    target: dict[str, float]
-    status: dict[str, str]
+    target: dict[str, float | None]
     strips: dict[str, StripCount]
+    parts: dict | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self):
         require_positive(self, "duration", "replicas")
-        pairs = combinations_with_replacement(self.counted, 2)
-        require_same_keys("products", self.products, [f"{a}*{b}" for a, b in pairs])
-        for name in ("counts", "target", "status"):
-            require_same_keys(name, getattr(self, name), self.counted)
-        if unknown := self.strips.keys() - self.counts.keys():
-            raise InputError(f"strips.{min(unknown)} is not known")
-        for event in self.counted:
-            self.everywhere(event)
+
+    @classmethod
+    def of(cls, radius, parts):
+        """Return the point of the ``parts`` of a run: "all", and the rare hops in strips."""
+        part = parts["all"]
+        (sums, products), blocks = reached(part["sums"])
+        places = {event: k for k, event in enumerate(EVENTS) if event in part["target"]}
+        strips = {name: StripCount.of(part) for name, part in parts.items() if name != "all"}
+        return cls(
+            radius=radius,
+            duration=part["duration"],
+            replicas=blocks * part["replicas"],
+            events=simulated_events(sums) + sum(strip.events for strip in strips.values()),
+            counts={event: int(sums[k]) for event, k in places.items()},
+            products={
+                f"{a}*{b}": int(products[i, k])
+                for (a, i), (b, k) in product(places.items(), repeat=2)
+                if i <= k
+            },
+            target=part["target"],
+            strips=strips,
+            parts=parts,
+        )
 
     @property
     def counted(self):
@@ -143,7 +156,6 @@ class DynamicsPoint(Point):
             replicas=self.replicas,
             count=self.counts[event],
             squares=self.products[f"{event}*{event}"],
-            status="counted" if event in self.strips else self.status[event],
         )
 
     def in_strip(self, event):

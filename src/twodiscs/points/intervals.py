@@ -1,13 +1,36 @@
 """Intervals between hops of one kind, drawn at one radius and counted in bins."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
+from fractions import Fraction
 from itertools import pairwise, repeat
 from typing import ClassVar, NamedTuple
 
-from twodiscs.model.checks import InputError, check_choice
+from twodiscs.model.checks import check_choice
 from twodiscs.points import estimates
-from twodiscs.points.base import Point, require_positive
+from twodiscs.points.base import Point, reached, require_positive
 from twodiscs.points.estimates import Estimate
+
+#: The number of equal bins.
+BINS = 512
+
+#: The least width of a wide bin, over its left edge.
+GROWTH = 0.08
+
+#: The unit of the times of chains, over the width of a bin: times are integers in it.
+GRAIN = 2.0**-52
+
+
+def wide_edges(bins=BINS):
+    """Return the edges of the wide bins, in units of the width of a bin.
+
+    They begin at zero, and each is one bin wide or wider than ``GROWTH`` times its left edge.
+    """
+    edges = [0]
+    for i in range(1, bins + 1):
+        if i >= (1 + GROWTH) * edges[-1]:
+            edges.append(i)
+    return edges
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,19 +82,49 @@ class IntervalsPoint(Bins, Point):
     mean: float
     stderr: float
     intervals_squared: int | None = None
+    parts: dict | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self):
         require_positive(self, "bin_width", "intervals", "chains", "mean")
-        varies = self.intervals_squared is not None
-        numbers = {"": len(self.counts), "wide.": len(self.wide.edges) - 1}
-        for (name, bins), some in zip(numbers.items(), (self, self.wide), strict=True):
-            if (some.products is not None) != varies:
-                raise InputError(f"{name}products must be there if intervals_squared is")
-            lists = some.counts, some.squares, *([some.products] if varies else [])
-            if bins < 2 or any(len(one) != bins for one in lists):
-                raise InputError(f"{name}counts must be of two bins or more, as squares")
-        if any(right <= left for left, right in pairwise(self.wide.edges)):
-            raise InputError("wide.edges must be ascending")
+
+    @classmethod
+    def of(cls, radius, parts):
+        """Return the point of the ``parts`` of a run, {"all": part}.
+
+        Its sums are counts of the bins, equal ones, then wide ones, and Σ t and Σ t² over the times
+        t of chains. If chains differ in their number n of intervals, there are Σ t n, Σ n and Σ n².
+        """
+        part, edges = parts["all"], wide_edges()
+        (sums, moments), blocks = reached(part["sums"])
+        chains, (total, squares, *more) = blocks * part["chains"], map(int, moments)
+        if more:
+            joint, intervals, intervals_squared = more
+            mean = Fraction(total, intervals)
+            spread = squares - 2 * mean * joint + mean**2 * intervals_squared
+            error = math.sqrt(spread * chains / (chains - 1)) / intervals
+            unit = part["bin_width"] * GRAIN
+        else:
+            intervals, intervals_squared, mean = chains * part["returns"], None, total / chains
+            variance = (chains * squares - total * total) / (chains * chains * (chains - 1))
+            error, unit = math.sqrt(variance), part["bin_width"] * GRAIN / part["returns"]
+        names, rows = ("counts", "squares", "products"), sums.tolist()
+        wide = slice(BINS + 1, BINS + len(edges))
+        return cls(
+            radius=radius,
+            event=part["event"],
+            bin_width=part["bin_width"],
+            overflow=rows[0][BINS],
+            wide=WideBins(
+                edges=edges, **{n: row[wide] for n, row in zip(names, rows, strict=False)}
+            ),
+            intervals=intervals,
+            intervals_squared=intervals_squared,
+            chains=chains,
+            mean=float(mean) * unit,
+            stderr=error * unit,
+            parts=parts,
+            **{name: row[:BINS] for name, row in zip(names, rows, strict=False)},
+        )
 
     def estimate(self, name="mean"):
         """Return an ``Estimate`` by name: the "mean", or the "density_at_zero"."""

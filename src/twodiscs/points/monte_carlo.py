@@ -1,15 +1,15 @@
 """Volume and areas by Monte Carlo at one radius, from hits or from weighted insertions."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import combinations
 from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from twodiscs.model.checks import InputError, check_choice
+from twodiscs.model.checks import check_choice
 from twodiscs.points import estimates
-from twodiscs.points.base import Point, decoded, require_positive
+from twodiscs.points.base import Point, reached, require_positive
 from twodiscs.points.estimates import Estimate
 
 #: The areas of walls from which symmetry gives all others.
@@ -73,15 +73,34 @@ class MonteCarloPoint(SampledPoint):
     samples: int
     quantities: dict[str, Hits]
     right_and_top: int | None = None
+    parts: dict | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self):
         require_positive(self, "samples")
 
     @classmethod
-    def of(cls, content):
-        """Return the point of a dict: a ``MonteCarloPoint``, or an ``InsertionPoint``."""
-        weighted = isinstance(content, dict) and content.get("method") == InsertionPoint.METHOD
-        return decoded(InsertionPoint if weighted else cls, content)
+    def of(cls, radius, parts):
+        """Return the point of the ``parts`` of a run: this one, or an ``InsertionPoint``.
+
+        A quantity has the ``place`` of its hits among the sums, its measure and thickness.
+        """
+        part = parts["all"]
+        if part["method"] == InsertionPoint.METHOD:
+            return InsertionPoint.of(radius, parts)
+        (hits,), blocks = reached(part["sums"])
+        quantities = {
+            name: Hits(int(hits[one["place"]]), one["measure"], one["epsilon"])
+            for name, one in part["quantities"].items()
+        }
+        both = part["right_and_top"]
+        return cls(
+            radius,
+            part["method"],
+            blocks * part["samples"],
+            quantities,
+            None if both is None else int(hits[both]),
+            parts,
+        )
 
     def sampled(self, quantity):
         """Return a quantity as ``Sampled``, None if the point does not have it."""
@@ -146,13 +165,40 @@ class InsertionPoint(SampledPoint):
     unit: int
     quantities: dict[str, Weights]
     products: dict[str, int]
+    parts: dict | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self):
         require_positive(self, "samples", "unit")
-        both = {frozenset(name.split("*")) for name in self.products}
-        pairs = {frozenset(pair) for pair in combinations(self.quantities, 2)}
-        if both != pairs or len(both) < len(self.products):
-            raise InputError("products must have all pairs of quantities")
+
+    @classmethod
+    def of(cls, radius, parts):
+        """Return the point of the ``parts`` of a run: Σ w, then the rows of Σ w_a w_b."""
+        part = parts["all"]
+        ((sums, *products),), blocks = reached(part["sums"])
+        # A file has its keys sorted; only products of the order of places were summed.
+        places = {
+            name: one["place"]
+            for name, one in sorted(part["quantities"].items(), key=lambda item: item[1]["place"])
+        }
+        return cls(
+            radius=radius,
+            method=part["method"],
+            samples=blocks * part["samples"],
+            unit=part["unit"],
+            quantities={
+                name: Weights(
+                    int(sums[one["place"]]),
+                    int(products[one["place"]][one["place"]]),
+                    one["measure"],
+                )
+                for name, one in part["quantities"].items()
+            },
+            products={
+                f"{a}*{b}": int(products[i][k])
+                for (a, i), (b, k) in combinations(places.items(), 2)
+            },
+            parts=parts,
+        )
 
     def _sums(self, quantity):
         part = self.quantities[quantity]

@@ -31,7 +31,6 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, check_choice, check_fraction, check_integer
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
 from twodiscs.model.scene import Scene, check_scene, check_two
-from twodiscs.points.monte_carlo import Hits, MonteCarloPoint
 from twodiscs.sampling.blocks.rounds import Sampler, all_in_rounds, fixed
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.prism import kinetic_fraction, power_chance, prism_of, propose_in_prism
@@ -245,7 +244,7 @@ def sample_point(scene, quantities, samples, shell, seed):
 
 def _drawn(sampler, samples):
     blocks = -(-check_integer("samples", samples) // sampler.block)
-    return sampler.point(blocks * sampler.block, sampler.count(0, blocks))
+    return sampler.point({(0, blocks): [sampler.count(0, blocks)]})
 
 
 def in_prism(scene, quantities, shell, seed):
@@ -266,9 +265,10 @@ def in_prism(scene, quantities, shell, seed):
         return sample_blocks(np.uint64(seed), first, stop, *ranges.values(), sigma, ends, shells)
 
     return Sampler(
+        scene.radius,
         BLOCK,
         count,
-        lambda n, counts: _point(scene, "monte_carlo", wanted, epsilon, n, prism, counts),
+        _constants(scene, "monte_carlo", wanted, epsilon, BLOCK, prism),
     )
 
 
@@ -292,20 +292,25 @@ def _shells(scene, quantities, shell):
     return wanted, thickness
 
 
-def _point(scene, method, wanted, epsilon, samples, measure, counts):
-    """Return the ``MonteCarloPoint``; ``measure`` is the volume that the samples fill."""
+def _constants(scene, method, wanted, epsilon, block, measure):
+    """Return the constants of a ``MonteCarloPoint``; ``measure`` is the volume that samples fill.
+
+    A ``block`` has this number of samples.
+    """
     sampled = {}
     if "volume" in wanted:
-        sampled["volume"] = Hits(int(counts[0]), measure, None)
+        sampled["volume"] = {"place": 0, "measure": measure, "epsilon": None}
     # A hop's shell has two sides. For all walls, a sample looks at one disc and one of its walls.
     multiplicity = {"hop": 1 / 2, "walls": 4 * len(scene.walled)}
-    for event, thickness, hits in zip(_shelled(scene), epsilon, counts[1:], strict=False):
+    for place, (event, thickness) in enumerate(zip(_shelled(scene), epsilon, strict=True), 1):
         if event in wanted:
             factor = multiplicity.get(DECLARED[event].kind, 1)
-            sampled[f"{event}_area"] = Hits(int(hits), factor * measure / thickness, thickness)
+            sampled[f"{event}_area"] = {
+                "place": place, "measure": factor * measure / thickness, "epsilon": thickness,
+            }  # fmt: skip
     joined = {"right_wall", "top_wall"} <= wanted and "any_wall" not in _shelled(scene)
-    both = int(counts[SETS - 1]) if joined else None
-    return MonteCarloPoint(scene.radius, method, samples, sampled, both)
+    both = SETS - 1 if joined else None
+    return {"method": method, "samples": block, "quantities": sampled, "right_and_top": both}
 
 
 @compiled
@@ -368,9 +373,10 @@ def conditioned(scene, quantities, shell, seed):
         lambda axis, side, thick: -thick if side > 0 else thick - ranges[axis],
     )
     return Sampler(
+        scene.radius,
         PROPOSALS,
         lambda first, stop: propose_blocks(np.uint64(seed), first, stop, draw, ends),
-        lambda n, counts: _point(scene, "conditioned", wanted, epsilon, n, 2 * draw.mass, counts),
+        _constants(scene, "conditioned", wanted, epsilon, PROPOSALS, 2 * draw.mass),
         COST_RATIO,
     )
 
@@ -514,9 +520,10 @@ def weighted(scene, quantities, shell, seed):
     ends, axes = weighted_ends(scene, epsilon), range(len(scene.axes))
     measure = math.prod(4 * prism.half_1[axis] * prism.half_2[axis] for axis in axes)
     return Sampler(
+        scene.radius,
         BLOCK,
         lambda first, stop: weighted_blocks(np.uint64(seed), first, stop, prism, ends),
-        lambda n, counts: _point(scene, "monte_carlo", wanted, epsilon, n, measure, counts),
+        _constants(scene, "monte_carlo", wanted, epsilon, BLOCK, measure),
         WEIGHTED_COST_RATIO,
     )
 
@@ -582,11 +589,13 @@ class SamplingRun:
 
         return {"all": fixed(work, blocks, sampler.block, sampler.cost_ratio)}
 
-    def point(self, outcomes):
-        """Return the point, given {"all": its ``Outcome``}."""
-        (counts,), blocks = outcomes["all"][:2]
-        return self._sampler.point(blocks * self._sampler.block, counts)
+    def point(self, pieces):
+        """Return the point, given {"all": pieces}."""
+        return self._sampler.point(pieces["all"])
 
     def run(self, progress=None, cores=1, kept=None):
-        """Do all samples in this process and return the point (see ``all_in_rounds``)."""
+        """Do all samples in this process and return the point.
+
+        ``kept`` are the parts of an earlier run, which are not done again (see ``all_in_rounds``).
+        """
         return self.point(all_in_rounds(self.parts, progress, cores, kept))

@@ -140,28 +140,31 @@ class SceneRequest:
         """{event: requested relative standard error} of the mean times."""
         return self.dynamics["accuracy"]
 
-    def arguments(self, stage, radius):
-        """Return {name: value} of all that the job of a ``stage`` depends on, except its scene."""
+    def arguments(self, stage):
+        """Return the arguments of the function of the face that does the work of a ``stage``.
+
+        With the scene they are all that a job depends on.
+        """
         sampling = self.monte_carlo | {"quantities": self.sampled, "shell": self.shell}
         settings = {
             "monte_carlo": dict(sorted(sampling.items())),
-            "dynamics": {"target": self.target, "budget": self.event_budget},
+            "dynamics": {"error": self.target, "budget": self.event_budget},
             "intervals": {
-                "event": self.histogram["event"],
-                "intervals": self.histogram["intervals"],
+                "hop": self.histogram["event"],
+                "number": self.histogram["intervals"],
                 "budget": self.histogram["event_budget"],
             },
         }
-        return settings[stage] | {"seed": self.seed_of(stage, radius)}
+        return settings[stage] | {"seed": self.seed, "name": self.name}
 
-    def shard_arguments(self, stage, radius):
+    def shard_arguments(self, stage):
         """Return ``arguments`` of a shard, which does not depend on accuracy and budgets."""
         constant = {
             "monte_carlo": {"samples": 1},
-            "dynamics": {"target": dict.fromkeys(self.target, 0.5), "budget": 1},
-            "intervals": {"intervals": 1, "budget": MOST_EVENTS},
+            "dynamics": {"error": dict.fromkeys(self.target, 0.5), "budget": 1},
+            "intervals": {"number": 1, "budget": MOST_EVENTS},
         }
-        return self.arguments(stage, radius) | constant[stage]
+        return self.arguments(stage) | constant[stage]
 
     @property
     def trajectory_seed(self):

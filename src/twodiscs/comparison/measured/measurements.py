@@ -24,6 +24,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import (
     LARGEST_INTEGER,
     InputError,
+    answering,
     check_choice,
     check_count,
     check_error,
@@ -40,8 +41,12 @@ from twodiscs.points.monte_carlo import WALL_AREAS
 from twodiscs.theory import tails
 
 if TYPE_CHECKING:
+    from typing import Unpack
+
     import pandas as pd
     from uncertainties import UFloat
+
+    from twodiscs import Effects, Event, Hop, Quantity
 
 #: Bins resolve how the density of intervals begins if a pair of discs has at most this mean number
 #: of wall hits and collisions in one bin. At .23 to .39 events, extrapolations deviate by less than
@@ -270,9 +275,7 @@ class Measurements(Result, Mapping[str, Measurement]):
     settings : dict
         {argument: value} beside the scene, with the seed and the error that was asked for.
     point : DynamicsPoint or MonteCarloPoint
-        The sums of its work.
-    kept : dict
-        {part: {blocks: sums}} of its work, from which it goes on.
+        The sums of its work, from which it goes on.
     note : str, optional
         The difference between the work that was asked for and the work that was done.
 
@@ -290,9 +293,9 @@ class Measurements(Result, Mapping[str, Measurement]):
     ('vertical_hop_time', 1)
     """
 
-    def __init__(self, kind, scene, rows, settings, point, kept, note=None):
-        self.kind, self.scene, self.rows, self.point = kind, scene, rows, point
-        self.settings, self.kept, self.note = settings, kept, note
+    def __init__(self, kind, scene, rows, settings, point, note=None):
+        self.kind, self.scene, self.rows, self.settings = kind, scene, rows, settings
+        self.point, self.parts, self.note = point, point.parts, note
         found = (measurement(scene, row, self) for row in rows)
         self._measurements = Quantities((one.quantity, one) for one in found)
 
@@ -392,8 +395,6 @@ class Intervals(Result):
         The counts, as the pipeline keeps them.
     settings : dict
         {argument: value} beside the scene.
-    kept : dict
-        {part: {blocks: sums}} of its work, from which it goes on.
 
     Attributes
     ----------
@@ -441,9 +442,9 @@ class Intervals(Result):
 
     kind = "intervals"
 
-    def __init__(self, scene, point, settings, kept):
+    def __init__(self, scene, point, settings):
         self.scene, self.hop = scene, point.event
-        self.settings, self.kept = settings, kept
+        self.settings, self.parts = settings, point.parts
         self.intervals, self.overflow = point.intervals, point.overflow
         self.note = note_of_number("intervals", settings["number"], self.intervals)
         self.rows = HopHistogram.rows(_theory(scene), {"intervals": [point]})
@@ -543,18 +544,86 @@ def _named(key, what, names, allowed):
     return [name for name in allowed if name in names]
 
 
+@answering
 def simulate(
-    scene, error=None, duration=None, seed=1, budget=2e9, events=None, name=None, cores=1,
-    progress=None, kept=None, usual=1e-3,
-):  # fmt: skip
-    """Return the ``Measurements`` of mean times by molecular dynamics (see the face).
+    scene: Scene,
+    error: float | str | Mapping[Event, float | str] | None = None,
+    *,
+    duration: float | None = None,
+    seed: int = 1,
+    budget: float = 2e9,
+    events: Event | Iterable[Event] | None = None,
+    name: str | None = None,
+    cores: int = 1,
+    progress: bool | None = None,
+) -> Measurements:
+    """Measure mean times by molecular dynamics: {quantity: ``Measurement``}, in time.
 
-    ``usual`` is the error if neither ``error`` nor ``duration`` is given.
+    Many independent trajectories start in the invariant measure. Each has the same duration T, a
+    power of two that depends on the scene. The mean count in T is exactly T times the rate, for
+    every T. Trajectories are added until every relative standard error is below ``error``, or
+    ``budget`` events are simulated; with a ``duration``, until that time is simulated.
+
+    Work comes in whole blocks of 1024 trajectories, 2.4e5 events each for a radius of 0.2 in a box
+    of 1.5 × 1. Without a ``duration`` the minimum is 32 blocks, 7.7e6 events there, or fewer within
+    the ``budget``, but at least one block. If this is more than asked for, the ``note`` of the
+    result says so. For quick results with many discs give ``budget=1e6``.
+
+    Parameters
+    ----------
+    scene : Scene
+        The box, the discs and their effects.
+    error : float, str or dict, optional
+        The relative standard error, above 0 and at most 1, or "draft" (1e-2), "paper" (3e-4) or
+        "reference" (1e-4): one for all, or {event: error}. It is 1e-3 if neither ``error`` nor
+        ``duration`` is given.
+    duration : float, optional
+        The simulated time of all trajectories together, in time. It is rounded up to whole blocks.
+        All events are then counted in the same trajectories, rare hops too.
+    budget : float, default 2e9
+        The most wall hits and disc collisions, an integer from 1 on.
+    events : str or iterable of str, optional
+        Events to count, some of ``EVENTS``; if left out, all that exist in the scene.
+    seed, name, cores, progress : optional
+        See ``help(twodiscs)``.
+
+    Returns
+    -------
+    Measurements
+        {quantity: ``Measurement``}; ``more(error=…)`` goes on from it.
+
+    Raises
+    ------
+    InputError
+        For an unknown event, for a number out of range, for both ``error`` and ``duration``, and
+        for a ``duration`` with more events than the ``budget``.
+
+    Notes
+    -----
+    The first call compiles for some seconds; compiled code is kept. Ctrl-C stops a call without
+    delay, but a script first ends a compilation, which takes some 10 to 30 s.
+
+    Examples
+    --------
+    >>> md = td.simulate(scene, error=0.02, seed=1, events="vertical_hop")
+    >>> abs(md["vertical_hop_time"].z) < 5
+    True
+    >>> td.simulate(scene, duration=1e4, seed=1)["any_wall_time"].count > 1e4
+    True
     """
+    if error is None and duration is None:
+        error = 1e-3
+    return run_simulation(scene, error, duration, seed, budget, events, name, cores, progress)
+
+
+def run_simulation(
+    scene, error, duration=None, seed=1, budget=2e9, events=None, name=None, cores=1,
+    progress=None, kept=None,
+):  # fmt: skip
+    """Return the ``Measurements`` of ``simulate``; the parts ``kept`` are not done again."""
     possible = check_scene(scene).events
     if duration is not None:
         return _timed(scene, error, duration, seed, budget, events, name, cores, progress, kept)
-    error = usual if error is None else error
     if isinstance(error, Mapping) and not error:
         raise InputError(f"error must hold some of {', '.join(possible)}, not {{}}")
     if not isinstance(error, Mapping):
@@ -574,12 +643,12 @@ def simulate(
     }  # fmt: skip
     from twodiscs.dynamics.counting import CountingRun
 
-    kept, run = {} if kept is None else kept, CountingRun(scene, target, budget, stream)
+    run = CountingRun(scene, target, budget, stream)
     with progress_bar(progress, f"simulate r = {scene.radius:g}") as progress:
         point = run.run(progress, cores, kept)
     rows = MeanTimes.rows(Box.of(scene), _theory(scene), {"dynamics": [point]})
     note = _note_of_error(rows, target, budget, point.events)
-    return Measurements("simulate", scene, rows, settings, point, kept, note)
+    return Measurements("simulate", scene, rows, settings, point, note)
 
 
 def _note_of_error(rows, target, budget, events):
@@ -613,23 +682,70 @@ def _timed(scene, error, duration, seed, budget, events, name, cores, progress, 
 
     # No error is asked for: 1 is the largest that a run takes.
     run = TimedRun(scene, dict.fromkeys(tracked, 1.0), budget, stream, duration)
-    kept = {} if kept is None else kept
     with progress_bar(progress, f"simulate r = {scene.radius:g}") as progress:
         point = run.run(progress, cores, kept)
-    rows = [
-        row | {"target": None, "status": "counted" if row["status"] == "reached" else row["status"]}
-        for row in MeanTimes.rows(Box.of(scene), _theory(scene), {"dynamics": [point]})
-    ]
+    rows = MeanTimes.rows(Box.of(scene), _theory(scene), {"dynamics": [point]})
     total = point.replicas * point.duration
     note = (
         f"duration {duration:g} asked for, {total:g} simulated: {point.replicas} trajectories "
         f"of {point.duration:g} each"
     )
-    return Measurements("simulate", scene, rows, settings, point, kept, note)
+    return Measurements("simulate", scene, rows, settings, point, note)
 
 
-def sample(scene, samples, seed, quantities, shell, name, cores=1, progress=None, kept=None):
-    """Return the ``Measurements`` of volume and areas by Monte Carlo (see the face)."""
+@answering
+def sample(
+    scene: Scene,
+    samples: float = 10**7,
+    *,
+    seed: int = 1,
+    quantities: Quantity | Iterable[Quantity] | None = None,
+    shell: float = 0.02,
+    name: str | None = None,
+    cores: int = 1,
+    progress: bool | None = None,
+) -> Measurements:
+    """Measure volume and areas of configuration space by Monte Carlo: {quantity: ``Measurement``}.
+
+    Areas are estimated by shells: z compares with the exact expectation of the shell.
+
+    Parameters
+    ----------
+    scene : Scene
+        The box, the discs and their effects.
+    samples : float, default 1e7
+        Configurations to draw, an integer from 1 on. It is rounded up to whole blocks, of 2²⁰ for
+        two plain discs; ``note`` of the result has the number that was drawn.
+    quantities : str or iterable of str, optional
+        Some of "volume" and "<event>_area"; all if left out.
+    shell : float, default 0.02
+        The thickness of a shell, between 0 and 1, as a fraction of the radius or, if that is
+        smaller, of the distance to the radius at which the surface vanishes.
+    seed, name, cores, progress : optional
+        See ``help(twodiscs)``.
+
+    Returns
+    -------
+    Measurements
+        {quantity: ``Measurement``}, for two discs in length⁴ and length³, for balls in length⁶ and
+        length⁵, for N discs in length²ᴺ and length²ᴺ⁻¹; ``more(samples=…)`` goes on from it.
+
+    Raises
+    ------
+    InputError
+        For an unknown quantity or a number out of range.
+
+    Examples
+    --------
+    >>> volume = td.sample(scene, 1e6, seed=1, quantities="volume")["volume"]
+    >>> abs(volume.value - td.volume(scene)) < 5 * volume.stderr
+    True
+    """
+    return run_sampling(scene, samples, seed, quantities, shell, name, cores, progress)
+
+
+def run_sampling(scene, samples, seed, quantities, shell, name, cores=1, progress=None, kept=None):
+    """Return the ``Measurements`` of ``sample``; the parts ``kept`` are not done again."""
     allowed = ("volume", *(f"{event}_area" for event in check_scene(scene).events))
     quantities = _named("quantities", "quantity", quantities, allowed)
     samples = check_count("samples", samples)
@@ -642,7 +758,7 @@ def sample(scene, samples, seed, quantities, shell, name, cores=1, progress=None
     from twodiscs.sampling.starts import require_free_fraction
 
     require_free_fraction(scene)
-    kept, run = {} if kept is None else kept, SamplingRun(scene, quantities, samples, shell, stream)
+    run = SamplingRun(scene, quantities, samples, shell, stream)
     with progress_bar(progress, f"sample r = {scene.radius:g}") as progress:
         point = run.run(progress, cores, kept)
     points = {"monte_carlo": [point]}
@@ -651,11 +767,59 @@ def sample(scene, samples, seed, quantities, shell, name, cores=1, progress=None
     # Insertions always have the volume.
     rows = [row for row in rows if row["quantity"] in quantities]
     note = note_of_number("samples", samples, point.samples)
-    return Measurements("sample", scene, rows, settings, point, kept, note)
+    return Measurements("sample", scene, rows, settings, point, note)
 
 
-def intervals(scene, hop, number, seed, name, cores=1, progress=None, kept=None):
-    """Return the ``Intervals`` between hops (see the face)."""
+@answering
+def intervals(
+    scene: Scene,
+    hop: Hop,
+    number: float = 10**6,
+    *,
+    seed: int = 1,
+    name: str | None = None,
+    cores: int = 1,
+    progress: bool | None = None,
+) -> Intervals:
+    """Draw intervals between hops of one kind: their mean, bins and density at 0.
+
+    Parameters
+    ----------
+    scene : Scene
+        The box, the smooth discs and their effects.
+    hop : str
+        "vertical_hop" or "horizontal_hop"; for more than two discs a hop of any pair.
+    number : float, default 1e6
+        Intervals to draw, an integer from 1 on. It is rounded up to whole blocks of 2¹⁶ (for more
+        than two discs a block has about 2¹⁶ to 2¹⁷), within 1e11 events; ``note`` of the result has
+        the number that was drawn.
+    seed, name, cores, progress : optional
+        See ``help(twodiscs)``.
+
+    Returns
+    -------
+    Intervals
+        Times are in time, densities in 1/time; ``more(number=…)`` goes on from it.
+
+    Raises
+    ------
+    InputError
+        For a blocked hop, for rough discs without friction, and for more than two discs if it is
+        not known whether they can hop.
+
+    Examples
+    --------
+    >>> abs(td.intervals(scene, "vertical_hop", 1e5, seed=1).mean.z) < 5
+    True
+    """
+    return run_intervals(scene, hop, number, seed, name, cores, progress)
+
+
+def run_intervals(scene, hop, number, seed, name, cores=1, progress=None, kept=None, budget=None):
+    """Return the ``Intervals`` of ``intervals``; the parts ``kept`` are not done again.
+
+    ``budget`` is the largest number of wall hits and collisions, None for the usual one.
+    """
     check_choice("hop", hop, HOPS)
     if check_scene(scene).moment_of_inertia is not None and not scene.friction:
         raise InputError(
@@ -663,17 +827,60 @@ def intervals(scene, hop, number, seed, name, cores=1, progress=None, kept=None)
             f"intervals have no exact mean, but moment_of_inertia is {scene.moment_of_inertia!r}"
         )
     number, stream = check_count("number", number), seed_of(scene, "intervals", seed, name)
-    settings = {"hop": hop, "number": number, "seed": int(seed), "name": name}
-    from twodiscs.dynamics.intervals import IntervalRun
+    from twodiscs.dynamics.intervals import BUDGET, IntervalRun
 
-    kept, run = {} if kept is None else kept, IntervalRun(scene, hop, number, stream)
+    settings = {
+        "hop": hop, "number": number, "seed": int(seed), "name": name, "budget": budget or BUDGET,
+    }  # fmt: skip
+    run = IntervalRun(scene, hop, number, stream, settings["budget"])
     with progress_bar(progress, f"intervals r = {scene.radius:g}") as progress:
         point = run.run(progress, cores, kept)
-    return Intervals(scene, point, settings, kept)
+    return Intervals(scene, point, settings)
 
 
-def starts(scene, number, seed, name, progress=None):
-    """Return states of the invariant measure, an array with named columns (see the face)."""
+@answering
+def starts(
+    scene: Scene,
+    number: float,
+    *,
+    seed: int = 1,
+    name: str | None = None,
+    progress: bool | None = None,
+) -> np.ndarray:
+    """Draw independent states of the invariant measure: an array with named columns.
+
+    If N discs are too dense for rejection, each state is the end of a chain of trial moves.
+
+    Parameters
+    ----------
+    scene : Scene
+        The box, the discs and their effects.
+    number : float
+        The number of states, an integer from 1 to 1e8.
+    seed, name, progress : optional
+        See ``help(twodiscs)``.
+
+    Returns
+    -------
+    structured array, shape (number,)
+        Fields x1, y1, x2, y2 are the centres, from the centre of the box; u1, v1, u2, v2 are the
+        velocities, which vx1, vy1, vx2, vy2 give, too. Balls also have z1, z2, w1, w2 (vz1, vz2),
+        and rough discs s1, s2, the speeds of their surfaces. N discs have x1 … xN, then y, u, v
+        and, if they are rough, s.
+
+    Raises
+    ------
+    InputError
+        For a number out of range, and if initial states cannot be drawn.
+
+    Examples
+    --------
+    >>> states = td.starts(scene, 1000, seed=1)
+    >>> bool(abs(states["x1"].mean()) < 5 * 0.32 / 1000**0.5)  # the centre of the box is the mean
+    True
+    >>> bool((states["vx1"] == states["u1"]).all())
+    True
+    """
     number = check_count("number", number, most=10**8)
     seed = seed_of(scene, "trajectory", seed, name)
     from twodiscs.comparison.measured.states import with_aliases
@@ -683,8 +890,41 @@ def starts(scene, number, seed, name, progress=None):
         return with_aliases(records(scene, number, seed, progress))
 
 
-def exact_table(width, height, radii, effects):
-    """Return the exact numbers over radii as a ``DataFrame`` (see the face)."""
+@answering
+def exact_table(
+    width: float, height: float, radii: Iterable[float], **effects: Unpack[Effects]
+) -> pd.DataFrame:
+    """Return the exact numbers of a box over ``radii``, one row per radius.
+
+    Parameters
+    ----------
+    width, height : float
+        Sides of the box, in length, from 1e-60 to 1e60.
+    radii : iterable of float
+        Radii of disc 1, in length, each of which must fit.
+    **effects
+        The effects and ``discs`` of ``Scene``.
+
+    Returns
+    -------
+    DataFrame, shape (radii, 2 + 1 + 12)
+        Its index is the radius. Columns are regime, ergodic_components, volume, and <event>_area
+        and <event>_time of every event. A time is NaN if the event is impossible or no exact value
+        is known. Units are those of ``volume``, ``areas`` and ``mean_times``.
+
+    Raises
+    ------
+    InputError
+        For a radius that does not fit, for an empty list, and for an unknown effect.
+
+    Examples
+    --------
+    >>> td.exact_table(1.5, 1.0, [0.1, 0.2])["vertical_hop_time"].round(6)
+    radius
+    0.1    1.673843
+    0.2    1.338047
+    Name: vertical_hop_time, dtype: float64
+    """
     import pandas as pd
 
     box = box_with(width, height, effects)

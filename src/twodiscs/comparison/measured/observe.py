@@ -14,14 +14,24 @@ from twodiscs.comparison.measured.states import with_aliases
 from twodiscs.dynamics.counting import engine_of
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, kicks_of, new_wraps, unwrap
-from twodiscs.model.checks import InputError, as_list, check_count, format_number, quote
+from twodiscs.model.checks import (
+    InputError,
+    answering,
+    as_list,
+    check_count,
+    format_number,
+    quote,
+)
 from twodiscs.model.scene import check_scene
 from twodiscs.sampling.blocks.threads import in_threads
 from twodiscs.sampling.starts import as_records, states
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
     import pandas as pd
 
+    from twodiscs import Axis
     from twodiscs.model.scene import Scene
 
 #: Replicas with one random stream; fewer where a family has smaller blocks than ``REPLICAS``.
@@ -169,11 +179,62 @@ def _check_finite(values, times, first):
         )
 
 
+@answering
 def observe(
+    scene: Scene,
+    function: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    times: float | Iterable[float],
+    replicas: float = 2**16,
+    *,
+    seed: int = 1,
+    name: str | None = None,
+    cores: int = 1,
+    progress: bool | None = None,
+) -> Observed:
+    """Average your function over trajectories that start in the invariant measure.
+
+    Parameters
+    ----------
+    scene : Scene
+        The box, the discs and their effects.
+    function : callable
+        ``function(start, now)`` takes two read-only arrays of states in the form of ``starts``, at
+        time 0 and at one of the ``times``. It returns an array with a number, or an array, for each
+        of the states. On periodic axes positions go on beyond the cell.
+    times : float or iterable of float
+        Ascending, from 0 on, in time.
+    replicas : float, default 2¹⁶
+        Trajectories, an integer from 1 to 1e9. It is rounded up to whole blocks of 4096; ``note``
+        of the result has the number that was followed.
+    seed, name, cores, progress : optional
+        See ``help(twodiscs)``.
+
+    Returns
+    -------
+    Observed
+        ``mean`` and ``stderr`` at each time, arrays of shape (times, …). The error comes from the
+        spread between the replicas, which are independent. All times have the same replicas, so
+        their averages are correlated.
+
+    Raises
+    ------
+    InputError
+        For times of more than 10⁷ events, and for a function that returns anything else.
+
+    Examples
+    --------
+    >>> found = td.observe(scene, lambda start, now: start["u1"] * now["u1"], [0, 1], seed=1)
+    >>> bool(abs(found.mean[0] - 1 / 4) < 5 * found.stderr[0])  # ⟨u₁²⟩ of four components
+    True
+    """
+    return averages(scene, function, times, replicas, seed, name, cores, progress)
+
+
+def averages(
     scene, function, times, replicas, seed, name, cores=1, progress=None, names=(),
     over_times=lambda values: values,
 ):  # fmt: skip
-    """Return the averages of a user's ``function`` as ``Observed`` (see the face).
+    """Return the averages of a user's ``function`` as ``Observed``.
 
     ``over_times`` is applied to the values of the replicas of a block, (replicas, times, …), before
     they are averaged; ``names`` are the names of the averages.
@@ -225,8 +286,64 @@ def observe(
     return Observed(scene, times, mean, stderr, total, settings, note, names)
 
 
-def diffusion(scene, times, replicas, axis, seed, name, cores=1, progress=None):
-    """Return squared displacements and their slopes, as ``Observed`` (see the face)."""
+@answering
+def diffusion(
+    scene: Scene,
+    times: float | Iterable[float],
+    replicas: float = 2**16,
+    *,
+    axis: Axis | None = None,
+    seed: int = 1,
+    name: str | None = None,
+    cores: int = 1,
+    progress: bool | None = None,
+) -> Observed:
+    """Measure the diffusion of the discs along a periodic axis, from the invariant measure.
+
+    Displacements are of single discs, averaged over all of them if they are equal, else of disc 1.
+    Smooth discs conserve the total momentum along the axis, which is 0: two equal discs then move
+    in opposite directions.
+
+    Parameters
+    ----------
+    scene : Scene
+        The box, which is periodic along ``axis``, the discs and their effects.
+    times : float or iterable of float
+        Ascending, above 0, in time.
+    replicas : float, default 2¹⁶
+        Trajectories, an integer from 1 to 1e9, rounded up to whole blocks of 4096.
+    axis : str, optional
+        "x", "y" or "z"; the first periodic one if left out.
+    seed, name, cores, progress : optional
+        See ``help(twodiscs)``.
+
+    Returns
+    -------
+    Observed
+        ``mean`` and ``stderr``, shape (times, 2), have two columns, which ``frame()`` names:
+        squared_displacement ⟨Δx²⟩(t), in length², and diffusion, in length²/time. The latter is
+        half of the slope since the previous time, or since 0 for the first. The error of a slope
+        includes the correlation of its two ends.
+
+    Raises
+    ------
+    InputError
+        For an axis with walls, between which displacements have a bound, for times of more than
+        10⁷ events, and for a time of 0.
+
+    Notes
+    -----
+    The diffusion coefficient D is the limit of the second column for long times, if there is one.
+    Long free flights along a smooth channel can make it grow like a logarithm, and single discs
+    cannot diffuse on a ring if they cannot pass each other.
+
+    Examples
+    --------
+    >>> ring = td.Scene(1.5, 1.0, 0.2, periodic="x")
+    >>> found = td.diffusion(ring, [2, 4, 8], 1e4, seed=1)
+    >>> bool(0.02 < found.frame()["diffusion"].iloc[-1] < 0.05)
+    True
+    """
     periodic = check_scene(scene).periodic
     if not periodic or (axis is not None and not (isinstance(axis, str) and axis in [*periodic])):
         allowed = f"one of {', '.join(periodic)}" if periodic else "periodic in the scene"
@@ -247,4 +364,6 @@ def diffusion(scene, times, replicas, axis, seed, name, cores=1, progress=None):
         return np.stack([values, slopes], axis=2)
 
     names = "squared_displacement", "diffusion"
-    return observe(scene, squared, times, replicas, seed, name, cores, progress, names, with_slopes)
+    return averages(
+        scene, squared, times, replicas, seed, name, cores, progress, names, with_slopes
+    )

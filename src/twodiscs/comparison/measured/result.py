@@ -2,47 +2,40 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping
 from html import escape
-from importlib import import_module
 from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Self
-
-import numpy as np
 
 import twodiscs
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, quote, writing_to
+from twodiscs.model.checks import (
+    InputError,
+    answering,
+    quote,
+    writing_to,
+)
+from twodiscs.points.base import content_of, with_arrays
+from twodiscs.points.digests import read_json, write_json
 
 if TYPE_CHECKING:
     import pandas as pd
 
+    from twodiscs import Intervals, Measurements, Scan, Transmission
     from twodiscs.model.scene import Scene
-
-#: The module of the function that makes a result of each kind; the function has the kind's name.
-MAKERS = {
-    "simulate": "measurements",
-    "sample": "measurements",
-    "intervals": "measurements",
-    "transmission": "transmission",
-    "scan": "scan",
-}
 
 
 class Result:
     """A result and how it was made: ``kind`` is the function of the face that made it.
 
     ``settings`` are its arguments beside the scene, {name: value}, with the seed and the error that
-    was asked for; ``version`` is the version of the package. ``kept`` has the sums of its blocks,
-    {part: {blocks: sums}}, from which it goes on.
+    was asked for; ``version`` is the version of the package. ``parts`` are the parts of its run
+    (see ``points.base``), from which it goes on.
     """
 
     kind: ClassVar[str]
     scene: Scene
     settings: dict[str, object]
-    kept: dict[str, dict[int, list]]
+    parts: dict[str, dict]
     version: str = twodiscs.__version__
     #: The difference between the work that was asked for and the work that was done, None if none.
     note: str | None = None
@@ -104,8 +97,7 @@ class Result:
 
     def _again(self, settings, options):
         """Return the result of these ``settings``, which uses the sums of this one."""
-        kept = {part: dict(sums) for part, sums in self.kept.items()}
-        return made(self.kind, self.scene, settings, kept, **options)
+        return made(self.kind, self.scene, settings, self.parts, **options)
 
     def to_dict(self) -> dict[str, object]:
         """Return the result as ``save`` writes it.
@@ -121,16 +113,8 @@ class Result:
         >>> content["kind"], content["settings"]["seed"]
         ('simulate', 7)
         """
-        return {
-            "twodiscs": self.version,
-            "kind": self.kind,
-            "scene": Box.of(self.scene).parameters() | {"radius": self.scene.radius},
-            "settings": self.settings,
-            "kept": {
-                part: {str(n): [np.asarray(s).tolist() for s in sums] for n, sums in some.items()}
-                for part, some in self.kept.items()
-            },
-        }
+        scene = Box.of(self.scene).parameters() | {"radius": self.scene.radius}
+        return content_of(self.kind, scene, self.settings, self.parts)
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write the result to a JSON file that ``load_result`` reads.
@@ -152,9 +136,8 @@ class Result:
         >>> td.load_result("md.json") == md
         True
         """
-        text = json.dumps(self.to_dict(), allow_nan=False) + "\n"
         with writing_to(path):
-            Path(path).write_text(text, encoding="utf-8")
+            write_json(path, self.to_dict())
 
     def texts(self) -> pd.DataFrame:
         """Return the texts of the printed table."""
@@ -180,57 +163,80 @@ def note_of_number(what, asked, done):
 
 
 #: Settings that can grow when a result goes on; the first one of a kind is its amount.
-MORE = ("error", "duration", "budget", "samples", "number", "hops")
+MORE = ("error", "samples", "number", "hops", "duration", "budget")
 
 
 def made(kind, scene, settings, kept, **options):
-    """Return the result of a ``kind`` with these ``settings``; it uses the sums in ``kept``."""
-    module = import_module(f"{__package__}.{MAKERS[kind]}")
-    return getattr(module, kind)(scene, **settings, **options, kept=kept)
+    """Return the result of a ``kind`` with these ``settings``; it uses the parts ``kept``."""
+    from twodiscs.comparison.measured import measurements, transmission
 
-
-def _sums(value):
-    try:
-        return np.array(value, np.int64)
-    except OverflowError:
-        return np.array(value, object)
+    makers = {
+        "simulate": measurements.run_simulation,
+        "sample": measurements.run_sampling,
+        "intervals": measurements.run_intervals,
+        "transmission": transmission.run_transmission,
+    }
+    return makers[kind](scene, **settings, **options, kept=kept)
 
 
 def from_dict(content):
     """Return the result that ``to_dict`` describes, made again from its sums."""
-    version = content["twodiscs"]
-    if version != twodiscs.__version__:
-        raise InputError(
-            f"the result must be of version {twodiscs.__version__}, so that its numbers are the "
-            f"same, not of {quote(version)}"
-        )
-    if "results" in content:
-        module = import_module(f"{__package__}.{MAKERS[content['kind']]}")
-        return module.joined(content, [from_dict(result) for result in content["results"]])
+    if content["kind"] == "scan":
+        from twodiscs.comparison.measured.scan import Scan
+
+        return Scan(map(from_dict, content["results"]), dict(content["refused"]))
     scene = dict(content["scene"])
     radius = scene.pop("radius")
-    kept = {
-        part: {int(n): [_sums(s) for s in sums] for n, sums in some.items()}
-        for part, some in content["kept"].items()
-    }
-    return made(content["kind"], Box(**scene).scene(radius), content["settings"], kept)
+    parts = with_arrays(content["parts"])
+    return made(content["kind"], Box(**scene).scene(radius), content["settings"], parts)
 
 
-def load_result(path):
-    """Return the result in a file that its ``save`` wrote (see the face)."""
+@answering
+def load_result(
+    path: str | PathLike[str],
+) -> Measurements | Intervals | Transmission | Scan:
+    """Read a result that ``save(path)`` wrote; ``more`` can go on from it.
+
+    A type checker needs to know its class before you use it:
+    ``assert isinstance(result, td.Measurements)``.
+
+    Parameters
+    ----------
+    path : path-like
+        The file. Only the version of the package that wrote it can read it.
+
+    Returns
+    -------
+    Measurements, Intervals, Transmission or Scan
+        The result.
+
+    Raises
+    ------
+    InputError
+        For a file of another version, and for any other file.
+
+    Examples
+    --------
+    >>> td.simulate(scene, 0.1, seed=1, events="any_wall").save("walls.json")
+    >>> more = td.load_result("walls.json").more(error=5e-4)
+    >>> more["any_wall_time"].relative_stderr < 5e-4
+    True
+    """
     if not isinstance(path, str | PathLike) or "\0" in str(path):
         raise InputError(f"path must be the path of a file, not {quote(path)}")
     try:
-        content = json.loads(Path(path).read_text(encoding="utf-8"))
-        if not isinstance(content, Mapping):
-            raise TypeError
-        return from_dict(content)
-    except (
-        *(KeyError, TypeError, AttributeError, RecursionError),
-        *(json.JSONDecodeError, UnicodeDecodeError),
-    ):
-        raise InputError(f"path must be a file that save() wrote, not {str(path)!r}") from None
+        content = read_json(path)
     except OSError as error:
         raise InputError(
             f"path must be a file to read, not {str(path)!r}: {error.strerror}"
         ) from None
+    except InputError:
+        raise InputError(
+            f"path must be a file that save() wrote, or a point of a build, not {str(path)!r}"
+        ) from None
+    if (version := content.get("twodiscs")) != twodiscs.__version__:
+        raise InputError(
+            f"the result must be of version {twodiscs.__version__}, so that its numbers are the "
+            f"same, not of {quote(version)}"
+        )
+    return from_dict(content)

@@ -9,15 +9,24 @@ from twodiscs.comparison.measured.measurements import (
     Measurements,
     box_with,
     rows_by_quantity,
+    run_simulation,
     scenes_of,
-    simulate,
 )
 from twodiscs.comparison.measured.result import Result
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, quote
+from twodiscs.model.checks import (
+    InputError,
+    answering,
+    quote,
+)
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from typing import Unpack
+
     import pandas as pd
+
+    from twodiscs import Effects, Event
 
 
 class Scan(Result, Sequence[Measurements]):
@@ -116,22 +125,70 @@ class Scan(Result, Sequence[Measurements]):
         return "".join(result._repr_html_() for result in self)
 
 
-def joined(content, results):
-    """Return the ``Scan`` of loaded results, given the ``content`` of its file."""
-    return Scan(results, content["refused"])
-
-
+@answering
 def scan(
-    width, height, radii, error, duration, seed, budget, events, name, cores=1, progress=None,
-    effects=None,
-):  # fmt: skip
-    """Return the ``Scan`` of mean times over ``radii`` (see the face)."""
-    box = box_with(width, height, {} if effects is None else effects)
+    width: float,
+    height: float,
+    radii: Iterable[float],
+    error: float | str | Mapping[Event, float | str] | None = None,
+    *,
+    duration: float | None = None,
+    seed: int = 1,
+    budget: float = 2e9,
+    events: Event | Iterable[Event] | None = None,
+    name: str | None = None,
+    cores: int = 1,
+    progress: bool | None = None,
+    **effects: Unpack[Effects],
+) -> Scan:
+    """Measure mean times by molecular dynamics at several ``radii`` of a box.
+
+    Parameters
+    ----------
+    width, height : float
+        Sides of the box, in length, from 1e-60 to 1e60.
+    radii : iterable of float
+        Radii of disc 1, in length, all different.
+    error : float, str or dict, optional
+        As in ``simulate``, but 1e-2 if neither ``error`` nor ``duration`` is given.
+    duration : float, optional
+        The simulated time at each radius, as in ``simulate``.
+    seed : int, default 1
+        Seed of the random numbers, from 0 to 2⁶³ − 1. Each radius has different random numbers.
+    budget : float, default 2e9
+        The most wall hits and disc collisions at each radius, an integer from 1 on.
+    events : str or iterable of str, optional
+        Events to count, some of ``EVENTS``; if left out, all that exist in the scene.
+    name, cores, progress : optional
+        See ``help(twodiscs)``.
+    **effects
+        The effects and ``discs`` of ``Scene``.
+
+    Returns
+    -------
+    Scan
+        A sequence of ``Measurements`` in the order of radii, whose errors are independent. ``plot``
+        draws it beside the exact curves, and ``frame()`` is a table.
+
+    Raises
+    ------
+    InputError
+        As ``simulate``, for equal radii, and for an unknown effect.
+
+    Examples
+    --------
+    >>> found = td.scan(1.5, 1.0, [0.1, 0.2], error=0.05, events="any_wall")
+    >>> [abs(part["any_wall_time"].z) < 5 for part in found]
+    [True, True]
+    """
+    box = box_with(width, height, effects)
     scenes, refused = scenes_of(box, radii)
     if len({scene.radius for scene in scenes}) < len(scenes):
         raise InputError(
             "radii must differ, because one radius has the same random numbers each time, not "
             f"{quote([scene.radius for scene in scenes])}; to repeat a radius, give another seed"
         )
+    if error is None and duration is None:
+        error = 1e-2
     asked = error, duration, seed, budget, events, name, cores, progress
-    return Scan([simulate(scene, *asked, usual=1e-2) for scene in scenes], refused)
+    return Scan([run_simulation(scene, *asked) for scene in scenes], refused)

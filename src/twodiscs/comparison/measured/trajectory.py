@@ -12,10 +12,17 @@ from twodiscs.comparison.measured.measurements import seed_of
 from twodiscs.comparison.measured.progress import progress_bar
 from twodiscs.comparison.measured.states import VELOCITIES, component, with_aliases
 from twodiscs.dynamics.trajectory import DISCS, columns, followed
-from twodiscs.model.checks import InputError, as_list, quote, writing_to
+from twodiscs.model.checks import (
+    InputError,
+    answering,
+    as_list,
+    quote,
+    writing_to,
+)
 from twodiscs.sampling.starts import components
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from os import PathLike
 
     from twodiscs.model.scene import Scene
@@ -261,8 +268,55 @@ def require_consecutive(trajectory):
         )
 
 
-def trajectory(scene, seed, start, duration, name, progress=None):
-    """Return one ``Trajectory`` (see the face)."""
+@answering
+def trajectory(
+    scene: Scene,
+    duration: float | None = None,
+    *,
+    seed: int = 1,
+    start: Sequence[float] | np.ndarray | np.void | None = None,
+    name: str | None = None,
+    progress: bool | None = None,
+) -> Trajectory:
+    """Follow one trajectory: a table with one row per event, its time, name and the state after it.
+
+    Hops are among the events. On periodic axes positions go on beyond the cell.
+
+    Parameters
+    ----------
+    scene : Scene
+        The box, the discs and their effects.
+    duration : float, optional
+        The duration, in time, at most 10⁷ events. If left out, it is some eight mean times of the
+        rarest open hop or some 6000 events, for more than two discs 1500.
+    seed : int, default 1
+        Seed of the random numbers, from 0 to 2⁶³ − 1. The initial state is the first one of
+        ``starts`` with this seed.
+    start : sequence of float or state, optional
+        An initial state in the form of ``starts``, or its numbers: discs inside the box, without
+        overlap, with the energy 1/2.
+    name, progress : optional
+        See ``help(twodiscs)``.
+
+    Returns
+    -------
+    Trajectory
+        A pandas ``DataFrame``; ``states_at(times)`` and ``positions(times)`` give the states
+        between its rows.
+
+    Raises
+    ------
+    InputError
+        For a start that is no state, and for a duration of more than 10⁷ events.
+
+    Examples
+    --------
+    >>> path = td.trajectory(scene, 10, seed=1)
+    >>> path["time"].iloc[-1]
+    np.float64(10.0)
+    >>> path.positions([1, 2.5]).shape  # time, disc, axis
+    (2, 2, 2)
+    """
     seed = seed_of(scene, "trajectory", seed, name)
     with progress_bar(progress, f"trajectory r = {scene.radius:g}") as progress:
         rows = followed(scene, seed, start, duration, progress)

@@ -15,10 +15,16 @@ from twodiscs.dynamics.counting import engine_of
 from twodiscs.dynamics.ensemble import FOLLOWED as REPLICAS
 from twodiscs.dynamics.intervals import chains_of
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, check_count, quote
+from twodiscs.model.checks import (
+    InputError,
+    answering,
+    check_count,
+    quote,
+)
 from twodiscs.model.events import AXIS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import check_scene
+from twodiscs.points.base import reached
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.blocks.rounds import all_in_rounds, fixed
 from twodiscs.theory import exact
@@ -26,6 +32,7 @@ from twodiscs.theory import exact
 if TYPE_CHECKING:
     import pandas as pd
 
+    from twodiscs import Hop
     from twodiscs.model.scene import Scene
 
 #: A cluster ends if no hop comes for this number of ``box_time``. Hops that follow each other after
@@ -160,8 +167,8 @@ class Transmission(Result):
         The fractions κ(t) at these times.
     settings : dict, optional
         {argument: value} beside the scene.
-    kept : dict, optional
-        {part: {blocks: sums}} of its work, from which it goes on.
+    parts : dict, optional
+        The parts of its run, from which it goes on.
     note : str, optional
         The difference between the work that was asked for and the work that was done.
 
@@ -182,7 +189,7 @@ class Transmission(Result):
     times: tuple[float, ...]
     curve: list[Estimate]
     settings: dict[str, object] = field(default_factory=dict)
-    kept: dict[str, dict[int, list]] = field(default_factory=dict, compare=False)
+    parts: dict[str, dict] = field(default_factory=dict, compare=False)
     note: str | None = None
 
     kind = "transmission"
@@ -266,8 +273,65 @@ def parts_of(scene, hop, mean, gap, times, blocks, name, seed):
     return parts
 
 
-def transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None):
-    """Return the ``Transmission`` of a ``hop`` of a ``Scene`` (see the face)."""
+@answering
+def transmission(
+    scene: Scene,
+    hop: Hop,
+    hops: float = 2**17,
+    *,
+    seed: int = 1,
+    name: str | None = None,
+    cores: int = 1,
+    progress: bool | None = None,
+) -> Transmission:
+    """Measure the fraction of hops of one kind that are passages, that is, not soon undone.
+
+    Let t be the time that a disc of speed 1 takes along the box. There is a coefficient κ if hops
+    are rare, at most one in 200 to 500 t. Hops count as independent after a pause of 48 t. This
+    makes κ too large by about 1e-3 for hops of this frequency, and by less for rarer hops; the
+    error does not include it.
+
+    With N > 2 discs a hop is undone by the next hop of the same pair. t is then the time that a
+    disc of the mean speed takes across the room of two discs, t √(2/N) of the box, and hops are
+    those of two neighbours.
+
+    Parameters
+    ----------
+    scene : Scene
+        The box, its discs, at most 19, and their effects.
+    hop : str
+        "vertical_hop" or "horizontal_hop", along an axis with walls; of more than two discs also
+        along a ring.
+    hops : float, default 2¹⁷
+        Hops to follow, forwards and backwards in time for κ, forwards for the curve: an integer
+        from 1 on. It is rounded up to whole blocks.
+    seed, name, cores, progress : optional
+        See ``help(twodiscs)``.
+
+    Returns
+    -------
+    Transmission
+        The coefficient κ, the fraction of hops that are passages, with its error; the mean time
+        between passages of any pair, in time, if the rate of hops is known exactly; and the curve
+        κ(t), in ``frame()``. ``more(hops=…)`` goes on from it.
+
+    Raises
+    ------
+    InputError
+        For a hop that is blocked; for two discs along a periodic axis, and for more across a ring;
+        for 20 discs or more, or so large ones that a hop has almost no room among the others.
+
+    Examples
+    --------
+    >>> rare = td.Scene(1.5, 1.0, 0.246)
+    >>> 0.5 < td.transmission(rare, "horizontal_hop", 2**12, seed=1).coefficient.value < 1
+    True
+    """
+    return run_transmission(scene, hop, hops, seed, name, cores, progress)
+
+
+def run_transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None):
+    """Return the ``Transmission`` of ``transmission``; the parts ``kept`` are not done again."""
     passages_of(check_scene(scene)).require_coefficient(scene, hop)
     blocks = -(-check_count("hops", hops, most=10**9) // REPLICAS)
     if name is not None and not isinstance(name, str):
@@ -276,21 +340,19 @@ def transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None
     mean, gap = exact.mean_times(scene)[hop], quiet_time(scene, hop)
     neighbour_mean, others = passages_of(scene).neighbours(scene, hop)
     times = tuple(box_time(scene, hop) * time for time in TIMES)
-    parts, kept = (
-        parts_of(scene, hop, neighbour_mean, gap, times, blocks, named, seed),
-        {} if kept is None else kept,
-    )
+    runs = parts_of(scene, hop, neighbour_mean, gap, times, blocks, named, seed)
     settings = {"hop": hop, "hops": int(hops), "seed": int(seed), "name": name}
     with progress_bar(progress, f"transmission r = {scene.radius:g}") as progress:
-        reached = all_in_rounds(parts, progress, cores, kept)
-    (sums,), clusters, kappa = reached["times"].sums, {}, None
-    if "clusters" in reached:
-        (sizes,) = reached["clusters"].sums
+        found = all_in_rounds(runs, progress, cores, kept or {})
+    parts = {name: {"sums": pieces} for name, pieces in found.items()}
+    ((sums,), _), clusters, kappa = reached(found["times"]), {}, None
+    if "clusters" in found:
+        (sizes,), _ = reached(found["clusters"])
         clusters = {n: int(number) for n, number in enumerate(sizes) if number}
         law = partial(of_clusters, others=others)
         kappa = plateau(by_clusters(sizes), gap, neighbour_mean, law)
     curve = by_total(sums, blocks * REPLICAS)
     note = note_of_number("hops", settings["hops"], blocks * REPLICAS)
     return Transmission(
-        scene, hop, kappa, gap, clusters, mean, neighbour_mean, times, curve, settings, kept, note
+        scene, hop, kappa, gap, clusters, mean, neighbour_mean, times, curve, settings, parts, note
     )

@@ -13,6 +13,7 @@ empty cell is a value that does not exist.
 import re
 from dataclasses import dataclass
 from functools import partial
+from itertools import groupby
 from numbers import Integral, Real
 from typing import ClassVar
 
@@ -128,6 +129,15 @@ class Table:
         """Return the rows of the CSV file at ``path``, as ``frame`` does, as a list of dicts."""
         frame = cls.frame(path)
         return frame.astype(object).where(frame.notna(), None).to_dict("records")
+
+
+def by_radius(points):
+    """Return ``points`` in the order of radii; raises ``InputError`` if two have the same."""
+    points = sorted(points, key=lambda point: point.radius)
+    for radius, same in groupby(point.radius for point in points):
+        if len(list(same)) > 1:
+            raise InputError(f"points must not contain radius {radius!r} twice")
+    return points
 
 
 def _cell(name, column, value):

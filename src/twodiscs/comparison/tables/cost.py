@@ -1,7 +1,6 @@
 """The seconds of jobs: cost.csv."""
 
-from twodiscs.comparison.tables.base import COUNT, RADIUS, SECONDS, TEXT, Table
-from twodiscs.points.base import by_radius
+from twodiscs.comparison.tables.base import COUNT, RADIUS, SECONDS, TEXT, Table, by_radius
 
 #: The number of events in the points of a stage.
 WORK = {"monte_carlo": "samples", "dynamics": "events", "intervals": "intervals"}

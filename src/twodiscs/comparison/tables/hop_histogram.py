@@ -1,8 +1,7 @@
 """Intervals between hops, bin by bin: hop_histogram.csv."""
 
-from twodiscs.comparison.tables.base import COUNT, RADIUS, RATE, TEXT, TIME, Table, Z
+from twodiscs.comparison.tables.base import COUNT, RADIUS, RATE, TEXT, TIME, Table, Z, by_radius
 from twodiscs.comparison.tables.theory import ExactValues
-from twodiscs.points.base import by_radius
 
 
 class HopHistogram(Table):

@@ -9,9 +9,9 @@ from twodiscs.comparison.tables.base import (
     TEXT,
     TIME,
     Table,
+    by_radius,
 )
 from twodiscs.comparison.tables.theory import ExactValues
-from twodiscs.points.base import by_radius
 
 
 class MeanTimes(Table):
@@ -107,8 +107,12 @@ def _row(scene, event, point, exact, count):
     from twodiscs.points.estimates import has_error_bar
     from twodiscs.theory.exact import replicas_needed
 
-    target, copies, status = point.target[event], scene.multiplicity(event), count.status
+    target, copies = point.target[event], scene.multiplicity(event)
     estimate, bound = count.estimate(copies), None
+    if target is None or (count.share == 1 and point.in_strip(event)):
+        status = "counted"
+    else:
+        status = "reached" if estimate and estimate.relative_stderr <= target else "budget"
     z, test = scores.mean_time_z(*count.sums, count.time(copies), exact, count.mean)
     if not scene.is_possible(event):
         z, test = scores.impossible_z(count.count)
@@ -118,8 +122,8 @@ def _row(scene, event, point, exact, count):
     elif not has_error_bar(*count.sums):
         status = "too-few"
     if count.share == 1 and scene.is_possible(event):
-        error = min(target, estimate.relative_stderr) if estimate else target
-        if count.replicas < replicas_needed(scene, event, error):
+        errors = [target or 1.0, estimate.relative_stderr if estimate else 1.0]
+        if count.replicas < replicas_needed(scene, event, min(errors)):
             # The run may have missed the rare initial states with very many events, and its sample
             # would not show that.
             status, z, test, bound = "too-few" if estimate else status, None, None, None

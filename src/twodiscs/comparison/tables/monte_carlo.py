@@ -2,10 +2,19 @@
 
 from functools import partial
 
-from twodiscs.comparison.tables.base import COUNT, LENGTH, RADIUS, TEST, TEXT, Column, Table, Z
+from twodiscs.comparison.tables.base import (
+    COUNT,
+    LENGTH,
+    RADIUS,
+    TEST,
+    TEXT,
+    Column,
+    Table,
+    Z,
+    by_radius,
+)
 from twodiscs.comparison.tables.theory import ExactValues
 from twodiscs.model.events import EVENTS
-from twodiscs.points.base import by_radius
 from twodiscs.theory.exact import shell_expectation
 
 

@@ -36,7 +36,6 @@ from twodiscs.dynamics.law import END_OF_TIME, after_event, crosses, law_of, nex
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import hopping_along
-from twodiscs.points.dynamics import Strata, StripCount
 from twodiscs.points.strata import PARTS, fractions_of_speeds, stratified_mean
 from twodiscs.sampling.blocks.rounds import SequentialRun, on_grid
 from twodiscs.sampling.jit import compiled
@@ -318,23 +317,12 @@ def relative_error(fractions, sums):
     return error / mean if mean else math.inf
 
 
-def summary(scene, hop, outcome):
-    """Return the ``StripCount`` of a rare ``hop``, in the time 2T, given its ``Outcome``."""
-    strip, (sums, events) = strip_of(scene, hop), outcome.sums
-    initial_states, counts, squares = sums
-    return StripCount(
-        duration=2 * strip.time,
-        share=strip.fraction,
-        replicas=outcome.blocks * REPLICAS,
-        rounds=outcome.rounds,
-        events=int(events),
-        count=int(counts.sum()),
-        squares=int(squares.sum()),
-        status="reached" if outcome.excess[0] <= 1 else "budget",
-        strata=Strata(
-            shares=fractions_of(scene, hop, strip).tolist(),
-            starts=initial_states.tolist(),
-            counts=counts.tolist(),
-            squares=squares.tolist(),
-        ),
-    )
+def constants(scene, hop):
+    """Return the constants of the part of a rare ``hop``, see ``points.dynamics.StripCount``."""
+    strip = strip_of(scene, hop)
+    return {
+        "duration": 2 * strip.time,
+        "share": strip.fraction,
+        "shares": fractions_of(scene, hop, strip).tolist(),
+        "replicas": REPLICAS,
+    }

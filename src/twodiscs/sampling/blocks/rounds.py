@@ -2,8 +2,9 @@
 
 One process works in rounds until all errors are small enough (``in_rounds``), or does all planned
 blocks without rounds (``all_at_once``). The number of planned blocks is known before anything runs.
-Many processes can do ``pieces`` of the work, whose sums are then ``joined``. The bits depend
-neither on the size of the pieces nor on the process that does a piece.
+Many processes can do ``pieces`` of the work, which are then ``joined``. The bits depend neither on
+the size of the pieces nor on the process that does a piece. Pieces are {(first, stop): sums}, as in
+``points.base``.
 """
 
 import math
@@ -14,6 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.model.checks import InputError
+from twodiscs.points.base import added, reached
+from twodiscs.points.monte_carlo import MonteCarloPoint
 from twodiscs.sampling.blocks.threads import in_threads
 
 #: Blocks of the first round, and the longest round over the work before it: an error from few
@@ -60,15 +63,6 @@ class SequentialRun:
         return self.block_events * self.cost_ratio
 
 
-class Outcome(NamedTuple):
-    """The result of a run: the sums of its blocks, the number of rounds, and the errors."""
-
-    sums: list
-    blocks: int
-    rounds: int
-    excess: np.ndarray
-
-
 def fixed(work, blocks, block_events, cost_ratio=1.0):
     """Return the ``SequentialRun`` of exactly this number of ``blocks``."""
     return SequentialRun(
@@ -77,55 +71,52 @@ def fixed(work, blocks, block_events, cost_ratio=1.0):
     )  # fmt: skip
 
 
-def _added(sums, part):
-    return list(part) if sums is None else [a + b for a, b in zip(sums, part, strict=True)]
+def _done(run, stop, pieces, cores, progress):
+    """Return the sums of the blocks 0 … ``stop`` − 1, which go on from ``pieces``.
 
-
-def _sums(run, stop, kept, cores, progress):
-    """Return the sums of the blocks 0 … ``stop`` − 1, which continue the longest sums in ``kept``.
-
-    ``kept`` is {blocks: their sums}; the new sums are added to it. One call of a thread does some
-    blocks.
+    The new blocks are added to ``pieces``. One call of a thread does some blocks.
     """
-    first = max((blocks for blocks in kept if blocks <= stop), default=0)
-    sums = kept.get(first)
-    step = max(1, int(CALL / run.block_work))
+    sums, first = reached(pieces, stop)
+    if first == stop:
+        return sums
+    step, new = max(1, int(CALL / run.block_work)), None
     calls = ((start, min(start + step, stop)) for start in range(first, stop, step))
     for done, part in enumerate(in_threads(run.work, calls, cores, lambda: progress(None)), 1):
-        sums = _added(sums, part)
+        new = added(new, part)
         progress(min(first + done * step, stop))
-    kept[stop] = sums
-    return sums
+    pieces[first, stop] = new
+    return added(sums, new)
 
 
 def all_at_once(run):
-    """Do the planned blocks of a run in this process and return the ``Outcome``."""
-    sums = _sums(run, run.planned, {}, 1, lambda blocks: None)
-    return Outcome(sums, run.planned, 1, run.excess_of(sums, run.planned))
+    """Do the planned blocks of a run in this process and return the one piece."""
+    pieces = {}
+    _done(run, run.planned, pieces, 1, lambda blocks: None)
+    return pieces
 
 
 def in_rounds(run, progress=None, cores=1, kept=None):
-    """Work in rounds until the errors are small enough or the budget is spent.
+    """Work in rounds until the errors are small enough or the budget is spent; return the pieces.
 
     The first round is small: it keeps to the budget, but has at least one block. The errors so far
     predict the length of each next round. If no error is asked for, there is one round.
     ``progress``, if given, is called repeatedly with the work that is done and the expected total,
     in events of the plain ensemble.
 
-    ``kept`` has {blocks: sums} of the rounds of an earlier run to another error. This run does not
-    repeat them, and the ``Outcome`` is the same as without. Its own rounds are added to ``kept``.
+    ``kept`` are pieces of an earlier run to another error. This run does not repeat them, and the
+    sums are the same as without.
     """
-    kept = {} if kept is None else kept
+    pieces = dict(kept or {})
     blocks = int(max(1, min(run.first_round, run.budget / run.block_events)))
-    last, done, rounds = max(blocks, min(run.planned, run.budget / run.block_events)), 0, 0
+    last, done = max(blocks, min(run.planned, run.budget / run.block_events)), 0
 
     def report(number):
         if progress is not None:
             progress(number if number is None else number * run.block_work, last * run.block_work)
 
     while True:
-        done, rounds = done + blocks, rounds + 1
-        sums = _sums(run, done, kept, cores, report)
+        done += blocks
+        sums = _done(run, done, pieces, cores, report)
         excess, simulated = run.excess_of(sums, done), run.events_of(sums)
         if not excess.size:
             break
@@ -138,41 +129,45 @@ def in_rounds(run, progress=None, cores=1, kept=None):
             break
         blocks = math.ceil(min(missing, GROWTH) * done)
         blocks = min(blocks, math.floor(affordable * done))
-    return Outcome(sums, done, rounds, excess)
+    return {ends: sums for ends, sums in pieces.items() if ends[1] <= done}
 
 
 class Sampler(NamedTuple):
     """Draws in blocks of ``block`` samples.
 
-    ``count(first, stop)`` returns the counts of a range of blocks, and ``point(samples, counts)``
-    the point, as ``sample_point`` does. ``cost_ratio`` is the time of a sample over the time of a
-    sample of the prism.
+    ``count(first, stop)`` returns the counts of a range of blocks, ``constants`` are those of the
+    part of a ``MonteCarloPoint`` at the ``radius``. ``cost_ratio`` is the time of a sample over the
+    time of a sample of the prism.
     """
 
+    radius: float
     block: int
     count: Callable
-    point: Callable
+    constants: dict
     cost_ratio: float = 1.0
+
+    def point(self, pieces):
+        """Return the ``MonteCarloPoint`` of the ``pieces`` of a run."""
+        return MonteCarloPoint.of(self.radius, {"all": self.constants | {"sums": pieces}})
 
 
 def all_in_rounds(parts, progress=None, cores=1, kept=None):
-    """Return {name: ``Outcome``} of the runs in ``parts``, {name: run}, one after the other.
+    """Return {name: pieces} of the runs in ``parts``, {name: run}, one after the other.
 
-    ``progress`` is called with the work of all of them; ``kept`` has the argument ``kept`` of
-    ``in_rounds`` for each name.
+    ``progress`` is called with the work of all of them; ``kept`` are the parts of an earlier run.
     """
     kept = {} if kept is None else kept
-    reached, work = {}, {name: run.planned * run.block_work for name, run in parts.items()}
+    found, work = {}, {name: run.planned * run.block_work for name, run in parts.items()}
 
     def report(done, expected):
         work[name] = expected
         if progress is not None:
-            before = sum(work[earlier] for earlier in reached)
+            before = sum(work[earlier] for earlier in found)
             progress(done if done is None else before + done, sum(work.values()))
 
     for name, run in parts.items():
-        reached[name] = in_rounds(run, report, cores, kept.setdefault(name, {}))
-    return reached
+        found[name] = in_rounds(run, report, cores, kept.get(name, {}).get("sums"))
+    return found
 
 
 # Pieces ------------------------------------------------------------------------------------------
@@ -196,30 +191,16 @@ def pieces(blocks, per_piece):
     return [(first, min(first + per_piece, blocks)) for first in range(0, blocks, per_piece)]
 
 
-def _narrow(sums):
-    try:
-        return np.array(sums, np.int64)
-    except OverflowError:
-        return sums
+def joined(run, pieces):
+    """Return the ``pieces`` of all planned blocks of a run.
 
-
-def joined(run, parts):
-    """Return the ``Outcome`` of the planned blocks of a run, from the sums of its pieces.
-
-    ``parts`` is a list of {"first", "stop", "sums"} in any order, without gap or overlap, the sums
-    as nested lists of integers.
+    They must cover these blocks without gap or overlap.
     """
-    parts, stop, sums = sorted(parts, key=lambda part: part["first"]), 0, None
-    for part in parts:
-        if part["first"] != stop:
-            break
-        sums = _added(sums, (np.array(entry, object) for entry in part["sums"]))
-        stop = part["stop"]
-    else:
-        if stop == run.planned:
-            sums = [_narrow(entry) for entry in sums]
-            return Outcome(sums, stop, 1, run.excess_of(sums, stop))
-    given = ", ".join(f"{part['first']} to {part['stop']}" for part in parts) or "none"
-    raise InputError(
-        f"pieces must cover blocks 0 to {run.planned} without gap or overlap, not {given}"
-    )
+    ends = sorted(pieces)
+    firsts, stops = [first for first, _ in ends], [stop for _, stop in ends]
+    if not ends or [*firsts, run.planned] != [0, *stops]:
+        given = ", ".join(f"{first} to {stop}" for first, stop in ends) or "none"
+        raise InputError(
+            f"pieces must cover blocks 0 to {run.planned} without gap or overlap, not {given}"
+        )
+    return pieces

@@ -15,7 +15,6 @@ therefore unbiased integers, the same on every machine.
 """
 
 import math
-from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -28,7 +27,7 @@ from twodiscs.model.checks import (
     check_integer,
 )
 from twodiscs.model.events import SHELLS, by_kind
-from twodiscs.points.monte_carlo import InsertionPoint, Weights
+from twodiscs.points.monte_carlo import InsertionPoint
 from twodiscs.sampling.blocks.rounds import Sampler
 from twodiscs.sampling.blocks.threads import in_a_thread
 from twodiscs.sampling.jit import compiled, inlined, optional
@@ -302,25 +301,14 @@ def inserted(scene, quantities, shell, seed):
     def count(first, stop):
         return np.vstack(run_blocks(scene, seed, first, stop))
 
-    def point(samples, counts):
-        sums, products = counts[0], counts[1:]
-        units = _volume_and_areas(scene)
-        return InsertionPoint(
-            radius=scene.radius,
-            method=InsertionPoint.METHOD,
-            samples=samples,
-            unit=int(UNITS),
-            quantities={
-                name: Weights(int(sums[k]), int(products[k, k]), units[k])
-                for name, k in sampled.items()
-            },
-            products={
-                f"{a}*{b}": int(products[j, k])
-                for (a, j), (b, k) in combinations(sampled.items(), 2)
-            },
-        )
-
-    return Sampler(BLOCK, count, point, COST_RATIO * scene.discs)
+    measures = _volume_and_areas(scene)
+    constants = {
+        "method": InsertionPoint.METHOD,
+        "samples": BLOCK,
+        "unit": int(UNITS),
+        "quantities": {n: {"place": k, "measure": measures[k]} for n, k in sampled.items()},
+    }
+    return Sampler(scene.radius, BLOCK, count, constants, COST_RATIO * scene.discs)
 
 
 def _volume_and_areas(scene):
