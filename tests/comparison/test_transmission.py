@@ -9,7 +9,7 @@ import pytest
 import twodiscs as td
 from twodiscs.comparison.measured import transmission
 from twodiscs.comparison.scores import student_deviate
-from twodiscs.dynamics.two.passages import LARGEST, REPLICAS, SUMS, cluster_sizes, hop_sums
+from twodiscs.dynamics.two.passages import HOPS_OF_BLOCK, LARGEST, SUMS, cluster_sizes, hop_sums
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.blocks import rounds
 
@@ -30,7 +30,7 @@ def test_errors_of_a_correlation_between_walls_are_binomial():
     sums = np.zeros((2, SUMS, 1), np.int64)
     sums[:, 0, 0], sums[:, 1, 0] = -10, 10  # 20 of the replicas have changed sides
     (found,) = transmission.by_time(sums)
-    n = 2 * REPLICAS
+    n = 2 * HOPS_OF_BLOCK
     assert found.value == 1 - 2 * 20 / n
     assert found.stderr == pytest.approx(math.sqrt((1 - found.value**2) / n), rel=1e-14)
 
@@ -157,7 +157,7 @@ def test_calls_add_up_to_separate_blocks(monkeypatch):
     """One call a block gives what one call gives for all of them."""
     monkeypatch.setattr(rounds, "CALL", 1.0)
     given, hops = (td.Scene(1.5, 1.0, 0.246), "horizontal_hop"), 2**10
-    found, blocks = td.transmission(*given, hops, seed=1, name="a"), hops // REPLICAS
+    found, blocks = td.transmission(*given, hops, seed=1, name="a"), hops // HOPS_OF_BLOCK
     seeds = [transmission.seed_of(*given, "a", 1, part) for part in ("clusters", "times")]
     sizes, _ = cluster_sizes(*given, found.gap, blocks, seeds[0])
     assert found.clusters == {n: hops for n, hops in enumerate(sizes.tolist()) if hops}

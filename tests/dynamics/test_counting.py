@@ -12,7 +12,7 @@ from dynamics.rates import check_rates
 from factory import all_reached
 
 from twodiscs.dynamics import counting
-from twodiscs.dynamics.ensemble import PASSES, REPLICAS, relative_errors
+from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
 from twodiscs.dynamics.two import lockstep
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, EVENTS, HOPS, WALLS
@@ -82,7 +82,7 @@ def test_the_bits_do_not_depend_on_the_processor(generic_output):
 
 def test_packed_counts_do_not_run_over():
     """A lane sees an event once in a pass at most, and a field has eight bits."""
-    assert lockstep.LOOKS * PASSES < 2**8
+    assert lockstep.UNPACKED < 2**8
 
 
 @pytest.mark.parametrize("radius", RADII)

@@ -1,13 +1,8 @@
-"""The common functions of all experiments with the ensemble."""
+"""What all ensembles share."""
 
-import numpy as np
 import pytest
-from effect_scenes import SCENES
 
-from twodiscs.dynamics import ensemble
-from twodiscs.dynamics.law import law_of, next_event
-from twodiscs.model.scene import Scene
-from twodiscs.sampling.starts import components, states
+from twodiscs.dynamics.ensemble import nearest_power_of_two
 
 
 @pytest.mark.parametrize(
@@ -15,39 +10,4 @@ from twodiscs.sampling.starts import components, states
     [(1.0, 1.0), (1.41, 1.0), (1.42, 2.0), (3.0, 4.0), (0.7, 0.5), (0.71, 1.0), (1e-9, 2.0**-30)],
 )
 def test_the_nearest_power_of_two_is_so_on_a_logarithmic_scale(value, power):
-    assert ensemble.nearest_power_of_two(value) == power
-
-
-@pytest.mark.parametrize(
-    ("scene", "components"),
-    [(Scene(1.5, 1.0, 0.2), 8), (SCENES["rough"], 10), (SCENES["balls"], 12)],
-)
-def test_a_lane_holds_the_whole_state_and_nothing_else(scene, components):
-    law = law_of(scene)
-    rows = ensemble.new_rows(3, law)
-    state = tuple(np.arange(1.0, components + 1))
-    ensemble.put_state(rows, 1, state, law)
-    assert ensemble.state_at(rows, 1, law) == state
-    assert ensemble.state_at(rows, 0, law) == ensemble.state_at(rows, 2, law) == (0.0,) * components
-
-
-#: Each takes seconds to compile; those that are not slow have all the effects.
-LAWS = [Scene(1.5, 1.0, 0.2), SCENES["rough"], SCENES["torus"], SCENES["combination"]] + [
-    pytest.param(SCENES[name], marks=pytest.mark.slow)
-    for name in ("unequal", "channel", "field", "balls")
-]
-
-
-@pytest.mark.parametrize("scene", LAWS, ids=repr)
-@pytest.mark.parametrize("remaining", [0.05, 1.0, np.inf])
-def test_lanes_together_find_the_event_that_each_would_find_alone(scene, remaining):
-    lanes, law = 37, law_of(scene)  # no multiple of the width of a vector
-    rows = ensemble.new_rows(lanes, law)
-    starts = states(scene, lanes, 3)[: len(components(scene))]
-    for lane in range(lanes):
-        ensemble.put_state(rows, lane, tuple(starts[:, lane]), law)
-    times, codes = np.zeros(lanes), np.zeros(lanes)
-    ensemble.find_events(rows, np.full(lanes, remaining), times, codes, law)
-    alone = [next_event(tuple(start), remaining, law) for start in starts.T]
-    assert [*zip(times.tolist(), codes.tolist(), strict=True)] == alone
-    assert len(set(codes)) > (1 if remaining < 1 else 2)
+    assert nearest_power_of_two(value) == power

@@ -17,9 +17,9 @@ from scipy.special import betainc
 
 import twodiscs as td
 from twodiscs.dynamics import counting, trajectory
-from twodiscs.dynamics.ensemble import kicked, new_kicks, new_rows, put_state
 from twodiscs.dynamics.kicks import open_kicks
 from twodiscs.dynamics.law import law_of
+from twodiscs.dynamics.two.follow import kicked, new_kicks, new_rows, put_state
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.scene import Scene

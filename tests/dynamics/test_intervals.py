@@ -8,7 +8,6 @@ from effect_scenes import SCENES
 from factory import through_json
 
 from twodiscs.dynamics import intervals, trajectory
-from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.many import lockstep as many
 from twodiscs.dynamics.two import returns
 from twodiscs.model.events import HOPS
@@ -16,7 +15,6 @@ from twodiscs.model.scene import Scene
 from twodiscs.points.intervals import GROWTH
 from twodiscs.sampling.blocks import rounds
 from twodiscs.sampling.many import initial, insertions
-from twodiscs.sampling.starts import origins
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.many.rates import rates
 from twodiscs.theory.tails import density_at_zero
@@ -59,14 +57,13 @@ def test_hop_intervals_have_the_exact_density_at_zero(event, side):
 
 
 def test_hop_chains_do_not_depend_on_lanes():
-    results = []
+    results, going = [], np.ones(1, np.bool_)
     wide = np.repeat([65, 66], [1, 64])
     for lanes in (5, 64):
         sums = np.zeros((2, 67), np.int64)
-        totals = returns.record_returns(
-            np.uint64(1), 0, 2, 64, lanes, 16, law_of(PAPER), *origins(PAPER), None, 0.25, wide,
-            sums, np.ones(1, np.bool_), None,
-        )  # fmt: skip
+        totals = returns.record_intervals(
+            PAPER, "vertical_hop", 1, 0, 2, 64, 16, (0.25, wide), sums, going, lanes
+        )
         results.append((totals, sums))
     for few, more in zip(*results, strict=True):
         assert np.array_equal(few, more)
@@ -74,15 +71,14 @@ def test_hop_chains_do_not_depend_on_lanes():
 
 def test_squares_are_those_of_the_counts_of_each_chain():
     """A chain at a time, its counts are known; in wide bins they are sums over those in others."""
-    edges, found = np.array(intervals.wide_edges(64)), []
+    edges, found, going = np.array(intervals.wide_edges(64)), [], np.ones(1, np.bool_)
     wide = np.full(65, 65 + edges.size)
     wide[: edges[-1]] = 65 + np.searchsorted(edges, np.arange(edges[-1]), side="right") - 1
     for first, stop in (*((i, i + 1) for i in range(8)), (0, 8)):
         sums = np.zeros((2, 66 + edges.size), np.int64)
-        returns.record_returns(
-            np.uint64(3), first, stop, 1, 4, 32, law_of(PAPER), *origins(PAPER), None, 0.25, wide,
-            sums, np.ones(1, np.bool_), None,
-        )  # fmt: skip
+        returns.record_intervals(
+            PAPER, "vertical_hop", 3, first, stop, 1, 32, (0.25, wide), sums, going, 4
+        )
         found.append(sums)
     chains = np.array([counts for counts, _ in found[:-1]])
     assert np.array_equal(found[-1], [chains.sum(axis=0), (chains**2).sum(axis=0)])

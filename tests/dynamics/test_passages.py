@@ -5,6 +5,7 @@ fewer than 3e-5 of all seeds.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -18,10 +19,13 @@ from twodiscs.comparison.measured.transmission import (
     plateau,
 )
 from twodiscs.dynamics.ensemble import LANES
-from twodiscs.dynamics.law import law_of
+from twodiscs.dynamics.law import WRAP_X
 from twodiscs.dynamics.two import passages
+from twodiscs.dynamics.two.follow import follow
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
+from twodiscs.sampling.prism import prism_of
+from twodiscs.sampling.starts import StartSampler
 from twodiscs.theory import exact
 from twodiscs.theory.flux import constant
 
@@ -54,31 +58,46 @@ def test_correlations_are_those_of_another_program(inertia, periodic):
             np.testing.assert_array_equal(sums[:, 1], -sums[:, 0])
 
 
+class PastHops(NamedTuple):
+    """The experiment ``NetHops`` from the reversed initial states."""
+
+    times: np.ndarray
+    hopping: bool
+    axis: tuple
+    falls: np.ndarray
+    rises: np.ndarray
+    hops: np.ndarray
+    events: np.ndarray
+    sums: np.ndarray
+    first: int
+    both_ways: bool | None = True
+
+    begin, note = passages.NetHops.begin, passages.NetHops.note
+
+    def ended(self, i, replica, stretch):
+        if stretch == 0:
+            falls = 1.0 - self.falls[i]
+            self.falls[i], self.rises[i], self.hops[i] = falls, falls, -falls
+            return -self.times[0]
+        n = np.int64(self.rises[i] * (1.0 - 2.0 * self.falls[i]))
+        block = (replica - self.first) // passages.HOPS_OF_BLOCK
+        self.sums[block, 0, stretch - 1] += n
+        self.sums[block, 1, stretch - 1] += n * n
+        last = self.times.size
+        return self.times[stretch] - self.times[stretch - 1] if stretch < last else 0.0
+
+
 def test_the_past_is_as_the_future():
     """κ(t) = κ(−t): from the same states with reversed velocities."""
-    scene = Scene(1.5, 1.0, 0.24)
-    states = passages.initial_states(scene, HOP, 512, 5)
-    found = []
-    for side in (states, np.where(np.arange(12)[:, None] < 4, states, -states)):
-        sums, none = np.zeros((512, passages.SUMS, 4), np.int64), np.zeros(1, np.int64)
-        passages.follow_hops(
-            side,
-            LANES,
-            np.array(TIMES),
-            0.0,
-            law_of(scene),
-            True,
-            True,
-            sums,
-            none,
-            np.uint64(5),
-            0,
-            None,
-        )
-        found.append(by_time(sums))
-    for future, past in zip(*found, strict=True):
-        assert future != past
-        five(future.value, past.value, math.hypot(future.stderr, past.stderr))
+    scene, times = Scene(1.5, 1.0, 0.24), np.array(TIMES)
+    future, _ = passages.hop_sums(scene, HOP, times, 512, 5)
+    lanes, past = [np.zeros(LANES) for _ in range(4)], np.zeros_like(future)
+    hops = PastHops(times, True, (True, WRAP_X), *lanes, past, 0)
+    prism = prism_of(scene, HOP, 0.0)
+    follow(hops, scene, StartSampler(None, prism, surface=0), 5, 0, 512, 64, LANES, 2)
+    for one, other in zip(by_time(future), by_time(past), strict=True):
+        assert one != other
+        five(one.value, other.value, math.hypot(one.stderr, other.stderr))
 
 
 @pytest.mark.parametrize("inertia", [None, 0.5])
@@ -92,7 +111,7 @@ def test_odd_clusters_are_what_is_left_of_the_correlation(inertia):
     # Passages that follow within the gap are 2 κ gap/τ of them, 2e-3 at most.
     assert 2 * 6.0 * exact.rate(scene, HOP) < 2e-3
     assert sizes[0] == 0
-    assert sizes.sum() == 64 * passages.REPLICAS
+    assert sizes.sum() == 64 * passages.HOPS_OF_BLOCK
     assert kappa.stderr * math.sqrt(kappa.n) < math.sqrt(kappa.value)
 
 
@@ -194,7 +213,7 @@ def test_both_estimates_of_effects_agree(name):
 def test_hops_on_a_ring_have_their_exact_rate(inertia):
     scene = Scene(1.5, 1.0, 0.2, periodic="x", moment_of_inertia=inertia)
     sums, _ = passages.hop_sums(scene, HOP, [20.0], 256, 8, on_surface=False)
-    counts = sums[:, 2, 0] / (20.0 * passages.REPLICAS)
+    counts = sums[:, 2, 0] / (20.0 * passages.HOPS_OF_BLOCK)
     five(counts.mean(), exact.passing_rate(scene, HOP), counts.std(ddof=1) / 16)
 
 
@@ -216,7 +235,7 @@ def test_displacements_grow_as_the_correlations_say():
     scene = Scene(1.5, 1.0, 0.22, periodic="x")
     sums, _ = passages.hop_sums(scene, HOP, [20.0, 40.0], 512, 9, on_surface=False)
     rate = exact.passing_rate(scene, HOP)
-    grown = (sums[:, 1, 1] - sums[:, 1, 0]) / (20.0 * passages.REPLICAS * rate)
+    grown = (sums[:, 1, 1] - sums[:, 1, 0]) / (20.0 * passages.HOPS_OF_BLOCK * rate)
     (due,) = by_time(passages.hop_sums(scene, HOP, [30.0], 512, 10)[0])
     error = grown.std(ddof=1) / math.sqrt(len(grown))
     five(grown.mean(), due.value, math.hypot(error, due.stderr))

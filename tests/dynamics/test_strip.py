@@ -16,7 +16,7 @@ from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.strata import stratified_mean
-from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins, states
+from twodiscs.sampling.starts import COMPONENTS, draw_states, start_sampler, states
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 
@@ -168,8 +168,7 @@ def test_starts_in_a_strip_are_those_from_everywhere_that_are_in_it(scene, hop):
     everywhere = states(scene, round(number), 5)
     seen = everywhere[:, np.abs(everywhere[k] - everywhere[k + 2]) <= distance]
     drawn = np.zeros((COMPONENTS, 40_000))
-    draw, prism = origins(scene, hop, distance)
-    draw_any_starts(open_stream(np.uint64(6), 0), draw, (0, 0), drawn, prism)
+    draw_states(open_stream(np.uint64(6), 0), start_sampler(scene, hop, distance), drawn)
     assert np.max(np.abs(drawn[k] - drawn[k + 2])) <= distance
     both = [
         np.concatenate((one, one**2, [(one[0] - one[2]) ** 2, (one[1] - one[3]) ** 2]))

@@ -200,12 +200,13 @@ def test_the_type_of_the_last_argument_chooses_between_present_and_absent():
 #: Print how often each machine instruction stands in the kernel that counts all events of a scene.
 INSTRUCTIONS = """
 import collections, json, re, sys
-from twodiscs.dynamics.two.lockstep import count_blocks, run_blocks
+from twodiscs.dynamics.two.follow import loop_of
+from twodiscs.dynamics.two.lockstep import Counts, run_blocks
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 scene = Scene(1.5, 1.0, 0.2, **json.loads(sys.argv[1]))
 run_blocks(scene, EVENTS, 1, 0, 1, 1.0, replicas=1)
-(assembly,) = count_blocks.inspect_asm().values()
+(assembly,) = loop_of(Counts).inspect_asm().values()
 names = re.findall(r"^\\t([a-z]\\w+)", assembly, re.MULTILINE)
 json.dump(collections.Counter(names), sys.stdout)
 """

@@ -9,9 +9,8 @@ from sampling.uniformity import assert_uniform
 from scipy.special import betainc
 
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import draw_constants, draw_crossing
-from twodiscs.sampling.starts import COMPONENTS, origins, start_on_surface, state_in, states
+from twodiscs.sampling.starts import COMPONENTS, draw_states, start_sampler, state_in, states
 from twodiscs.sampling.streams import open_stream
 
 PLAIN = Scene(1.5, 1.0, 0.2)
@@ -26,18 +25,11 @@ STARTS = {
 }
 
 
-@compiled
-def fill_on_surface(seed, draw, surface, starts, prism):
-    state = open_stream(seed, 0)
-    for i in range(starts.shape[1]):
-        start_on_surface(state, draw, surface, starts[:, i : i + 1], prism)
-
-
 def on_surface(scene, surface, n):
     """Return n starts on the surface of a hop along the axis ``surface``, 0 or 1."""
-    draw, prism = origins(scene)
     found = np.zeros((COMPONENTS, n))
-    fill_on_surface(np.uint64(17), draw, surface, found, prism)
+    sampler = start_sampler(scene, surface=surface)
+    draw_states(open_stream(np.uint64(17), 0), sampler, found)
     return found
 
 

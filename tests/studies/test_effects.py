@@ -21,7 +21,7 @@ from twodiscs.model.events import EVENTS, WALLS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
-from twodiscs.sampling.starts import draw_any_starts, origins
+from twodiscs.sampling.starts import draw_states, start_sampler
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact, tails
 from twodiscs_paper import benchmark
@@ -50,9 +50,9 @@ SEED = 1908
 def test_unmet_starts_are_those_whose_paths_have_no_collision(scene):
     """Against the trajectories that are written for people, start by start."""
     times, seed, replicas = (2.0, 6.0, 15.0), np.uint64(3), 48
-    draw, prism = origins(scene)
+    sampler = start_sampler(scene)
     starts = np.zeros((12, replicas))
-    draw_any_starts(open_stream(seed, 0), draw, (0, 0), starts, prism)
+    draw_states(open_stream(seed, 0), sampler, starts)
     components = 8 if scene.moment_of_inertia is None else 10
     first = []
     for start in starts.T:
@@ -60,7 +60,7 @@ def test_unmet_starts_are_those_whose_paths_have_no_collision(scene):
         first.append(next((row[0] for row in rows if row[5] == "disc_collision"), np.inf))
     expected = [sum(moment > time for moment in first) for time in times]
     law = law_of(scene)
-    found = effects.follow_survivors(seed, 0, 1, replicas, np.array(times), law, draw, prism)
+    found = effects.follow_survivors(seed, 0, 1, replicas, np.array(times), law, sampler)
     assert list(found) == expected
     assert 0 < expected[0] < replicas
 
@@ -68,8 +68,8 @@ def test_unmet_starts_are_those_whose_paths_have_no_collision(scene):
 def test_unmet_starts_add_up_over_blocks_and_times_descend():
     found = effects.survivors(ROUGH, (1.0, 10.0, 100.0), 2, 5)
     assert found == sorted(found, reverse=True)
-    draw, prism = origins(ROUGH)
-    arguments = REPLICAS, np.array([1.0, 10.0, 100.0]), law_of(ROUGH), draw, prism
+    sampler = start_sampler(ROUGH)
+    arguments = REPLICAS, np.array([1.0, 10.0, 100.0]), law_of(ROUGH), sampler
     parts = [effects.follow_survivors(np.uint64(5), i, i + 1, *arguments) for i in range(2)]
     assert found == list(sum(parts))
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from twodiscs.dynamics.two.passages import REPLICAS
+from twodiscs.dynamics.two.passages import HOPS_OF_BLOCK
 from twodiscs.points.digests import read_json
 from twodiscs_paper.studies.passages import measure as passages
 from twodiscs_paper.studies.passages.study import Passages
@@ -58,7 +58,8 @@ def test_the_table_of_passages_is_that_of_its_counts():
     assert_same(made, found)
     for one in configuration["thresholds"]:
         for count in counts[one["name"]]:
-            assert sum(hops for _, hops in count["sizes"]) == -(-one["hops"] // REPLICAS) * REPLICAS
+            blocks = -(-one["hops"] // HOPS_OF_BLOCK)
+            assert sum(hops for _, hops in count["sizes"]) == blocks * HOPS_OF_BLOCK
 
 
 def test_passages_agree_with_those_of_the_build():
@@ -79,10 +80,10 @@ def test_passages_agree_with_those_of_the_build():
 def test_a_small_run_counts_every_hop_once():
     one = {
         "name": "small", "width": 1.5, "height": 1.0, "hop": "horizontal_hop",
-        "first": 7, "last": 7, "hops": 2 * REPLICAS - 1, "seed": 1, "pauses": [1, 2],
+        "first": 7, "last": 7, "hops": 2 * HOPS_OF_BLOCK - 1, "seed": 1, "pauses": [1, 2],
     }  # fmt: skip
     counts = passages.cluster_counts(one)
-    assert [sum(hops for _, hops in count["sizes"]) for count in counts] == [2 * REPLICAS] * 2
+    assert [sum(hops for _, hops in count["sizes"]) for count in counts] == [2 * HOPS_OF_BLOCK] * 2
     assert counts[1]["events"] > counts[0]["events"]
     assert [row["quantity"] for row in passages.cluster_rows(one, counts)] == [
         "coefficient", "passage_time", "coefficient", "passage_time",

@@ -128,7 +128,7 @@ class IntervalRun:
     def parts(self):
         """The ``SequentialRun`` of all blocks, {"all": run}.
 
-        Sums are the sums of ``record_returns``, and Σ t and Σ t² over the times of chains, in
+        Sums are the sums of ``record_intervals``, and Σ t and Σ t² over the times of chains, in
         grains. Chains of more than two discs differ in their number n of intervals. They also have
         Σ t n, Σ n and Σ n².
         """

@@ -6,6 +6,7 @@ initial states has ``COMPONENTS`` rows; rows that a scene does not use are zero.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from twodiscs.model.checks import InputError, quote
 from twodiscs.sampling.blocks.threads import in_a_thread, in_threads
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.prism import (
+    PrismSampler,
     draw_in_prism,
     draw_on_surface,
     draw_velocities,
@@ -20,6 +22,7 @@ from twodiscs.sampling.prism import (
     prism_of,
 )
 from twodiscs.sampling.separations import (
+    SeparationSampler,
     draw_configuration,
     draw_constants,
     draw_crossing,
@@ -91,16 +94,30 @@ def given_state(scene, start):
     raise InputError(f"start must be the numbers {', '.join(names)}, not {quote(start)}{hint}")
 
 
-def origins(scene, hop=None, within=None):
-    """Return (``SeparationSampler``, ``PrismSampler``) of two discs, one of which is None.
+class StartSampler(NamedTuple):
+    """How initial states of two discs are drawn: by one of two samplers, the other one is None.
+
+    ``order`` chooses the ergodic component of a plain scene (see ``draw_configuration``). On a
+    ``surface`` (0 for x1 = x2, 1 for y1 = y2) states have the law of the flux through it; with None
+    they are of the invariant measure. Plain scenes have the surface y1 = y2 only.
+    """
+
+    separations: SeparationSampler | None
+    prism: PrismSampler | None
+    order: tuple = (0, 0)
+    surface: int | None = None
+
+
+def start_sampler(scene, hop=None, within=None, order=(0, 0), surface=None):
+    """Return the ``StartSampler`` of two discs.
 
     With a ``hop`` their states are ``within`` a distance of its surface, at most √2 times the
     smaller radius; in a plain scene the hop is horizontal. For a scene with effects call
     ``require_room`` first, because draws from its prism may hardly ever be accepted.
     """
     if scene.is_plain:
-        return draw_constants(scene, within), None
-    return None, prism_of(scene, hop, within)
+        return StartSampler(draw_constants(scene, within), None, order, surface)
+    return StartSampler(None, prism_of(scene, hop, within), order, surface)
 
 
 @inlined
@@ -152,59 +169,54 @@ def set_pair(initial_states, i, k, a, b, present):
     initial_states[k, i], initial_states[k + 1, i] = a, b
 
 
-@compiled
-def fill_start(state, prism, surface, initial_states, i):
-    """Write a state of the invariant measure to column ``i`` of ``initial_states``.
-
-    With a ``surface`` (0 for x1 = x2, 1 for y1 = y2, None for no surface) the state is on this
-    surface, with the law of the flux through it.
-    """
-    direction, velocity = np.empty(6), np.empty(8)
-    x1, y1, z1, dx, dy, dz, _ = draw_state(state, prism, direction, velocity, surface)
-    initial_states[0, i], initial_states[1, i], initial_states[2, i], initial_states[3, i] = (
-        x1,
-        y1,
-        x1 - dx,
-        y1 - dy,
-    )
-    initial_states[4, i], initial_states[5, i] = velocity[0], velocity[1]
-    initial_states[6, i], initial_states[7, i] = velocity[4], velocity[5]
-    set_pair(initial_states, i, 8, z1, z1 - dz, prism.depth)
-    set_pair(initial_states, i, 10, velocity[2], velocity[6], prism.depth)
-    set_pair(initial_states, i, 8, velocity[3], velocity[7], prism.inertia)
+def _draw_plain(stream, sampler, initial_states, surface):
+    draw_starts(stream, sampler.separations, sampler.order[0], sampler.order[1], initial_states)
 
 
-def _plain_starts(state, draw, order, initial_states, prism):
-    draw_starts(state, draw, order[0], order[1], initial_states)
-
-
-@optional(_plain_starts)
-def draw_any_starts(state, draw, order, initial_states, prism):
-    """Fill ``initial_states`` from the invariant measure, by ``prism`` unless it is None."""
+@optional(_draw_plain)
+def draw_plain(stream, sampler, initial_states, surface):
+    """Fill ``initial_states`` of a plain scene, on a ``surface`` unless it is None."""
+    plain = sampler.separations
     for i in range(initial_states.shape[1]):
-        fill_start(state, prism, None, initial_states, i)
+        x1, y1, x2, y2, u1, v1, u2, v2 = draw_crossing(
+            stream, plain.half_x, plain.half_y, plain.beyond_x
+        )
+        initial_states[0, i], initial_states[1, i] = x1, y1
+        initial_states[2, i], initial_states[3, i] = x2, y2
+        initial_states[4, i], initial_states[5, i] = u1, v1
+        initial_states[6, i], initial_states[7, i] = u2, v2
 
 
-@optional(lambda initial_states, i, prism: 1.0)
-def kinetic_fraction_at(initial_states, i, prism):
-    """Return the kinetic fraction of the energy in column ``i`` of ``initial_states``."""
+def _draw_without_prism(stream, sampler, initial_states, prism):
+    draw_plain(stream, sampler, initial_states, sampler.surface)
+
+
+@optional(_draw_without_prism)
+def draw_with(stream, sampler, initial_states, prism):
+    """Fill ``initial_states`` by a ``prism``, or by separations if it is None."""
+    direction, velocity = np.empty(6), np.empty(8)
+    for i in range(initial_states.shape[1]):
+        x1, y1, z1, dx, dy, dz, _ = draw_state(stream, prism, direction, velocity, sampler.surface)
+        initial_states[0, i], initial_states[1, i] = x1, y1
+        initial_states[2, i], initial_states[3, i] = x1 - dx, y1 - dy
+        initial_states[4, i], initial_states[5, i] = velocity[0], velocity[1]
+        initial_states[6, i], initial_states[7, i] = velocity[4], velocity[5]
+        set_pair(initial_states, i, 8, z1, z1 - dz, prism.depth)
+        set_pair(initial_states, i, 10, velocity[2], velocity[6], prism.depth)
+        set_pair(initial_states, i, 8, velocity[3], velocity[7], prism.inertia)
+
+
+@inlined
+def draw_states(stream, sampler, initial_states):
+    """Fill ``initial_states`` (``COMPONENTS``, n) from a ``stream`` by a ``StartSampler``."""
+    draw_with(stream, sampler, initial_states, sampler.prism)
+
+
+@optional(lambda state, prism: 1.0)
+def kinetic_fraction_of(state, prism):
+    """Return the kinetic fraction of the energy in a ``state``; 1 without a ``prism``."""
     half_1, half_2 = prism.half_1[1], prism.half_2[1]
-    return kinetic_fraction(
-        initial_states[1, i], initial_states[3, i], half_1, half_2, prism.weights
-    )
-
-
-def _plain_start(state, draw, surface, start, prism):
-    start[0, 0], start[1, 0], start[2, 0], start[3, 0], u1, v1, u2, v2 = draw_crossing(
-        state, draw.half_x, draw.half_y, draw.beyond_x
-    )
-    start[4, 0], start[5, 0], start[6, 0], start[7, 0] = u1, v1, u2, v2
-
-
-@optional(_plain_start)
-def start_on_surface(state, draw, surface, start, prism):
-    """Fill the column ``start`` (12, 1) with a state on the surface of a hop, weighted by flux."""
-    fill_start(state, prism, surface, start, 0)
+    return kinetic_fraction(state[1], state[3], half_1, half_2, prism.weights)
 
 
 def states(scene, number, seed, block=0, order=(0, 0), progress=None):
@@ -221,8 +233,8 @@ def states(scene, number, seed, block=0, order=(0, 0), progress=None):
 
         return labelled(scene, number, seed, block, progress)
     filled = np.zeros((COMPONENTS, number))
-    draw, prism = origins(scene)
-    state = in_a_thread(open_stream, np.uint64(seed), block)
+    sampler = start_sampler(scene, order=order)
+    stream = in_a_thread(open_stream, np.uint64(seed), block)
 
     # The kernel fills whole arrays, continues the stream, and does not use all rows.
     used, buffer = len(components(scene)), np.zeros((COMPONENTS, min(number, PIECE)))
@@ -231,11 +243,11 @@ def states(scene, number, seed, block=0, order=(0, 0), progress=None):
         for start in range(first, stop, PIECE):
             end = min(start + PIECE, stop)
             some = buffer if end - start == buffer.shape[1] else np.zeros((COMPONENTS, end - start))
-            draw_any_starts(state, draw, order, some, prism)
+            draw_states(stream, sampler, some)
             filled[:used, start:end] = some[:used]
         return stop
 
-    step = CALL if prism is None else max(1, int(CALL * exact.free_fraction(scene)))
+    step = CALL if sampler.prism is None else max(1, int(CALL * exact.free_fraction(scene)))
     calls = ((first, min(first + step, number)) for first in range(0, number, step))
     for done in in_threads(fill, calls, waiting=lambda: progress and progress(None, number)):
         if progress is not None:

@@ -12,7 +12,7 @@ import numpy as np
 from twodiscs.comparison.measured.progress import progress_bar
 from twodiscs.comparison.measured.result import Result, note_of_number
 from twodiscs.dynamics.counting import engine_of
-from twodiscs.dynamics.ensemble import FOLLOWED as REPLICAS
+from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK
 from twodiscs.dynamics.intervals import chains_of
 from twodiscs.model.box import Box
 from twodiscs.model.checks import (
@@ -80,7 +80,7 @@ def by_time(sums):
 
     Between walls C is ±1 in every replica, so the error is binomial.
     """
-    return by_total(sums.sum(axis=0), sums.shape[0] * REPLICAS)
+    return by_total(sums.sum(axis=0), sums.shape[0] * HOPS_OF_BLOCK)
 
 
 def by_total(sums, replicas):
@@ -256,7 +256,7 @@ def parts_of(scene, hop, mean, gap, times, blocks, name, seed):
     """Return {"times": run} for ``blocks`` of hops, and "clusters", too, if hops are rare."""
     seeds = {what: seed_of(scene, hop, name, seed, what) for what in ("clusters", "times")}
     passages, engine = passages_of(scene), engine_of(scene)
-    events = REPLICAS * engine.expected_event_rate(scene)
+    events = HOPS_OF_BLOCK * engine.expected_event_rate(scene)
     work = engine.work_per_event(scene) * chains_of(scene).interval_cost(scene)
 
     def clusters(first, stop):
@@ -333,7 +333,7 @@ def transmission(
 def run_transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None):
     """Return the ``Transmission`` of ``transmission``; the parts ``kept`` are not done again."""
     passages_of(check_scene(scene)).require_coefficient(scene, hop)
-    blocks = -(-check_count("hops", hops, most=10**9) // REPLICAS)
+    blocks = -(-check_count("hops", hops, most=10**9) // HOPS_OF_BLOCK)
     if name is not None and not isinstance(name, str):
         raise InputError(f"name must be the name of a scene, not {quote(name)}")
     named = repr(Box.of(scene).parameters()) if name is None else name
@@ -351,8 +351,8 @@ def run_transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=
         clusters = {n: int(number) for n, number in enumerate(sizes) if number}
         law = partial(of_clusters, others=others)
         kappa = plateau(by_clusters(sizes), gap, neighbour_mean, law)
-    curve = by_total(sums, blocks * REPLICAS)
-    note = note_of_number("hops", settings["hops"], blocks * REPLICAS)
+    curve = by_total(sums, blocks * HOPS_OF_BLOCK)
+    note = note_of_number("hops", settings["hops"], blocks * HOPS_OF_BLOCK)
     return Transmission(
         scene, hop, kappa, gap, clusters, mean, neighbour_mean, times, curve, settings, parts, note
     )

@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import LANES, PASSES, REPLICAS, nearest_power_of_two
+from twodiscs.dynamics.ensemble import LANES, REPLICAS, SWEEPS, nearest_power_of_two
 from twodiscs.dynamics.kicks import Kicks, before_kick, idle_kicks, open_kicks, renew_kicks
 from twodiscs.dynamics.law import (
     END_OF_TIME,
@@ -418,7 +418,7 @@ def count_events(states, seed, first, lanes, duration, law, hops_x, kicks):
                 used += 1
         if running == 0:
             return sums, products
-        for _ in range(PASSES):
+        for _ in range(SWEEPS):
             find_events(x, y, u, v, remaining, times, codes, speeds, law, kicks)
             advance(
                 x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops_x, spins
@@ -498,8 +498,8 @@ def record_intervals(states, seed, first, window, law, hops_x, bins, sums, going
 
     The hops are vertical ones, or horizontal ones if ``hops_x`` is True instead of None. All
     intervals that begin within a ``window`` of time are followed to their end. ``bins`` are
-    (width, wide) of ``returns.record_returns``. A replica has n intervals, c of them in a bin. Σ c,
-    Σ c² and Σ c n are added to ``sums`` (3, bins; int64). Returns their total time and number,
+    (width, wide) as in ``two.returns``. A replica has n intervals, c of them in a bin. Σ c, Σ c²
+    and Σ c n are added to ``sums`` (3, bins; int64). Returns their total time and number,
     (2, replicas) doubles. ``kicks`` are those of ``LANES`` lanes, with the streams of
     ``count_events``.
     """
@@ -524,7 +524,7 @@ def record_intervals(states, seed, first, window, law, hops_x, bins, sums, going
         hop, before, after = vertical if hops_x is None else (HORIZONTAL, old_x, x)
         while busy and going[0]:
             busy = False
-            for _ in range(PASSES):
+            for _ in range(SWEEPS):
                 find_events(x, y, u, v, endless, times, codes, speeds, law, kicks)
                 advance(
                     x, y, u, v, old_x, old_y, endless, times, codes, hits, law, hops_x, spins

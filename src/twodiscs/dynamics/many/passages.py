@@ -16,8 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import FOLLOWED as REPLICAS
-from twodiscs.dynamics.ensemble import LARGEST, SUMS
+from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK, LARGEST, SUMS
 from twodiscs.dynamics.kicks import open_kicks, renew_kicks
 from twodiscs.dynamics.law import crosses, crossing_time
 from twodiscs.dynamics.many.lockstep import (
@@ -170,38 +169,38 @@ def begin(n, states, side, net, hops):
 def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes, kicks):
     """Follow the hops of blocks ``first`` … ``stop`` − 1; return the wall hits and collisions.
 
-    Without a ``gap`` (0), ``sums`` gets the sums of ``two.passages.follow_hops`` at ``times``.
+    Without a ``gap`` (0), ``sums`` gets the sums of ``two.passages.NetHops`` at ``times``.
     With a gap, which is then the only time, ``sizes`` gets the numbers of clusters of each size.
     The other of the two arrays is overwritten and has no meaning. ``kicks`` are those of
-    ``REPLICAS`` lanes, None without friction.
+    ``HOPS_OF_BLOCK`` lanes, None without friction.
     """
     discs, law, events, sides = pair.initial.discs, pair.law, 0, 2 if gap > 0.0 else 1
-    states, steps = np.zeros((pair.initial.rows, REPLICAS)), np.zeros(REPLICAS)
-    net, hops = np.zeros(REPLICAS), np.zeros(REPLICAS)
+    states, steps = np.zeros((pair.initial.rows, HOPS_OF_BLOCK)), np.zeros(HOPS_OF_BLOCK)
+    net, hops = np.zeros(HOPS_OF_BLOCK), np.zeros(HOPS_OF_BLOCK)
     for block in range(first, stop):
         draw_on_surface(open_stream(seed, block), pair, states, -1)
-        own, size = sums[block - first], np.ones(REPLICAS)
+        own, size = sums[block - first], np.ones(HOPS_OF_BLOCK)
         for side in range(sides):
             now = begin(discs, states, side, net, hops)
-            for l in range(REPLICAS):
+            for l in range(HOPS_OF_BLOCK):
                 if side == 0:
-                    open_kicks(l, seed, block * REPLICAS + l, kicks)
+                    open_kicks(l, seed, block * HOPS_OF_BLOCK + l, kicks)
                 else:
                     renew_kicks(l, kicks)
             for k in range(times.size):
-                for l in range(REPLICAS):
+                for l in range(HOPS_OF_BLOCK):
                     steps[l] = times[k] - (times[k - 1] if k > 0 else 0.0)
                 events += follow(now, steps, gap, net, hops, law, kicks)
-                for l in range(REPLICAS):
+                for l in range(HOPS_OF_BLOCK):
                     falls = states[2 * discs, l] < states[2 * discs + 1, l]
                     n, m = np.int64(-net[l] if falls else net[l]), np.int64(hops[l])
                     own[0, k] += n
                     own[1, k] += n * n
                     own[2, k] += m
                     own[3, k] += m * m
-            for l in range(REPLICAS):
+            for l in range(HOPS_OF_BLOCK):
                 size[l] += hops[l]
-        for l in range(REPLICAS):
+        for l in range(HOPS_OF_BLOCK):
             sizes[min(np.int64(size[l]), sizes.size - 1)] += 1
     return events
 
@@ -212,7 +211,7 @@ def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes, kicks):
 def _followed(scene, hop, times, gap, blocks, seed, first):
     sums, sizes = np.zeros((blocks, SUMS, len(times)), np.int64), np.zeros(LARGEST + 1, np.int64)
     run = np.uint64(seed), first, first + blocks, np.array(times), gap, pair_of(scene, hop)
-    return sums, sizes, follow_blocks(*run, sums, sizes, new_kicks(scene, REPLICAS))
+    return sums, sizes, follow_blocks(*run, sums, sizes, new_kicks(scene, HOPS_OF_BLOCK))
 
 
 def hop_sums(scene, hop, times, blocks, seed, first=0):

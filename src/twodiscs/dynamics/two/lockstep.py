@@ -4,21 +4,11 @@ The mean count in a time T is rate × T exactly, for every T and without burn-in
 independent replicas gives its error.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
-from twodiscs.dynamics.ensemble import (
-    LANES,
-    PASSES,
-    REPLICAS,
-    find_events,
-    kick_lanes,
-    nearest_power_of_two,
-    new_kicks,
-    new_rows,
-    put_state,
-    state_at,
-)
-from twodiscs.dynamics.kicks import open_kicks
+from twodiscs.dynamics.ensemble import LANES, REPLICAS, SWEEPS, nearest_power_of_two
 from twodiscs.dynamics.law import (
     DISC,
     END_OF_TIME,
@@ -26,19 +16,17 @@ from twodiscs.dynamics.law import (
     WALL_X2,
     WALL_Y1,
     WALL_Y2,
-    after_event,
     crosses,
-    law_of,
 )
 from twodiscs.dynamics.two import strip
+from twodiscs.dynamics.two.follow import follow
 from twodiscs.model.events import DECLARED, EVENTS, HOPS, WALLS, by_kind
-from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins
-from twodiscs.sampling.streams import open_stream
+from twodiscs.sampling.jit import inlined, optional
+from twodiscs.sampling.starts import start_sampler
 from twodiscs.theory import exact
 
-#: Searches for ended lanes between two unpackings of the counts: a packed count must be below 256.
-LOOKS = 31
+#: Sweeps between two unpackings of the counts: a packed count must be below 256.
+UNPACKED = 248
 
 #: The mean number of wall and disc events in a replica, which is smaller if an open hop happens
 #: less often in it than ``HOPS_PER_REPLICA``.
@@ -141,87 +129,66 @@ def all_walls(counts, rest):
     return counts[ANY_WALLS] - counts[COLLISIONS]
 
 
-@compiled
-def unpack(packed, more, counts, lane):
-    """Move the packed counts of a ``lane`` to ``counts`` (n, lanes)."""
-    words = np.int64(packed[lane]), np.int64(more[lane])
-    packed[lane] = more[lane] = 0.0
-    for e in range(N):
-        counts[e, lane] += (words[e // FIELDS] >> (8 * (e % FIELDS))) & 255
+class Counts(NamedTuple):
+    """The experiment: how often each event happens in a ``duration``.
 
-
-@compiled
-def count_blocks(
-    seed, first, stop, replicas, lanes, duration, law, draw, prism, order, identical, hops, walls,
-    rest, kicks,
-):  # fmt: skip
-    """Follow the starts of blocks ``first`` … ``stop`` − 1 for a ``duration`` and add their counts.
-
-    Returns (sums, products): Σ N_e (n) and Σ N_e N_f for e ≤ f (n, n) over all replicas, int64, in
-    the order of EVENTS. Starts come from ``draw`` in an ``order`` as in ``draw_configuration``, or
-    from ``prism`` unless it is None. ``identical`` discs, ``hops``, ``walls`` and ``rest`` (the
-    hits of all walls need a counter) are True or None. ``kicks`` are those of the lanes, None
-    without friction. Nothing is compiled for None.
+    ``tracked`` says which events are detected (see ``TRACKED``). ``identical`` discs and
+    ``gravity`` are as in ``_wall_seen``. ``sums`` are Σ N_e over all replicas (n, int64), in the
+    order of EVENTS, and ``products`` Σ N_e N_f for e ≤ f (n, n).
     """
-    rows, initial_states = new_rows(lanes, law), np.zeros((COMPONENTS, replicas))
-    remaining, times, codes = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-    packed, more = np.zeros(lanes), np.zeros(lanes)
-    counts, replica_counts = np.zeros((N, lanes), np.int64), np.zeros(N, np.int64)
-    sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
-    busy, block, used, running, looks = np.zeros(lanes, np.bool_), first, replicas, 0, 0
-    tracked = hops, walls, rest, True
 
-    while True:
-        for i in range(lanes):
-            if remaining[i] > 0.0:
-                continue
-            if busy[i]:
-                unpack(packed, more, counts, i)
-                for e in range(N):
-                    replica_counts[e] = counts[e, i]
-                    counts[e, i] = 0
-                replica_counts[ANY_WALLS] = all_walls(replica_counts, rest)
-                for e in range(N):
-                    sums[e] += replica_counts[e]
-                    for f in range(e, N):
-                        products[e, f] += replica_counts[e] * replica_counts[f]
-                busy[i] = False
-                running -= 1
-            if used == replicas and block < stop:
-                draw_any_starts(open_stream(seed, block), draw, order, initial_states, prism)
-                block, used = block + 1, 0
-            if used < replicas:
-                put_state(rows, i, initial_states[:, used], law)
-                open_kicks(i, seed, (block - 1) * replicas + used, kicks)
-                remaining[i] = duration
-                busy[i] = True
-                running += 1
-                used += 1
-        if running == 0:
-            return sums, products
+    duration: float
+    tracked: tuple
+    identical: bool | None
+    gravity: float | None
+    packed: np.ndarray  # (lanes,), the first events
+    more: np.ndarray  # (lanes,), the others
+    counts: np.ndarray  # (n, lanes), what was unpacked
+    of_replica: np.ndarray  # (n,), working memory
+    sums: np.ndarray
+    products: np.ndarray
+    both_ways: bool | None = None
 
-        for _ in range(PASSES):
-            find_events(rows, remaining, times, codes, law, kicks)
-            for i in range(lanes):
-                # Everything is loaded before anything is stored.
-                before, code, first_count = state_at(rows, i, law), codes[i], packed[i]
-                second_count = more[i] if N > FIELDS else 0.0
-                remaining[i] -= times[i]
-                after = after_event(before, times[i], code, law)
-                put_state(rows, i, after, law)
-                packed[i] = first_word(
-                    first_count, code, before, after, identical, law.gravity, tracked
-                )
-                if N > FIELDS:
-                    more[i] = second_word(
-                        second_count, code, before, after, identical, law.gravity, tracked
-                    )
-            kick_lanes(rows, times, law, kicks)
-        looks += 1
-        if looks == LOOKS:
-            looks = 0
-            for i in range(lanes):
-                unpack(packed, more, counts, i)
+    def begin(self, i, state):
+        """Begin with a count that is zero: ``ended`` left it so."""
+        return self.duration
+
+    def note(self, i, before, after, code, time, left):
+        """Add the events of a flight to the packed counts."""
+        first_count, second_count = self.packed[i], self.more[i] if N > FIELDS else 0.0
+        flight = code, before, after, self.identical, self.gravity, self.tracked
+        self.packed[i] = first_word(first_count, *flight)
+        if N > FIELDS:
+            self.more[i] = second_word(second_count, *flight)
+        return left
+
+    def swept(self, sweeps):
+        """Unpack the counts before one of them is full."""
+        if sweeps % UNPACKED == 0:
+            for i in range(self.packed.size):
+                unpack(self, i)
+
+    def ended(self, i, replica, stretch):
+        """Add the counts of a replica and their products."""
+        unpack(self, i)
+        for e in range(N):
+            self.of_replica[e] = self.counts[e, i]
+            self.counts[e, i] = 0
+        self.of_replica[ANY_WALLS] = all_walls(self.of_replica, self.tracked[2])
+        for e in range(N):
+            self.sums[e] += self.of_replica[e]
+            for f in range(e, N):
+                self.products[e, f] += self.of_replica[e] * self.of_replica[f]
+        return 0.0
+
+
+@inlined
+def unpack(counting, i):
+    """Move the packed counts of lane ``i`` of ``Counts`` to its ``counts``."""
+    words = np.int64(counting.packed[i]), np.int64(counting.more[i])
+    counting.packed[i] = counting.more[i] = 0.0
+    for e in range(N):
+        counting.counts[e, i] += (words[e // FIELDS] >> (8 * (e % FIELDS))) & 255
 
 
 def expected_rate(scene, event):
@@ -263,17 +230,28 @@ def run_blocks(
     A block is ``replicas`` starts from the invariant measure, each followed for ``duration``;
     ``order`` chooses the component (see ``draw_configuration``). Only these ``events`` are
     detected: without a hop among them no crossing is searched. Returns (sums, products) as
-    ``count_blocks`` does, integers that shards can add.
+    ``Counts`` does, integers that shards can add.
     """
     hops = any(event in HOPS for event in events) or None
     walls = any(event in WALLS for event in events) or None
     # If each of two axes has four pairs of a disc and a wall, these are all pairs.
     complete = scene.identical and not scene.field and scene.walled == ("x", "y")
     rest = None if walls and complete else True
-    return count_blocks(
-        np.uint64(seed), first, stop, replicas, lanes, duration, law_of(scene), *origins(scene),
-        order, scene.identical or None, hops, walls, rest, new_kicks(scene, lanes),
-    )  # fmt: skip
+    counting = Counts(
+        duration=float(duration),
+        tracked=(hops, walls, rest, True),
+        identical=scene.identical or None,
+        gravity=scene.field or None,
+        packed=np.zeros(lanes),
+        more=np.zeros(lanes),
+        counts=np.zeros((N, lanes), np.int64),
+        of_replica=np.zeros(N, np.int64),
+        sums=np.zeros(N, np.int64),
+        products=np.zeros((N, N), np.int64),
+    )
+    sampler = start_sampler(scene, order=order)
+    follow(counting, scene, sampler, seed, first, stop, replicas, lanes, SWEEPS)
+    return counting.sums, counting.products
 
 
 def planned(needed, affordable):

@@ -30,33 +30,13 @@ variance than κ(t) where κ is small, κ at most instead of 1.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import FOLLOWED as REPLICAS
-from twodiscs.dynamics.ensemble import (
-    LANES,
-    LARGEST,
-    SUMS,
-    across,
-    find_events,
-    kick_lanes,
-    new_kicks,
-    new_rows,
-    put_state,
-    state_at,
-)
-from twodiscs.dynamics.kicks import open_kicks, renew_kicks
-from twodiscs.dynamics.law import (
-    END_OF_TIME,
-    WRAP_X,
-    WRAP_Y,
-    after_event,
-    crosses,
-    crossing_time,
-    law_of,
-)
-from twodiscs.dynamics.two.strip import law_reverses
+from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK, LANES, LARGEST, SUMS
+from twodiscs.dynamics.law import END_OF_TIME, WRAP_X, WRAP_Y, crosses, crossing_time
+from twodiscs.dynamics.two.follow import across, follow
 from twodiscs.model.checks import (
     InputError,
     check_ascending,
@@ -66,123 +46,120 @@ from twodiscs.model.checks import (
 )
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import check_scene, hopping_along
-from twodiscs.sampling.jit import compiled
+from twodiscs.sampling.jit import inlined
 from twodiscs.sampling.prism import prism_of
-from twodiscs.sampling.starts import COMPONENTS, fill_start, require_room
+from twodiscs.sampling.starts import COMPONENTS, StartSampler, draw_states, require_room
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 
-#: Passes between two looks at which lanes have come to the end of their time.
-PASSES = 2
-
-#: Blocks of replicas whose states are in memory together.
-CHUNK = 1024
+#: Sweeps between two searches for lanes that have ended: paths are short.
+SWEEPS = 2
 
 
-@compiled
-def draw_initial_states(seed, first, stop, prism, surface, states):
-    """Fill the columns of ``states`` from the streams of blocks ``first`` … ``stop`` − 1.
+@inlined
+def hop_of(before, after, code, axis):
+    """Return (whether a flight has a hop, Δ before it, Δ̇) along an axis.
 
-    They are on a ``surface`` (0 for x1 = x2, 1 for y1 = y2), weighted by the flux through it, or of
-    the invariant measure if that is None.
+    ``axis`` is (``horizontal``, the code of a jump along it), with True for x and None for y.
     """
-    replicas = states.shape[1] // (stop - first)
-    for block in range(first, stop):
-        state = open_stream(seed, block)
-        for i in range(replicas):
-            fill_start(state, prism, surface, states, (block - first) * replicas + i)
+    horizontal, jump = axis
+    apart, rising = across(before, horizontal)
+    # Half a period apart the separation changes its sign without a hop.
+    end = rising if code == jump else across(after, horizontal)[0]
+    return crosses(apart, end), apart, rising
 
 
-@compiled
-def follow_hops(
-    states, lanes, times, gap, law, hopping, horizontal, sums, sizes, seed, first, kicks
-):
-    """Follow the hops from the ``states`` (``COMPONENTS``, replicas), along x or y.
+class NetHops(NamedTuple):
+    """The experiment: sums over the hops after time 0, at each of the ascending ``times``.
 
-    The hops are those along y, or along x if ``horizontal`` is True instead of None. If ``hopping``
-    the states are on the surface of the hop, and the hop at time 0 has the direction s_0 in which
-    they fall through it; otherwise s_0 is 1. Without a ``gap`` (0) n, n², N and N² at each of the
-    ascending ``times`` are added to ``sums`` (blocks of replicas, ``SUMS``, times; int64), where
-    n = Σ s_0 s_k is over the hops after time 0 and N their number. With a ``gap`` replicas are
-    followed forwards and backwards, and the sizes of their clusters are counted in ``sizes``
-    (int64), the last of which takes all that are larger. The ``kicks`` of the lanes, None without
-    friction, come from the streams of ``seed`` (uint64), for replicas from the ``first`` on, and
-    are independent in both directions of time. Returns the number of wall and disc events.
+    If ``hopping``, the initial states are on the surface of the hop. The hop at time 0 then has the
+    direction s_0 in which they fall through it; otherwise s_0 is 1. ``sums`` are Σ n, Σ n², Σ N and
+    Σ N² over the replicas of each block (blocks, ``SUMS``, times; int64), from the replica
+    ``first`` on. N is the number of hops, and n = Σ s_0 s_k.
     """
-    rows, reverse = new_rows(lanes, law), np.zeros((COMPONENTS, lanes))
-    flights, codes, remaining = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-    direction, net, hops = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-    replica, due, events = np.full(lanes, -1), np.zeros(lanes, np.int64), np.zeros(lanes)
-    most = np.float64(sizes.size - 1) if gap > 0.0 else np.inf
-    wrap = WRAP_Y if horizontal is None else WRAP_X
-    total, per_block = states.shape[1], states.shape[1] // sums.shape[0]
-    started, running = 0, 0
 
-    while True:
-        for i in range(lanes):
-            if remaining[i] > 0.0:
-                continue
-            if replica[i] >= 0:
-                if gap > 0.0 and due[i] == 0:
-                    put_state(rows, i, reverse[:, i], law)
-                    renew_kicks(i, kicks)
-                    due[i], remaining[i] = 1, gap
-                    # The hop at time 0 has been counted.
-                    hops[i] -= 1.0 if across(state_at(rows, i, law), horizontal)[1] < 0.0 else 0.0
-                    continue
-                if gap > 0.0:
-                    sizes[min(np.int64(hops[i]), sizes.size - 1)] += 1
-                else:
-                    n, m = np.int64(net[i]), np.int64(hops[i])
-                    block = sums[replica[i] // per_block, :, due[i]]
-                    block[0] += n
-                    block[1] += n * n
-                    block[2] += m
-                    block[3] += m * m
-                    due[i] += 1
-                    if due[i] < times.size:
-                        remaining[i] = times[due[i]] - times[due[i] - 1]
-                        continue
-                replica[i] = -1
-                running -= 1
-            if started == total:
-                continue
-            put_state(rows, i, states[:, started], law)
-            open_kicks(i, seed, first + started, kicks)
-            for k in range(COMPONENTS):
-                value = states[k, started]
-                reverse[k, i] = -value if law_reverses(k, law) else value
-            replica[i], due[i], remaining[i] = started, 0, gap if gap > 0.0 else times[0]
-            direction[i], net[i], hops[i] = 1.0, 0.0, 0.0
-            if hopping and across(state_at(rows, i, law), horizontal)[1] < 0.0:
-                # Zero counts as positive, so a hop will be counted for this one at time 0.
-                direction[i], net[i], hops[i] = -1.0, -1.0, -1.0
-            hops[i] += 1.0 if gap > 0.0 else 0.0  # a cluster has the hop at time 0 as well
-            started += 1
-            running += 1
-        if running == 0:
-            return np.int64(events.sum())
+    times: np.ndarray
+    hopping: bool
+    axis: tuple
+    falls: np.ndarray  # (lanes,), 1 if s_0 is −1, else 0
+    rises: np.ndarray  # (lanes,), hops with s_k = 1 minus hops with s_k = −1
+    hops: np.ndarray  # (lanes,)
+    events: np.ndarray  # (lanes,), wall hits and collisions
+    sums: np.ndarray
+    first: int
+    both_ways: bool | None = None
 
-        for _ in range(PASSES):
-            find_events(rows, remaining, flights, codes, law, kicks)
-            for i in range(lanes):
-                before, time, code = state_at(rows, i, law), flights[i], codes[i]
-                after = after_event(before, time, code, law)
-                put_state(rows, i, after, law)
-                apart, rising = across(before, horizontal)
-                # Half a period apart the separation changes its sign without a hop.
-                end = rising if code == wrap else across(after, horizontal)[0]
-                hop = crosses(apart, end)
-                net[i] += math.copysign(1.0, direction[i] * rising) if hop else 0.0
-                hops[i] += 1.0 if hop else 0.0
-                left = gap - (time - crossing_time(apart, rising))
-                left = left if hop & (gap > 0.0) else remaining[i] - time
-                remaining[i] = left if hops[i] < most else 0.0
-                events[i] += 1.0 if code > END_OF_TIME else 0.0
-            kick_lanes(rows, flights, law, kicks)
+    def begin(self, i, state):
+        """Find the direction of the hop at time 0."""
+        falls = 1.0 if self.hopping and across(state, self.axis[0])[1] < 0.0 else 0.0
+        # Zero counts as positive, so a hop that falls is counted after time 0: one too many.
+        self.rises[i], self.hops[i], self.falls[i] = falls, -falls, falls
+        return self.times[0]
+
+    def note(self, i, before, after, code, time, left):
+        """Count a hop in its direction."""
+        rises, hops, events = self.rises[i], self.hops[i], self.events[i]
+        hop, _, rising = hop_of(before, after, code, self.axis)
+        self.rises[i] = rises + (math.copysign(1.0, rising) if hop else 0.0)
+        self.hops[i] = hops + (1.0 if hop else 0.0)
+        self.events[i] = events + (1.0 if code > END_OF_TIME else 0.0)
+        return left
+
+    def ended(self, i, replica, stretch):
+        """Add the hops until one of the times; go on to the next one."""
+        n = np.int64(self.rises[i] if self.falls[i] == 0.0 else -self.rises[i])
+        m, block = np.int64(self.hops[i]), (replica - self.first) // HOPS_OF_BLOCK
+        self.sums[block, 0, stretch] += n
+        self.sums[block, 1, stretch] += n * n
+        self.sums[block, 2, stretch] += m
+        self.sums[block, 3, stretch] += m * m
+        last = self.times.size - 1
+        return self.times[min(stretch + 1, last)] - self.times[stretch]
 
 
-# From a scene to the arguments of the kernel ----------------------------------------------------
+class Clusters(NamedTuple):
+    """The experiment: how many hops follow each other with less than a ``gap`` between them.
+
+    The initial states are on the surface of the hop, and paths go forwards and backwards. ``sizes``
+    counts the clusters by their hops (int64); its last entry takes all that are larger.
+    """
+
+    gap: float
+    axis: tuple
+    most: float  # hops of the last entry
+    falls: np.ndarray  # (lanes,), 1 if the separation falls at time 0, else 0
+    hops: np.ndarray  # (lanes,)
+    events: np.ndarray  # (lanes,), wall hits and collisions
+    sizes: np.ndarray
+    both_ways: bool | None = True
+
+    def begin(self, i, state):
+        """Begin a cluster with the hop at time 0."""
+        # Zero counts as positive, so a hop that falls will be counted: begin without it.
+        falls = 1.0 if across(state, self.axis[0])[1] < 0.0 else 0.0
+        self.hops[i], self.falls[i] = 1.0 - falls, falls
+        return self.gap
+
+    def note(self, i, before, after, code, time, left):
+        """Count a hop, and wait for the next one for the gap."""
+        hops, events = self.hops[i], self.events[i]
+        hop, apart, rising = hop_of(before, after, code, self.axis)
+        hops += 1.0 if hop else 0.0
+        self.hops[i], self.events[i] = hops, events + (1.0 if code > END_OF_TIME else 0.0)
+        left = self.gap - (time - crossing_time(apart, rising)) if hop else left
+        return left if hops < self.most else 0.0
+
+    def ended(self, i, replica, stretch):
+        """Go on from the reversed initial state; after that count the cluster."""
+        if stretch == 0:
+            # The hop at time 0 has been counted. Reversed, it falls if it rose.
+            self.hops[i] -= 1.0 - self.falls[i]
+        else:
+            self.sizes[min(np.int64(self.hops[i]), self.sizes.size - 1)] += 1
+        return -self.gap * (1 - stretch)
+
+
+# From a scene to the experiment ------------------------------------------------------------------
 
 
 def require_passing(scene, hop):
@@ -215,75 +192,83 @@ def neighbours(scene, hop):
 
 
 def initial_states(scene, hop, blocks, seed, first=0, on_surface=True):
-    """Return states (``COMPONENTS``, ``blocks`` × ``REPLICAS``) on the surface of a ``hop``.
+    """Return states (``COMPONENTS``, ``blocks`` × ``HOPS_OF_BLOCK``) on the surface of a ``hop``.
 
-    They are weighted by the flux through it, or of the invariant measure unless ``on_surface``; the
-    blocks are those from the ``first`` one on of the streams of ``seed``. Raises ``InputError`` as
-    ``require_passing`` does, and for numbers out of range.
+    Arguments are as for ``hop_sums``, which follows these states.
     """
-    require_passing(scene, hop)
-    blocks, seed, first = (
-        check_integer("blocks", blocks),
-        check_integer("seed", seed, 0),
-        check_integer("first", first, 0),
-    )
-    states = np.zeros((COMPONENTS, blocks * REPLICAS))
-    prism = prism_of(scene, hop, 0.0) if on_surface else prism_of(scene)
-    surface = "xy".index(AXIS[hop]) if on_surface else None
-    draw_initial_states(np.uint64(seed), first, first + blocks, prism, surface, states)
+    _require_stream(scene, hop, blocks, seed, first)
+    states = np.zeros((COMPONENTS, blocks * HOPS_OF_BLOCK))
+    for block in range(blocks):
+        drawn = states[:, block * HOPS_OF_BLOCK : (block + 1) * HOPS_OF_BLOCK]
+        stream = open_stream(np.uint64(seed), first + block)
+        draw_states(stream, _sampler(scene, hop, on_surface), drawn)
     return states
 
 
-def _followed(scene, hop, blocks, seed, first, times, gap, sums, sizes, on_surface=True):
-    """Run ``follow_hops``, some blocks at a time; return the number of events."""
-    scene, hop = hopping_along(scene, hop, "x")
-    horizontal, events = None if AXIS[hop] == "y" else True, 0
-    for start in range(0, blocks, CHUNK):
-        number = min(CHUNK, blocks - start)
-        states = initial_states(scene, hop, number, seed, first + start, on_surface)
-        own = sums[start : start + number]
-        events += int(
-            follow_hops(
-                states,
-                LANES,
-                times,
-                gap,
-                law_of(scene),
-                on_surface,
-                horizontal,
-                own,
-                sizes,
-                np.uint64(seed),
-                (first + start) * REPLICAS,
-                new_kicks(scene, LANES),
-            )
-        )
-    return events
+def _require_stream(scene, hop, blocks, seed, first):
+    require_passing(scene, hop)
+    check_integer("blocks", blocks)
+    check_integer("seed", seed, 0)
+    check_integer("first", first, 0)
+
+
+def _sampler(scene, hop, on_surface):
+    if on_surface:
+        return StartSampler(None, prism_of(scene, hop, 0.0), surface="xy".index(AXIS[hop]))
+    return StartSampler(None, prism_of(scene))
+
+
+def _axis(hop):
+    return (None, WRAP_Y) if AXIS[hop] == "y" else (True, WRAP_X)
 
 
 def hop_sums(scene, hop, times, blocks, seed, first=0, on_surface=True):
-    """Return (sums, events) of ``blocks`` blocks of ``REPLICAS`` initial states each.
+    """Return (sums, events) of ``blocks`` blocks of ``HOPS_OF_BLOCK`` initial states each.
 
     ``sums`` (blocks, ``SUMS``, times; integers) have Σ n, Σ n², Σ N and Σ N² at the ascending
-    ``times``, lengths over unit speed, as in ``follow_hops``; initial states are on the surface of
-    the ``hop``, or those of the invariant measure unless ``on_surface``. The blocks are those from
-    the ``first`` one on of the streams of ``seed``. Raises ``InputError`` for a hop that is unknown
-    or blocked, and numbers out of range.
+    ``times``, lengths over unit speed, as in ``NetHops``. Initial states are on the surface of the
+    ``hop``, weighted by the flux through it, or of the invariant measure unless ``on_surface``. The
+    blocks are those from the ``first`` one on of the streams of ``seed``. Raises ``InputError`` for
+    a hop that is unknown or blocked, and numbers out of range.
     """
-    times, blocks = np.array(check_ascending("times", times)), check_integer("blocks", blocks)
-    sums = np.zeros((blocks, SUMS, times.size), np.int64)
-    none = np.zeros(1, np.int64)
-    return sums, _followed(scene, hop, blocks, seed, first, times, 0.0, sums, none, on_surface)
+    times = np.array(check_ascending("times", times))
+    _require_stream(scene, hop, blocks, seed, first)
+    scene, hop = hopping_along(scene, hop, "x")
+    net = NetHops(
+        times=times,
+        hopping=on_surface,
+        axis=_axis(hop),
+        falls=np.zeros(LANES),
+        rises=np.zeros(LANES),
+        hops=np.zeros(LANES),
+        events=np.zeros(LANES),
+        sums=np.zeros((blocks, SUMS, times.size), np.int64),
+        first=first * HOPS_OF_BLOCK,
+    )
+    sampler = _sampler(scene, hop, on_surface)
+    follow(net, scene, sampler, seed, first, first + blocks, HOPS_OF_BLOCK, LANES, SWEEPS)
+    return net.sums, int(net.events.sum())
 
 
 def cluster_sizes(scene, hop, gap, blocks, seed, first=0):
     """Return (sizes, events): how many hops are in a cluster of 0, 1, 2 … hops.
 
-    ``sizes`` (``LARGEST`` + 1 integers) are over ``blocks`` blocks of ``REPLICAS`` hops, each a
-    random one; the last has all larger clusters. A cluster ends where no hop comes for a time
+    ``sizes`` (``LARGEST`` + 1 integers) are over ``blocks`` blocks of ``HOPS_OF_BLOCK`` hops, each
+    a random one; the last has all larger clusters. A cluster ends where no hop comes for a time
     ``gap``. Arguments and errors are otherwise as for ``hop_sums``.
     """
-    gap, blocks = check_length("gap", gap), check_integer("blocks", blocks)
-    sizes, none = np.zeros(LARGEST + 1, np.int64), np.zeros((blocks, SUMS, 1), np.int64)
-    events = _followed(scene, hop, blocks, seed, first, np.array([gap]), gap, none, sizes)
-    return sizes, events
+    gap = check_length("gap", gap)
+    _require_stream(scene, hop, blocks, seed, first)
+    scene, hop = hopping_along(scene, hop, "x")
+    clusters = Clusters(
+        gap=float(gap),
+        axis=_axis(hop),
+        most=float(LARGEST),
+        falls=np.zeros(LANES),
+        hops=np.zeros(LANES),
+        events=np.zeros(LANES),
+        sizes=np.zeros(LARGEST + 1, np.int64),
+    )
+    sampler = _sampler(scene, hop, True)
+    follow(clusters, scene, sampler, seed, first, first + blocks, HOPS_OF_BLOCK, LANES, SWEEPS)
+    return clusters.sizes, int(clusters.events.sum())

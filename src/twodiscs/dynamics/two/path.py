@@ -5,14 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import (
-    across,
-    kicked,
-    nearest_power_of_two,
-    new_kicks,
-    put_state,
-    state_at,
-)
+from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.kicks import before_kick, opened
 from twodiscs.dynamics.law import (
     DISC,
@@ -33,6 +26,7 @@ from twodiscs.dynamics.law import (
     law_of,
     next_event,
 )
+from twodiscs.dynamics.two.follow import across, kicked, new_kicks, put_state, state_at
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import HOPS
 from twodiscs.model.two import ENERGY

@@ -1,136 +1,120 @@
 """Intervals between the hops of two discs: chains that start on the surface of a hop."""
 
+from typing import NamedTuple
+
 import numpy as np
 
-from twodiscs.dynamics.ensemble import (
-    LANES,
-    PASSES,
-    RETURNS,
-    across,
-    find_events,
-    kick_lanes,
-    new_kicks,
-    new_rows,
-    put_state,
-    state_at,
-)
-from twodiscs.dynamics.kicks import open_kicks
-from twodiscs.dynamics.law import after_event, crosses, crossing_time, law_of
+from twodiscs.dynamics.ensemble import LANES, RETURNS, SWEEPS
+from twodiscs.dynamics.law import crosses, crossing_time
+from twodiscs.dynamics.two.follow import across, follow
 from twodiscs.model.scene import hopping_along
-from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.starts import COMPONENTS, origins, start_on_surface
-from twodiscs.sampling.streams import open_stream
+from twodiscs.sampling.starts import start_sampler
 from twodiscs.theory import exact
 
 #: Numbers that are summed in each bin: Σ c and Σ c².
 INTERVAL_SUMS = 2
 
 
-@compiled
-def record_returns(
-    seed,
-    first,
-    stop,
-    chains,
-    lanes,
-    returns,
-    law,
-    draw,
-    prism,
-    horizontal,
-    width,
-    wide,
-    sums,
-    going,
-    kicks,
-):
-    """Run the chains of blocks ``first`` … ``stop`` − 1 for ``returns`` hops each.
+class Returns(NamedTuple):
+    """The experiment: the intervals between the next ``wanted`` hops of each chain, in bins.
 
-    The hops are vertical ones, or horizontal ones if ``horizontal`` is True instead of None. The
-    initial states come from ``prism`` or, if that is None, from ``draw``, which is for vertical
-    hops only. With c intervals of a chain in a bin, Σ c and Σ c² over the chains are added to
-    ``sums`` (2, bins; int64). There are bins of ``width`` from 0 on, one for longer intervals, and
-    wide bins; ``wide`` has the wide bin of each of the others. ``kicks`` are those of the lanes,
-    None without friction. Returns the total time of each chain, (stop − first) × ``chains`` doubles
-    in order.
+    The hops are vertical, or horizontal if ``horizontal`` is True instead of None. With c intervals
+    of a chain in a bin, ``sums`` are Σ c and Σ c² over the chains (2, bins; int64). There are bins
+    of a width from 0 on, one for longer intervals, and wide bins; ``wide`` has the wide bin of each
+    of the others. ``totals`` are the times of the chains, in order, from the chain ``first`` on.
     """
-    rows, start = new_rows(lanes, law), np.zeros((COMPONENTS, 1))
-    times, codes, intervals = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-    endless, left = np.full(lanes, np.inf), np.zeros(lanes)
-    age, elapsed = np.zeros(lanes), np.zeros(lanes)
-    chain, finished, lane_of = (
-        np.full(lanes, -1),
-        np.zeros(lanes + 1),
-        np.zeros(lanes + 1, np.int64),
-    )
-    totals, counts = np.zeros((stop - first) * chains), np.zeros((lanes, sums.shape[1]), np.int64)
-    per_width, last_bin, wanted = 1.0 / width, wide.size - 1, np.float64(returns)
-    surface = 1 if horizontal is None else 0
-    state = open_stream(seed, first)
-    started, running = 0, 0
 
-    while True:
-        for i in range(lanes):
-            if left[i] > 0.0:
-                continue
-            if chain[i] >= 0:
-                totals[chain[i]] = elapsed[i]
-                for k in range(sums.shape[1]):
-                    sums[0, k] += counts[i, k]
-                    sums[1, k] += counts[i, k] * counts[i, k]
-                    counts[i, k] = 0
-                chain[i] = -1
-                running -= 1
-            if started == totals.size:
-                continue
-            if started % chains == 0:
-                state = open_stream(seed, first + started // chains)
-            start_on_surface(state, draw, surface, start, prism)
-            put_state(rows, i, start[:, 0], law)
-            open_kicks(i, seed, first * chains + started, kicks)
-            chain[i], elapsed[i], age[i] = started, 0.0, 0.0
-            # A start with Δ̇ < 0 crosses the surface at time 0 by its sign; that is not a return.
-            _, rising = across(state_at(rows, i, law), horizontal)
-            left[i] = wanted + (1.0 if rising < 0.0 else 0.0)
-            started += 1
-            running += 1
-        if running == 0 or not going[0]:
-            return totals
+    horizontal: bool | None
+    wanted: float
+    per_width: float  # 1 over the width of a bin
+    wide: np.ndarray
+    to_come: np.ndarray  # (lanes,), hops until the end of a chain
+    age: np.ndarray  # (lanes,), the time since the last hop
+    interval: np.ndarray  # (lanes,), an interval that ends in this sweep, else −1
+    elapsed: np.ndarray  # (lanes,), the sum of the intervals of a chain
+    finished: np.ndarray  # (lanes + 1,), the intervals that end in this sweep
+    lane_of: np.ndarray  # (lanes + 1,), and their lanes
+    counts: np.ndarray  # (lanes, bins)
+    sums: np.ndarray
+    totals: np.ndarray
+    first: int
+    both_ways: bool | None = None
 
-        for _ in range(PASSES):
-            find_events(rows, endless, times, codes, law, kicks)
-            for i in range(lanes):
-                before, time, waited = state_at(rows, i, law), times[i], age[i]
-                after = after_event(before, time, codes[i], law)
-                put_state(rows, i, after, law)
-                apart, rising = across(before, horizontal)
-                hop = crosses(apart, across(after, horizontal)[0])
-                until, to_come = crossing_time(apart, rising), left[i]
-                recorded = hop & (to_come > 0.0) & (to_come <= wanted)
-                interval = waited + until
-                intervals[i] = interval if recorded else -1.0
-                elapsed[i] += interval if recorded else 0.0
-                age[i] = time - until if hop else waited + time
-                left[i] = to_come - 1.0 if hop else to_come
-            kick_lanes(rows, times, law, kicks)
-            n = 0
-            for i in range(lanes):
-                finished[n], lane_of[n] = intervals[i], i
-                n += 1 if intervals[i] >= 0.0 else 0
-            for k in range(n):
-                index = min(np.int64(finished[k] * per_width), last_bin)
-                counts[lane_of[k], index] += 1
-                counts[lane_of[k], wide[index]] += 1
+    def begin(self, i, state):
+        """Begin a chain; its time has no end, its hops have."""
+        self.elapsed[i] = self.age[i] = 0.0
+        # A start with Δ̇ < 0 crosses the surface at time 0 by its sign; that is not a return.
+        rising = across(state, self.horizontal)[1]
+        self.to_come[i] = self.wanted + (1.0 if rising < 0.0 else 0.0)
+        return np.inf
+
+    def note(self, i, before, after, code, time, left):
+        """Close an interval if the flight has a hop."""
+        waited, to_come = self.age[i], self.to_come[i]
+        apart, rising = across(before, self.horizontal)
+        hop = crosses(apart, across(after, self.horizontal)[0])
+        until = crossing_time(apart, rising)
+        recorded = hop & (to_come > 0.0) & (to_come <= self.wanted)
+        self.interval[i] = waited + until if recorded else -1.0
+        self.age[i] = time - until if hop else waited + time
+        to_come -= 1.0 if hop else 0.0
+        self.to_come[i] = to_come
+        return left if to_come > 0.0 else 0.0
+
+    def swept(self, sweeps):
+        """Count the intervals that have ended in their bins."""
+        n = 0
+        for i in range(self.interval.size):
+            self.finished[n], self.lane_of[n] = self.interval[i], i
+            n += 1 if self.interval[i] >= 0.0 else 0
+        for k in range(n):
+            i = self.lane_of[k]
+            self.elapsed[i] += self.finished[k]
+            index = min(np.int64(self.finished[k] * self.per_width), self.wide.size - 1)
+            self.counts[i, index] += 1
+            self.counts[i, self.wide[index]] += 1
+
+    def ended(self, i, replica, stretch):
+        """Add the counts of a chain and their squares."""
+        for k in range(self.sums.shape[1]):
+            self.sums[0, k] += self.counts[i, k]
+            self.sums[1, k] += self.counts[i, k] * self.counts[i, k]
+            self.counts[i, k] = 0
+        self.totals[replica - self.first] = self.elapsed[i]
+        return 0.0
 
 
-def record_intervals(scene, hop, seed, first, stop, chains, returns, bins, sums, going):
-    """Record the intervals between hops as ``record_returns`` does; ``bins`` are (width, wide)."""
+def record_intervals(
+    scene, hop, seed, first, stop, chains, returns, bins, sums, going, lanes=LANES
+):
+    """Add the intervals of the blocks ``first`` … ``stop`` − 1 to ``sums``, as in ``Returns``.
+
+    Each block has ``chains`` chains of as many intervals as ``returns``; ``bins`` are (width,
+    wide). ``going`` is an array to stop it with. Returns the total time of each chain.
+    """
+    width, wide = bins
     if scene.is_plain:  # initial states are drawn on the surface of vertical hops only
         scene, hop = hopping_along(scene, hop, "y")
-    return record_returns(
-        np.uint64(seed), first, stop, chains, LANES, returns, law_of(scene), *origins(scene),
-        True if hop == "horizontal_hop" else None, *bins, sums, going, new_kicks(scene, LANES),
-    )  # fmt: skip
+    horizontal = True if hop == "horizontal_hop" else None
+    recorded = Returns(
+        horizontal=horizontal,
+        wanted=float(returns),
+        per_width=1.0 / width,
+        wide=wide,
+        to_come=np.zeros(lanes),
+        age=np.zeros(lanes),
+        interval=np.zeros(lanes),
+        elapsed=np.zeros(lanes),
+        finished=np.zeros(lanes + 1),
+        lane_of=np.zeros(lanes + 1, np.int64),
+        counts=np.zeros((lanes, sums.shape[1]), np.int64),
+        sums=sums,
+        totals=np.zeros((stop - first) * chains),
+        first=first * chains,
+    )
+    sampler = start_sampler(scene, surface=1 if horizontal is None else 0)
+    follow(recorded, scene, sampler, seed, first, stop, chains, lanes, SWEEPS, going)
+    return recorded.totals
 
 
 def mean_interval(scene, hop):

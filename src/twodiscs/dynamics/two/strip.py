@@ -21,35 +21,24 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import (
-    LANES,
-    REPLICAS,
-    across,
-    kick_lanes,
-    new_kicks,
-    new_rows,
-    put_state,
-    state_at,
-)
-from twodiscs.dynamics.kicks import before_kick, open_kicks, renew_kicks
-from twodiscs.dynamics.law import END_OF_TIME, after_event, crosses, law_of, next_event
+from twodiscs.dynamics.ensemble import LANES, REPLICAS
+from twodiscs.dynamics.law import END_OF_TIME, crosses
+from twodiscs.dynamics.two.follow import across, follow
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import hopping_along
 from twodiscs.points.strata import PARTS, fractions_of_speeds, stratified_mean
 from twodiscs.sampling.blocks.rounds import SequentialRun, on_grid
-from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.prism import neck_of, prism_of, proposed_measure
-from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, kinetic_fraction_at, origins
-from twodiscs.sampling.streams import open_stream
+from twodiscs.sampling.prism import PrismSampler, neck_of, prism_of, proposed_measure
+from twodiscs.sampling.starts import kinetic_fraction_of, start_sampler
 from twodiscs.theory import exact
 
 #: Hops that come more often than once in this many events are counted from ordinary initial
 #: states.
 RARE = 40
 
-#: Passes between two searches for lanes that have ended: paths are short.
-PASSES = 2
+#: Sweeps between two searches for lanes that have ended: paths are short.
+SWEEPS = 2
 
 #: A strip is as wide as the neck if the density on its surface is at least ``FILL`` times the mean
 #: density in it. If it is at least ``NO_NECK`` times in the widest strip, there is no neck.
@@ -180,101 +169,79 @@ def rare_hops(scene):
     )
 
 
-@compiled
-def count_hops(
-    seed, first, stop, replicas, lanes, time, fastest, sizes, law, draw, prism, horizontal, kicks
-):
-    """Follow the starts of blocks ``first`` … ``stop`` − 1 for a ``time`` to either side.
+class HopsInStrip(NamedTuple):
+    """The experiment: hops in a ``time`` before and after an initial state, by its stratum.
 
-    A path ends if its discs would have to be faster than ``fastest`` to hop again. ``sizes`` are
-    the size of a stratum in |Δ|, the size of one in |Δ̇| if all energy is kinetic, and the number m
-    of the latter. Returns starts, Σ N and Σ N² by strata (3, ``PARTS``, m), and the wall and disc
-    events, all int64. The hops are vertical ones, or horizontal ones if ``horizontal`` is True
-    instead of None. ``kicks`` are those of the lanes, None without friction.
+    A path ends if its discs would have to be faster than ``fastest`` to hop again. ``near`` is the
+    size of a stratum in |Δ|, ``slow`` the size in |Δ̇| if all energy is kinetic. The hops are
+    vertical, or horizontal if ``horizontal`` is True instead of None. ``sums`` are initial states,
+    Σ N and Σ N² by strata (3, ``PARTS``, m), int64.
     """
-    rows, initial_states = new_rows(lanes, law), np.zeros((COMPONENTS, replicas))
-    origin, legs = np.zeros((COMPONENTS, lanes)), np.zeros(lanes, np.int64)
-    remaining, times, codes = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-    packed, near, slow = np.zeros(lanes), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64)
-    sums, events = np.zeros((3, PARTS, sizes[2]), np.int64), 0
-    block, used, running = first, replicas, 0
 
-    while True:
-        for i in range(lanes):
-            if remaining[i] > 0.0:
-                continue
-            if legs[i] == 1:
-                put_state(rows, i, origin[:, i], law)
-                renew_kicks(i, kicks)
-                remaining[i] = time
-                legs[i] = 2
-                continue
-            if legs[i] == 2:
-                count = np.int64(packed[i] * (1.0 / HOP))
-                events += np.int64(packed[i] - count * HOP)
-                sums[0, near[i], slow[i]] += 1
-                sums[1, near[i], slow[i]] += count
-                sums[2, near[i], slow[i]] += count * count
-                legs[i] = 0
-                running -= 1
-            if used == replicas and block < stop:
-                draw_any_starts(open_stream(seed, block), draw, (0, 0), initial_states, prism)
-                block, used = block + 1, 0
-            if used < replicas:
-                put_state(rows, i, initial_states[:, used], law)
-                open_kicks(i, seed, (block - 1) * replicas + used, kicks)
-                separation, speed = across(initial_states[:, used], horizontal)
-                speed /= math.sqrt(kinetic_fraction_at(initial_states, used, prism))
-                near[i] = min(np.int64(abs(separation) / sizes[0]), PARTS - 1)
-                slow[i] = min(np.int64(abs(speed) / sizes[1]), sizes[2] - 1)
-                for k in range(COMPONENTS):
-                    origin[k, i] = (
-                        -initial_states[k, used]
-                        if law_reverses(k, law)
-                        else initial_states[k, used]
-                    )
-                remaining[i], packed[i], legs[i] = time, 0.0, 1
-                used += 1
-                running += 1
-        if running == 0:
-            return sums, events
+    time: float
+    fastest: float
+    near: float
+    slow: float
+    prism: PrismSampler | None
+    horizontal: bool | None
+    packed: np.ndarray  # (lanes,), hops and events
+    stratum: np.ndarray  # (2, lanes)
+    sums: np.ndarray
+    events: np.ndarray  # (1,), wall hits and collisions
+    both_ways: bool | None = True
 
-        for _ in range(PASSES):
-            for i in range(lanes):
-                left = before_kick(remaining[i], i, kicks)
-                times[i], codes[i] = next_event(state_at(rows, i, law), left, law)
-            for i in range(lanes):
-                before, code, count = state_at(rows, i, law), codes[i], packed[i]
-                after = after_event(before, times[i], code, law)
-                put_state(rows, i, after, law)
-                separation, left = across(after, horizontal)[0], remaining[i] - times[i]
-                remaining[i] = left if abs(separation) <= fastest * left else 0.0
-                hop = crosses(across(before, horizontal)[0], separation)
-                count += HOP if hop else 0.0
-                packed[i] = count + (1.0 if code > END_OF_TIME else 0.0)
-            kick_lanes(rows, times, law, kicks)
+    def begin(self, i, state):
+        """Find the stratum of an initial state."""
+        separation, speed = across(state, self.horizontal)
+        speed /= math.sqrt(kinetic_fraction_of(state, self.prism))
+        self.stratum[0, i] = min(np.int64(abs(separation) / self.near), PARTS - 1)
+        self.stratum[1, i] = min(np.int64(abs(speed) / self.slow), self.sums.shape[2] - 1)
+        self.packed[i] = 0.0
+        return self.time
 
+    def note(self, i, before, after, code, time, left):
+        """Count a hop and an event; end the path if no other hop can follow."""
+        count, separation = self.packed[i], across(after, self.horizontal)[0]
+        hop = crosses(across(before, self.horizontal)[0], separation)
+        count += HOP if hop else 0.0
+        self.packed[i] = count + (1.0 if code > END_OF_TIME else 0.0)
+        return left if abs(separation) <= self.fastest * left else 0.0
 
-@compiled
-def law_reverses(k, law):
-    """Return whether component ``k`` of a start is a velocity or a spin."""
-    return 4 <= k < 8 or k >= (10 if law.depth is not None else 8)
+    def ended(self, i, replica, stretch):
+        """Go on from the reversed initial state; after that add the count to its stratum."""
+        if stretch == 1:
+            near, slow = self.stratum[0, i], self.stratum[1, i]
+            count = np.int64(self.packed[i] * (1.0 / HOP))
+            self.events[0] += np.int64(self.packed[i] - count * HOP)
+            self.sums[0, near, slow] += 1
+            self.sums[1, near, slow] += count
+            self.sums[2, near, slow] += count * count
+        return -self.time * (1 - stretch)
 
 
 def run_blocks(scene, hop, strip, seed, first, stop, *, replicas=REPLICAS, lanes=LANES):
     """Count a ``hop`` from starts in a ``Strip``, the blocks ``first`` … ``stop`` − 1.
 
-    Returns (sums, events) as ``count_hops`` does, integers that shards can add.
+    Returns (starts, Σ N, Σ N² by strata; wall hits and collisions), integers that shards can add.
     """
-    speeds = len(fractions_of_speeds(scene.velocity_components))
-    sizes = strip.within / PARTS, scene.fastest / PARTS, speeds
+    strata = PARTS, len(fractions_of_speeds(scene.velocity_components))
     if scene.is_plain:  # initial states are drawn near the surface of horizontal hops only
         scene, hop = hopping_along(scene, hop, "x")
-    horizontal = True if hop == "horizontal_hop" else None
-    return count_hops(
-        np.uint64(seed), first, stop, replicas, lanes, strip.time, strip.fastest, sizes,
-        law_of(scene), *origins(scene, hop, strip.within), horizontal, new_kicks(scene, lanes),
-    )  # fmt: skip
+    sampler = start_sampler(scene, hop, strip.within)
+    hops = HopsInStrip(
+        time=strip.time,
+        fastest=strip.fastest,
+        near=strip.within / PARTS,
+        slow=scene.fastest / PARTS,
+        prism=sampler.prism,
+        horizontal=True if hop == "horizontal_hop" else None,
+        packed=np.zeros(lanes),
+        stratum=np.zeros((2, lanes), np.int64),
+        sums=np.zeros((3, *strata), np.int64),
+        events=np.zeros(1, np.int64),
+    )
+    follow(hops, scene, sampler, seed, first, stop, replicas, lanes, SWEEPS)
+    return hops.sums, int(hops.events[0])
 
 
 def run_of(scene, hop, target, budget, seed):

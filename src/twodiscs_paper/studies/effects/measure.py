@@ -10,8 +10,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import REPLICAS, new_rows, put_state, state_at
+from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import law_of
+from twodiscs.dynamics.two.follow import new_rows, put_state, state_at
 from twodiscs.dynamics.two.path import time_to_next
 from twodiscs.figures.kit import curves
 from twodiscs.figures.kit.limits import limits
@@ -19,7 +20,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.points import estimates
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.starts import draw_any_starts, origins
+from twodiscs.sampling.starts import draw_states, start_sampler
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact, tails
 from twodiscs_paper.study import row
@@ -40,16 +41,15 @@ MEAN_TIMES = 20
 
 
 @compiled
-def follow_survivors(seed, first, stop, replicas, times, law, draw, prism):
+def follow_survivors(seed, first, stop, replicas, times, law, sampler):
     """Return how many starts of blocks ``first`` … ``stop`` − 1 have no collision by each time.
 
-    Starts, ``replicas`` a block, come from ``draw``, or from ``prism`` unless it is None. ``times``
-    ascend.
+    Starts, ``replicas`` a block, come from a ``StartSampler``. ``times`` ascend.
     """
     rows, starts = new_rows(1, law), np.zeros((12, replicas))
     survivors = np.zeros(times.size, np.int64)
     for block in range(first, stop):
-        draw_any_starts(open_stream(seed, block), draw, (0, 0), starts, prism)
+        draw_states(open_stream(seed, block), sampler, starts)
         for i in range(replicas):
             put_state(rows, 0, starts[:, i], law)
             elapsed = time_to_next(state_at(rows, 0, law), law, False, times[-1])
@@ -64,10 +64,8 @@ def survivors(scene, times, blocks, seed):
     The result is a list of integers, from ``blocks`` × ``REPLICAS`` starts of the invariant
     measure. The times ascend.
     """
-    law, (draw, prism) = law_of(scene), origins(scene)
-    counts = follow_survivors(
-        np.uint64(seed), 0, blocks, REPLICAS, np.array(times), law, draw, prism
-    )
+    law, sampler = law_of(scene), start_sampler(scene)
+    counts = follow_survivors(np.uint64(seed), 0, blocks, REPLICAS, np.array(times), law, sampler)
     return [int(n) for n in counts]
 
 

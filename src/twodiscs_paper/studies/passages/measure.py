@@ -26,9 +26,9 @@ from twodiscs.comparison.measured.transmission import (
     seed_of,
 )
 from twodiscs.comparison.scores import student_deviate
-from twodiscs.dynamics.ensemble import REPLICAS as STARTS
+from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.two import strip
-from twodiscs.dynamics.two.passages import REPLICAS, cluster_sizes, hop_sums
+from twodiscs.dynamics.two.passages import HOPS_OF_BLOCK, cluster_sizes, hop_sums
 from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
@@ -118,7 +118,7 @@ def blocks_for(scene, distance, time, events):
     """Return how many blocks of hops take about ``events``, if hops are followed for ``time``."""
     factor, power = MET[scene.moment_of_inertia is not None]
     price = time * exact.event_rate(scene) + factor / distance**power
-    return int(min(max(events / price, FEWEST_HOPS), MOST_HOPS)) // REPLICAS
+    return int(min(max(events / price, FEWEST_HOPS), MOST_HOPS)) // HOPS_OF_BLOCK
 
 
 def scene_at(box, hop, halvings, **effects):
@@ -261,11 +261,11 @@ class NearThreshold:
         (correlated,) = by_time(sums)
         yield self.row("diffusion", "hops", correlated, around, events=simulated)
         time = max(around, self.mean)
-        blocks = int(min(max(events / (rate * 2 * time), FEWEST), MOST_HOPS)) // REPLICAS
+        blocks = int(min(max(events / (rate * 2 * time), FEWEST), MOST_HOPS)) // HOPS_OF_BLOCK
         sums, simulated = hop_sums(
             self.scene, self.hop, [time, 2 * time], blocks, self._seed("states"), on_surface=False
         )
-        per_time = sums / (REPLICAS * time)
+        per_time = sums / (HOPS_OF_BLOCK * time)
         counted = mean_of(per_time[:, 2, 1] / 2)
         yield self.row("rate", "states", counted, 2 * time, 1 / self.mean, simulated)
         # Displacements in the second half of the time no longer depend on the start.
@@ -280,7 +280,7 @@ class NearThreshold:
         fractions = strip.fractions_of(self.scene, self.hop, around)
         per_time = around.fraction / (2 * around.time)
         mean, error = (per_time * part for part in strata.stratified_mean(fractions, *sums))
-        found = Estimate(mean, error, blocks * STARTS)
+        found = Estimate(mean, error, blocks * REPLICAS)
         return self.row("rate", "states", found, 2 * around.time, 1 / self.mean, int(events))
 
 
@@ -297,9 +297,9 @@ def one_hop(name, box, hop, halvings, inertia, events, seed):
         blocks = blocks_for(scene, 2.0**-n, both, IN_PAUSES * events)
         kappa, rows = near.clusters(blocks)
         yield from rows
-        yield from near.curve(max(blocks // RECORDED, FEWEST_HOPS // REPLICAS), kappa)
+        yield from near.curve(max(blocks // RECORDED, FEWEST_HOPS // HOPS_OF_BLOCK), kappa)
         if inertia is None:
-            yield from near.slope(MOST_HOPS // REPLICAS)
+            yield from near.slope(MOST_HOPS // HOPS_OF_BLOCK)
         if kappa:
             measured.append((near, kappa))
     yield from exponents(measured)
@@ -334,7 +334,7 @@ def one_friction(name, box, friction, halvings, events, seed):
         gap = PAUSE * box_time(scene, near.hop)
         price = 2 * gap * (exact.event_rate(scene) + KICK * friction)
         hops = min(max(WORK * events / price, FEWEST_KICKED), MOST_HOPS)
-        found = cluster_sizes(scene, near.hop, gap, int(hops) // REPLICAS, near.cluster_seed)
+        found = cluster_sizes(scene, near.hop, gap, int(hops) // HOPS_OF_BLOCK, near.cluster_seed)
         kappa, rows = near.of_sizes(*found, gap)
         yield from rows
         if n == halvings[0]:
@@ -519,7 +519,7 @@ def cluster_counts(one):
     ``sizes`` are pairs [n, how many of the hops are in a cluster of n], without those of none;
     "of" is how many sizes are told apart.
     """
-    found, blocks = [], -(-one["hops"] // REPLICAS)
+    found, blocks = [], -(-one["hops"] // HOPS_OF_BLOCK)
     for near, gap in at_distances(one):
         sizes, events = cluster_sizes(near.scene, near.hop, gap, blocks, near.cluster_seed)
         pairs = [[n, int(hops)] for n, hops in enumerate(sizes) if hops]

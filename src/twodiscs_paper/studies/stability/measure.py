@@ -17,8 +17,9 @@ from twodiscs.comparison import scores
 from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.comparison.tables.theory import Theory
 from twodiscs.dynamics import counting
-from twodiscs.dynamics.ensemble import REPLICAS, find_events, new_rows, put_state, state_at
+from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import after_event, contact_quotient, law_of, wall_quotient
+from twodiscs.dynamics.two.follow import find_events, new_rows, put_state, state_at
 from twodiscs.dynamics.two.path import advance
 from twodiscs.model.checks import LARGEST_INTEGER
 from twodiscs.model.events import EVENTS, HOPS

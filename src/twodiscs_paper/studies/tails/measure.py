@@ -20,8 +20,9 @@ from itertools import pairwise, starmap
 import numpy as np
 
 from twodiscs.comparison.scores import chi2_p
-from twodiscs.dynamics.ensemble import across, nearest_power_of_two
+from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import DISC, crosses, crossing_time, law_of
+from twodiscs.dynamics.two.follow import across
 from twodiscs.dynamics.two.path import advance, time_to_next
 from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
