@@ -1,7 +1,6 @@
 """Cases for tests of figures: boxes, tables drawn from the exact theory, the texts in figures."""
 
 from functools import cache
-from importlib import import_module
 from itertools import combinations, pairwise
 from unittest.mock import patch
 
@@ -11,6 +10,7 @@ from matplotlib.text import Text
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.dynamics.intervals import wide_edges
 from twodiscs.figures.catalogue import FIGURES
+from twodiscs.figures.draw import draw as draw_figure
 from twodiscs.model import radii
 from twodiscs.model.box import Box
 from twodiscs.theory import exact
@@ -22,6 +22,7 @@ BOXES = {
     "tall": Box(1.0, 1.5),
     "double": Box(2.0, 1.0),
     "nearly square": Box(1.05, 1.0),
+    "ten": Box(10.0, 1.0),
     "very long": Box(40.0, 1.0),
     "very tall": Box(0.1, 1.0),
     "tiny": Box(3e-6, 1e-5),
@@ -32,10 +33,9 @@ PAPER = BOXES["paper"]
 
 
 def draw(name, box, tables):
-    """Draw a figure of the catalogue as its job does, with the tables that it reads."""
-    entry = FIGURES[name]
-    given = {table: tables[table] for table in entry.tables}
-    return import_module(entry.module).draw(box, given, **entry.options)
+    """Draw a figure of the catalogue as its job does, with the table that it reads."""
+    rows = [tables[table] for table in FIGURES[name].tables]
+    return draw_figure(name, box, *rows)
 
 
 # Tables -------------------------------------------------------------------------------------------

@@ -17,7 +17,7 @@ from twodiscs.comparison.measured.result import Result
 from twodiscs.figures.kit import style
 from twodiscs_paper.catalogue import ENTRIES, STUDIES, STUDY_FIGURES, TABLES
 from twodiscs_paper.configuration.schema import described_keys
-from twodiscs_paper.pipeline.documents import captions, explorer
+from twodiscs_paper.pipeline.documents import explorer
 from twodiscs_paper.pipeline.documents.manuscript import PaperNumbers
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -144,7 +144,7 @@ def picture(name, title, site):
 def gallery(text, site):
     """Return the page of all figures, each with its caption and the lines that draw it."""
     for name, entry in ENTRIES.items():
-        caption = _plain(captions.caption(entry, EXPECTED, PAPER))
+        caption = _plain(entry.caption(BOX))
         text += f"\n## {entry.title}\n\n{picture(name, entry.title, site)}\n\n{caption}\n"
         text += f"\n```text\nsnakemake --cores 2 {target(name)}\n```\n"
         if line := in_python(name):

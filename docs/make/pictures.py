@@ -7,12 +7,13 @@ draws them from a finished build of config/config.yaml.
 
 import re
 import sys
-from importlib import import_module
 from pathlib import Path
 
+from twodiscs.figures.draw import draw as draw_figure
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 from twodiscs_paper.catalogue import ENTRIES, TABLES
+from twodiscs_paper.drawings import DRAW
 
 #: The box of the pictures and its scene, the first of config/config.yaml.
 BOX = Box(1.5, 1.0)
@@ -43,17 +44,20 @@ def draw(name, results):
         if path is None:
             return None
         tables[table] = TABLES[table].read(path)
-    return import_module(entry.module).draw(box=BOX, tables=tables, **entry.options)
+    if name in DRAW:
+        return DRAW[name](BOX, tables)
+    return draw_figure(name, BOX, *tables.values())
 
 
 def keep_panel(figure, number, abscissa):
     """Leave one panel of a figure, as wide as a column."""
+    figure.set_layout_engine("none")
     kept = figure.axes[number]
     for axes in figure.axes:
         axes.set_visible(axes is kept)
     figure.set_size_inches(style.COLUMN, HEIGHT)
     kept.set_position(PLACE)
-    for text in kept.texts:
+    for text in (*kept.texts, kept.title, kept._left_title):
         text.set_text(re.sub(r"\([a-z]\) ?", "", text.get_text()))
     for legend in figure.legends:
         legend.set_visible(False)

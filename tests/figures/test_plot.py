@@ -1,5 +1,10 @@
 """Figures of the face: no measured value is lost, in new axes or in the user's."""
 
+import copy
+import pickle
+from concurrent.futures import ThreadPoolExecutor
+
+import matplotlib
 import numpy as np
 import pytest
 from figure_cases import bars, covered, points
@@ -107,6 +112,54 @@ def test_what_a_transmission_leaves_falls_at_twice_its_rate():
     kappa = found.coefficient.value
     expected = kappa * np.exp(-2 * kappa * times / found.exact_mean)
     np.testing.assert_allclose(values, expected, rtol=1e-12)
+
+
+# The user's process and axes ----------------------------------------------------------------------
+
+
+def pixels(path):
+    return np.asarray(Image.open(path).convert("RGB"))
+
+
+def test_a_returned_figure_is_saved_as_plot_saves_it(tmp_path):
+    """By its own method, after it was pickled, and as a notebook shows a copy that was changed."""
+    figure = td.plot(scan(HOPS), tmp_path / "ours.png")
+    figure.savefig(tmp_path / "own.png")
+    pickle.loads(pickle.dumps(figure)).savefig(tmp_path / "pickled.png")
+    ours = pixels(tmp_path / "ours.png")
+    for name in ("own", "pickled"):
+        np.testing.assert_array_equal(pixels(tmp_path / f"{name}.png"), ours)
+    figure.savefig(tmp_path / "own.pdf")
+    assert b"/Type3" not in (tmp_path / "own.pdf").read_bytes()
+    other = copy.deepcopy(figure)
+    other.axes[0].set_title("another")
+    assert other._repr_png_() != figure._repr_png_()
+
+
+def test_plots_in_threads_leave_the_settings_of_matplotlib_alone():
+    found, before = scan(HOPS), dict(matplotlib.rcParams)
+    expected = td.plot(found)._repr_png_()
+    with ThreadPoolExecutor(4) as pool:
+        figures = [*pool.map(lambda _: td.plot(found), range(8))]
+    assert dict(matplotlib.rcParams) == before
+    assert all(figure._repr_png_() == expected for figure in figures)
+
+
+def test_axes_of_the_user_may_be_in_a_part_of_a_figure(tmp_path):
+    parts = Figure().subfigures(1, 2)
+    drawn = td.plot(scan(HOPS), tmp_path / "part.png", ax=parts[0].add_subplot())
+    assert drawn is parts[0].get_figure(root=True)
+    assert (tmp_path / "part.png").exists()
+
+
+@pytest.mark.parametrize(
+    "axes",
+    [Figure().add_subplot(projection="3d"), Figure().subplots(2), Figure(), "main"],
+    ids=["3d", "array", "figure", "text"],
+)
+def test_other_axes_are_refused(axes):
+    with pytest.raises(td.InputError, match="ax must be one plane Axes of matplotlib, not "):
+        td.plot(scan(HOPS), ax=axes)
 
 
 # Animations ---------------------------------------------------------------------------------------

@@ -3,17 +3,15 @@
 import numpy as np
 import pytest
 from figure_cases import BOXES, PAPER, bars, covered, draw, points, simulated, tables_of, unclear
-from matplotlib import rcParams
 
+from twodiscs.figures import radius
 from twodiscs.figures.catalogue import FIGURES
-from twodiscs.figures.kit import curves, panels, style
-from twodiscs.figures.kit.captions import Shown
-from twodiscs.figures.radius import over_radius
+from twodiscs.figures.kit import curves, style
 from twodiscs.model.box import Box
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import leading_law, small_radius_time
 
-OVER_RADIUS = [name for name, entry in FIGURES.items() if ".radius." in entry.module]
+OVER_RADIUS = [name for name in radius.OVER_RADIUS if name in FIGURES]
 
 
 @pytest.fixture(scope="module")
@@ -22,24 +20,11 @@ def figures():
         return {name: draw(name, PAPER, tables_of("paper")) for name in OVER_RADIUS}
 
 
-#: {figure: its quantities, in the order of colours and markers}
-QUANTITIES = {
-    "volume": ["volume"],
-    "vertical_hop_area": ["vertical_hop_area"],
-    "horizontal_hop_area": ["horizontal_hop_area"],
-    "collision_area": ["disc_collision_area"],
-    "wall_area": [f"{event}_area" for event in over_radius.WALLS],
-    "mean_hop_time": ["vertical_hop_time", "horizontal_hop_time"],
-    "mean_collision_time": ["disc_collision_time"],
-    "mean_wall_time": [f"{event}_time" for event in over_radius.WALLS],
-}
-
-
 @pytest.mark.parametrize("name", OVER_RADIUS)
 def test_each_quantity_has_its_own_curve_and_estimates(figures, name):
     """Estimates with their standard errors, and residuals, as in the rows of the table."""
     radii, exact = curves.exact_curves(PAPER)
-    names, (main, lower) = QUANTITIES[name], figures[name].axes[:2]
+    names, (main, lower) = [*radius.OVER_RADIUS[name].names], figures[name].axes[:2]
     drawn = [line for line in main.lines if len(line.get_xdata()) == len(radii)]
     assert len(drawn) == len(names)
     assert FIGURES[name].needs == {*names}
@@ -50,7 +35,7 @@ def test_each_quantity_has_its_own_curve_and_estimates(figures, name):
         rows = [
             row
             for row in tables_of("paper")[FIGURES[name].tables[0]]
-            if over_radius.quantity_of(row) == quantity and row["stderr"]
+            if radius.quantity_of(row) == quantity and row["stderr"]
         ]
         assert rows
         shown = [(r, y, s) for r, y, s in bars(main, colour, marker) if s]
@@ -83,7 +68,7 @@ def asymptotes(axes):
 def test_limiting_laws_run_into_the_curves(figures):
     """The law for small discs begins at the limit r → 0, and that of the end ends on the curve."""
     small, last = asymptotes(figures["mean_collision_time"].axes[0])
-    assert small[0][-1] == over_radius.SMALL * PAPER.largest_radius
+    assert small[0][-1] == radius.SMALL * PAPER.largest_radius
     assert small[1][0] == small_radius_time(PAPER, "disc_collision", small[0][0])
     time = mean_times(PAPER.scene(float(last[0][-1])))["disc_collision"]
     assert last[1][-1] == pytest.approx(time, rel=1e-3)
@@ -97,7 +82,7 @@ def test_times_approach_the_end_of_their_hop(figures):
     for (event, end), (distances, times) in zip(ends.items(), asymptotes(lower), strict=True):
         law = leading_law(PAPER, event)
         np.testing.assert_allclose(times, law.coefficient * (end * distances) ** -2, rtol=1e-5)
-        assert distances.max() < over_radius.LAW
+        assert distances.max() < radius.LAW
     rows = [r for r in tables_of("paper")["mean_times"] if r["event"] == "horizontal_hop"]
     shown = {x for line in lower.lines if line.get_marker() == "s" for x in line.get_xdata()}
     assert shown == {1 - row["radius"] / 0.25 for row in rows if row["stderr"]}
@@ -116,7 +101,7 @@ def test_the_legend_leaves_out_what_is_never_seen():
     with style.context():
         main = draw("mean_wall_time", box, {"mean_times": rows}).axes[0]
     legend = main.get_legend()
-    names = over_radius.WALLS["right_wall"], over_radius.WALLS["any_wall"]
+    names = radius.WALLS["right_wall"], radius.WALLS["any_wall"]
     assert tuple(text.get_text() for text in legend.get_texts()) == names
     shown = [(handle.get_color(), handle.get_marker()) for handle in legend.legend_handles]
     assert shown == [style.SERIES[0], style.SERIES[2]]
@@ -167,7 +152,7 @@ def test_an_estimate_above_the_curve_is_in_the_picture():
 
 
 def test_where_nothing_is_known_there_are_symbols_only():
-    """No residuals, no curves that approach an end, and nothing about them in the caption."""
+    """No residuals, and no curves that approach an end."""
     ring = Box(1.5, 1.0, {"periodic": "x"}, discs=3)
     unknown = {"exact": None, "z": None, "test": None, "status": "counted", "bound": None}
     rows = [
@@ -185,14 +170,10 @@ def test_where_nothing_is_known_there_are_symbols_only():
         (axes,) = figure.axes
         assert axes.get_xlabel() == "radius $r$"
         assert any(label.label1.get_visible() for label in axes.xaxis.get_major_ticks())
-        caption = FIGURES[name].caption(Shown(ring, None, shown))
-        assert "Residuals" not in caption
-        assert "(b)" not in caption
-        assert "If no exact value is known there is no line and no residual." in caption
 
 
 def test_curves_are_drawn_to_their_end_without_any_residual():
-    """Times from too few events for an error: a panel for them, one beneath, and both explained."""
+    """Times from too few events for an error: a panel for them and one beneath."""
     rows = [
         row | {"stderr": None, "z": None, "status": "too-few"}
         for row in tables_of("paper")["mean_times"]
@@ -203,32 +184,6 @@ def test_curves_are_drawn_to_their_end_without_any_residual():
     main, approach = figure.axes
     assert main.get_xlabel() == "radius $r$"
     assert approach.get_xlabel().startswith("relative distance")
-    caption = FIGURES["mean_hop_time"].caption(Shown(PAPER, None, rows))
-    assert "In (b) the same times" in caption
-    assert "Residuals" not in caption
-
-
-def test_a_legend_keeps_away_from_symbols():
-    """It moves if a symbol is half of a letter's height beside it."""
-    ring = Box(1.5, 1.0, {"periodic": "x"}, discs=3)
-    symbol = panels.open_symbol(*style.SERIES[0])
-    with style.context():
-        figure = style.new_figure(2.5)
-        axes = panels.add_panel(figure, 0.4, 2.0)
-        axes.set(xlim=(0, 1), ylim=(0, 1))
-        axes.plot([0.9], [0.95], ls="", **symbol)
-        letter = rcParams["legend.fontsize"] / 72 * figure.dpi
-
-        def place():
-            one = panels.Series("", [], np.array([np.nan]))
-            panels.legend(axes, ring, [one], "best", single="MD")
-            figure.draw_without_rendering()
-            return axes.get_legend().get_texts()[0].get_window_extent()
-
-        before = place()
-        beside = (before.x1 + letter / 2, (before.y0 + before.y1) / 2)
-        axes.plot(*axes.transData.inverted().transform(beside), ls="", **symbol)
-        assert not place().padded(letter).contains(*beside)
 
 
 @pytest.mark.filterwarnings("error")

@@ -2,7 +2,6 @@
 
 import math
 from functools import cache
-from importlib import import_module
 from itertools import groupby, pairwise
 from pathlib import Path
 
@@ -18,6 +17,7 @@ from twodiscs.figures.kit.looks import LOOKS
 from twodiscs.model.events import HOPS, SHELLS
 from twodiscs.theory import exact, laws, virial
 from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES
+from twodiscs_paper.drawings import DRAW
 from twodiscs_paper.studies.effects import figure as effects
 from twodiscs_paper.studies.passages import figure as passages
 from twodiscs_paper.studies.passages import figure_diffusion as diffusion
@@ -46,7 +46,7 @@ def drawn(name):
     entry = (FIGURES | STUDY_FIGURES)[name]
     tables = {name: table(name) for name in (*entry.tables, *entry.main_tables)}
     with style.context():
-        figure = import_module(entry.module).draw(box=PAPER, tables=tables, **entry.options)
+        figure = DRAW[name](PAPER, tables) if name in DRAW else draw(name, PAPER, tables)
     return {axes.get_label() or i: axes for i, axes in enumerate(figure.axes)}
 
 
@@ -72,15 +72,15 @@ def cases():
             and row["stderr"] < 0.3 * row["estimate"]
         ]
         if all(law for *_, law in own):
-            yield "tails", 1, *look, [(t, y / law, s / law) for t, y, s, law in own]
+            yield "tails", "ratio", *look, [(t, y / law, s / law) for t, y, s, law in own]
         else:
-            yield "tails", 2, *look, [(t, y, s) for t, y, s, _ in own]
+            yield "tails", "exponential", *look, [(t, y, s) for t, y, s, _ in own]
     rows = [row for row in table("more_discs") if row["dynamics"] and row["dynamics"] < 1000]
-    for i, radius in enumerate(sorted({row["radius"] for row in rows})):
+    for radius in sorted({row["radius"] for row in rows}):
         for event, look in LOOKS.items():
             own = of(rows, radius=radius, event=event)
             due = [(row["discs"], row["dynamics"], row["dynamics_stderr"]) for row in own]
-            yield "more_discs", i, *look, due
+            yield "more_discs", f"radius {radius}", *look, due
     rows = [row for row in table("effects") if row["quantity"] != "never_met_share"]
     for k, scene in enumerate(dict.fromkeys(row["scene"] for row in rows)):
         for i, event in enumerate(effects.SHOWN_EVENTS):
@@ -90,7 +90,7 @@ def cases():
                 for row in own
                 if row["stderr"] and row["plain"]
             ]
-            yield "effects", 2 * i, *effects._look(k), due
+            yield "effects", "abc"[i], *effects._look(k), due
     rows = of(table("stability"), part="coverage")
     radii = sorted({row["radius"] for row in rows})
     for i, (event, look) in enumerate(LOOKS.items()):
@@ -203,7 +203,7 @@ def _pressure():
     rows = [row for row in table("mean_times") if row["stderr"] is not None]
     factors = (
         ("main", dict.fromkeys(("right_wall", "top_wall"), virial.pressure_factor)),
-        ("virials", {
+        ("beneath", {
             event: lambda scene, event: abs(virial.weights(scene)[event])
             for event in ("right_wall", "top_wall", "disc_collision")
         }),
@@ -226,9 +226,9 @@ def _thresholds():
             own = [(1 - r["radius"] / law.limit, r["estimate"], r["stderr"]) for r in rows]
             units = [law(row["radius"]) for row in rows]
             if event in HOPS:
-                yield "thresholds", 0, *look, own
+                yield "thresholds", "hops", *look, own
             due = [(x, y / unit, s / unit) for (x, y, s), unit in zip(own, units, strict=True)]
-            yield "thresholds", 1, *look, due
+            yield "thresholds", "ratios", *look, due
 
 
 def _distributions():
@@ -242,7 +242,7 @@ def _distributions():
             for mean in [row["exact_mean"]]
             if row["stderr"] < 0.15 * row["estimate"]
         ]
-        yield "distributions", 0, *look, due
+        yield "distributions", "rates", *look, due
     for hop, look in zip(HOPS, style.SERIES, strict=False):
         own = of(rows, event=hop, quantity="first_passage", last=None)
         columns = (("estimate", "stderr"), ("reference", "reference_stderr"))
@@ -251,7 +251,7 @@ def _distributions():
             for row in own
             for y, s in columns
         ]
-        yield "distributions", 1, *look, due
+        yield "distributions", "passages", *look, due
 
 
 CASES = [case for case in cases() if case[-1]]
@@ -370,7 +370,7 @@ def test_tails_are_those_of_the_table_with_their_laws():
             if row["stderr"] and row["stderr"] < 0.3 * row["estimate"]
         ]
         rates = of(own, quantity="rate")
-        axes = drawn("tails")[2 if rates else 0]
+        axes = drawn("tails")["exponential" if rates else "tails"]
         assert points(axes, *look) == {(t, p) for t, p, _ in shown}
         line = next(n for n in axes.lines if n.get_color() == look[0] and n.get_marker() == "None")
         times, values = line.get_data()
@@ -385,7 +385,7 @@ def test_tails_are_those_of_the_table_with_their_laws():
 
 
 def test_curves_of_thresholds_are_exact_and_crosses_are_first_passages():
-    hops, ratios = (drawn("thresholds")[i] for i in range(2))
+    hops, ratios = drawn("thresholds").values()
     for event, (colour, _) in LOOKS.items():
         law = laws.leading_law(PAPER, event) if event in SHELLS else None
         if law is None:
@@ -426,7 +426,7 @@ def test_curves_of_pressures_are_exact():
 
 def test_rates_that_are_not_constant_are_dotted():
     rows = of(table("distributions"), scene=table("distributions")[0]["scene"])
-    shown = [line for line in drawn("distributions")[0].lines if line.get_linewidth() == 1.4]
+    shown = [line for line in drawn("distributions")["rates"].lines if line.get_linewidth() == 1.4]
     found = {
         (line.get_color(), float(line.get_ydata()[0])): line.get_linestyle()
         for line in shown

@@ -13,7 +13,6 @@ from snakemake.iocontainers import Namedlist
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.model.checks import InputError
 from twodiscs.points.digests import digest, read_json, write_json
-from twodiscs_paper.catalogue import ENTRIES
 from twodiscs_paper.pipeline import job
 from twodiscs_paper.pipeline.cost import run_of
 
@@ -174,7 +173,6 @@ def test_a_figure_names_its_code_and_its_tables(run, points, tmp_path):
     params = {
         "box": PARAMETERS,
         "names": ["volume"],
-        "options": ENTRIES["volume"].options,
         "radius": None,
         "seed": 1,
     }

@@ -3,7 +3,6 @@
 import dataclasses
 import inspect
 import json
-from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -14,6 +13,7 @@ from twodiscs.model.effects import EFFECTS
 from twodiscs_paper import catalogue
 from twodiscs_paper.catalogue import STUDIES, STUDY_TABLES
 from twodiscs_paper.configuration.load import load, read
+from twodiscs_paper.drawings import DRAW
 
 CONFIG = Path(__file__).parents[2] / "config"
 every_study = pytest.mark.parametrize("study", STUDIES.values(), ids=STUDIES)
@@ -131,9 +131,9 @@ def test_a_configuration_without_plain_scenes_has_studies(only_effects):
 def test_figures_are_drawn_from_tables_of_the_study_or_of_one_before(study):
     names = list(STUDY_TABLES)
     known = names[: names.index(study.tables[-1].name()) + 1]
-    for entry in study.figures.values():
-        assert callable(import_module(entry.module).draw)
-        assert entry.module.startswith(f"twodiscs_paper.studies.{study.name}.")
+    for name, entry in study.figures.items():
+        module = inspect.getmodule(DRAW[name]).__name__
+        assert module.startswith(f"twodiscs_paper.studies.{study.name}.")
         assert set(entry.tables) <= set(known)
         assert {table.name() for table in study.tables} <= set(entry.tables)
         assert not entry.needs

@@ -14,10 +14,6 @@ from browser import ABSENT, BROWSER
 
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs_paper.catalogue import STUDY_FIGURES
-from twodiscs_paper.pipeline.documents.captions import caption
-
-#: The scene that figures of no scene are about.
-SIX = {"name": "six", "width": 1.5, "height": 1.0}
 
 pytestmark = pytest.mark.skipif(BROWSER is None, reason=ABSENT)
 
@@ -173,7 +169,7 @@ def test_key_figures_have_their_captions_beneath_them(front, complete):
         # Nearly as wide as a column of a journal in its natural size, or as the window.
         assert figure["shown"] > 300
     for figure in key:
-        text = caption(titles[figure["title"]], complete.path / "results", SIX)
+        text = titles[figure["title"]].caption()
         if "Scene walls" not in figure["caption"]:
             assert text.replace("_", "") in plain(figure["caption"])
         # Who does not see the picture hears what it shows.

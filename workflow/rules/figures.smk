@@ -27,7 +27,6 @@ rule figure:
     params:
         box=box,
         names=lambda w: [*figure_reads(w)],
-        options=lambda w: ENTRIES[w.figure].options,
         radius=radius,
         seed=CONFIGURATION.seed,
     script:

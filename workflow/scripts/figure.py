@@ -1,12 +1,12 @@
 """A figure, or the animation, from its tables."""
 
-from importlib import import_module
-
+from twodiscs.figures import draw
 from twodiscs.figures.kit import style
 from twodiscs.figures.motion import animation
 from twodiscs.model.box import Box
 from twodiscs.points.digests import digest
-from twodiscs_paper.catalogue import ENTRIES, read_table
+from twodiscs_paper.catalogue import read_table
+from twodiscs_paper.drawings import DRAW
 from twodiscs_paper.pipeline.job import start
 
 start(snakemake.log[0])
@@ -14,13 +14,15 @@ params, wildcards, files = snakemake.params, snakemake.wildcards, snakemake.inpu
 paths = zip(params.names, files.tables, strict=True)
 tables = {name: read_table(path) for name, path in paths}
 box = params.box and Box(**params.box)
-more = {} if params.radius is None else {"radius": params.radius}
+name, radius = wildcards.figure, params.radius
 with style.context():
-    if wildcards.figure == "animation":
-        animation.animate(rows=tables["trajectory"], paths=list(snakemake.output), box=box, **more)
+    if name == "animation":
+        animation.animate(box, radius, tables["trajectory"], list(snakemake.output))
     else:
-        module = import_module(ENTRIES[wildcards.figure].module)
-        figure = module.draw(box=box, tables=tables, **params.options, **more)
+        if name in DRAW:
+            figure = DRAW[name](box, tables)
+        else:
+            figure = draw.draw(name, box, *tables.values(), radius=radius)
         scene = f"scene {wildcards.scene}, " if wildcards.get("scene") else ""
         code = digest(*files.code, *files.own_code)[:16]
         origin = f"twodiscs: {scene}seed {params.seed}, code {code}"

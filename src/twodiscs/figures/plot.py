@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import sys
 import warnings
-from functools import partial
-from importlib import import_module
 from operator import attrgetter
 from typing import TYPE_CHECKING
+
+from matplotlib.axes import Axes
 
 from twodiscs.comparison.measured.measurements import Intervals, Measurements, the_scene
 from twodiscs.comparison.measured.observe import Observed
 from twodiscs.comparison.measured.scan import Scan
 from twodiscs.comparison.measured.transmission import Transmission
-from twodiscs.figures import together
+from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import FIGURES
+from twodiscs.figures.draw import OF_A_BOX, draw
 from twodiscs.figures.kit import style
-from twodiscs.figures.radius.over_radius import quantity_of
+from twodiscs.figures.motion import over_time
+from twodiscs.figures.radius import OVER_RADIUS, add, quantity_of
 from twodiscs.model.box import Box
 from twodiscs.model.checks import (
     InputError,
@@ -28,7 +30,6 @@ if TYPE_CHECKING:
     from os import PathLike
 
     import pandas as pd
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
@@ -98,59 +99,42 @@ def plot(
     """
     if ax is not None:
         return _beside(result, path, figure, ax)
-    draw = _over_time(result, figure) or _in_catalogue(result, figure)
     with style.context():
-        drawn = draw()
+        drawn = _draw(result, figure)
+        drawn.settle()
         if path is not None:
             style.save(drawn, path)
-    # A notebook shows it with the same settings.
-    drawn._repr_png_ = lambda: _png(drawn)
     if hasattr(sys, "ps1") and "IPython" not in sys.modules:
         _show(drawn)
     return drawn
 
 
-def _over_time(result, figure):
-    """Return the function that draws a result over time, None for other results."""
-    for kind, name in ((Observed, "observed"), (Transmission, "transmission")):
-        if isinstance(result, kind):
-            from twodiscs.figures.motion import over_time
-
-            check_choice("figure", name if figure is None else figure, [name])
-            return partial(getattr(over_time, name), result)
-
-
-def _in_catalogue(result, figure):
-    """Return the function that draws a result in a figure of the workflow."""
-    box, tables, fitting, options = _what(result)
+def _draw(result, figure):
+    """Return the drawn figure of a result; ``figure`` is its name, None for the first that fits."""
+    if isinstance(result, Observed):
+        check_choice("figure", figure or "observed", ["observed"])
+        return over_time.observed(result)
+    if isinstance(result, Transmission):
+        check_choice("figure", figure or "transmission", ["transmission"])
+        return over_time.transmission(result)
+    box, rows, fitting, radius = _what(result)
     if not fitting:
-        if "table" in getattr(result, "attrs", {}) and "box" not in result.attrs:
+        table = getattr(result, "attrs", {}).get("table")
+        if table is not None and table not in SCENE_TABLES:
+            raise InputError(f"result must be a table of a scene, not the study {table!r}")
+        if table is not None and "box" not in result.attrs:
             raise InputError(
                 f"result must be a table beside the configuration.json of its build, but "
-                f"{result.attrs['table']!r} has none; the target report writes it"
+                f"{table!r} has none; the target report writes it"
             )
         raise InputError(f"result must be {DRAWN}, with a quantity of a figure, not {result!r:.80}")
-    name = _chosen(figure, fitting, tables)
-    if name in together.KINDS:
-        return partial(together.draw, box, {name: tables}, name)
-    entry = FIGURES[name]
-    if not box.is_plain and not entry.needs:
+    name = _chosen(figure, fitting, rows)
+    if not box.is_plain and name in OF_A_BOX:
         more = ", ".join(f"{name} {value}" for name, value in box.calls_for.items())
         raise InputError(
             f"scene must be two plain discs for a drawing, but it has {more}; plot a trajectory"
         )
-    draw = import_module(entry.module).draw
-    return partial(draw, box, dict.fromkeys(entry.tables, tables), **entry.options, **options)
-
-
-def _is_over_radius(name):
-    """Return whether the figure ``name`` shows quantities over the radius."""
-    return name in together.KINDS or ".radius." in FIGURES[name].module
-
-
-def _shown_by(name):
-    """Return the quantities that the figure ``name`` shows."""
-    return together.names_of(name)[0].keys() if name in together.KINDS else FIGURES[name].needs
+    return draw(name, box, rows, radius)
 
 
 def _chosen(figure, fitting, rows):
@@ -160,28 +144,31 @@ def _chosen(figure, fitting, rows):
     """
     if figure is not None:
         return check_choice("figure", figure, fitting)
-    if _is_over_radius(fitting[0]):
-        shown = _shown_by(fitting[0])
+    if fitting[0] in OVER_RADIUS:
+        shown = OVER_RADIUS[fitting[0]].names
         others = dict.fromkeys(q for q in map(quantity_of, rows) if q not in shown)
         if others:
             warnings.warn(
                 f"the figure {fitting[0]} does not show {', '.join(others)}; "
                 f"figure= chooses one of {', '.join(fitting)}",
-                stacklevel=6,
+                stacklevel=5,
             )
     return fitting[0]
 
 
-def _beside(result, path, figure, axes):
+def _beside(result, path, name, axes):
     """Draw quantities over the radius into ``axes`` of another figure, which is returned."""
+    if not isinstance(axes, Axes) or axes.name != "rectilinear":
+        raise InputError(f"ax must be one plane Axes of matplotlib, not {axes!r:.80}")
     box, rows, fitting, _ = _what(result)
-    fitting = [name for name in fitting if _is_over_radius(name)]
+    fitting = [name for name in fitting if name in OVER_RADIUS]
     if not fitting:
         raise InputError(f"result must be over the radius to be drawn in ax, not {result!r:.80}")
-    together.add(axes, box, rows, _shown_by(_chosen(figure, fitting, rows)))
+    add(axes, box, rows, OVER_RADIUS[_chosen(name, fitting, rows)].names)
+    figure = axes.get_figure(root=True)
     if path is not None:
-        style.save(axes.figure, path)
-    return axes.figure
+        style.save(figure, path)
+    return figure
 
 
 def _show(figure):
@@ -194,20 +181,11 @@ def _show(figure):
         backend.FigureCanvas.new_manager(figure, 1).show()
 
 
-def _png(figure):
-    from io import BytesIO
-
-    stream = BytesIO()
-    with style.context():
-        figure.savefig(stream, format="png", dpi=150)
-    return stream.getvalue()
-
-
 def _what(result):
-    """Return (box, rows, names of the figures that show them, options of these figures)."""
+    """Return (box, rows, names of the figures that show them, radius of a trajectory)."""
     scene = the_scene(result)
     if isinstance(result, Box) or result is scene is not None:
-        return result if isinstance(result, Box) else Box.of(scene), [], _drawings(), {}
+        return result if isinstance(result, Box) else Box.of(scene), [], [*OF_A_BOX], None
     results = [*result] if isinstance(result, list | tuple | Scan) else [result]
     results = [one for some in results for one in (some if isinstance(some, Scan) else [some])]
     for kind in (Measurements, Intervals):
@@ -224,7 +202,7 @@ def _what(result):
             results = sorted(results, key=attrgetter("scene.radius"))
             rows = [row for item in results for row in item.rows]
             (box,) = boxes
-            return box, rows, _figures_of(rows, box), {}
+            return box, rows, _figures_of(rows, box), None
     attributes = getattr(result, "attrs", {})
     if isinstance(attributes, dict) and isinstance(attributes.get("box"), Box):
         # A loaded table: rows have None for an empty cell.
@@ -234,14 +212,10 @@ def _what(result):
         if rows and table in ("volume", "areas", "mean_times"):
             fitting = _figures_of(rows, attributes["box"])
         if rows and fitting:
-            return attributes["box"], rows, fitting, {}
+            return attributes["box"], rows, fitting, None
     if scene is not None and hasattr(result, "iterrows"):
-        return Box.of(scene), rows_of(result), ["hopping_trajectory"], {"radius": scene.radius}
-    return None, [], [], {}
-
-
-def _drawings():
-    return [name for name, entry in FIGURES.items() if not entry.needs]
+        return Box.of(scene), rows_of(result), ["hopping_trajectory"], scene.radius
+    return None, [], [], None
 
 
 def _figures_of(rows, box):
@@ -255,8 +229,9 @@ def _figures_of(rows, box):
             for n, e in FIGURES.items()
             if e.tables == (table,) and e.is_called(shown, box.calls_for)
         ]
-        if own and table in together.KINDS:
-            own.insert(0 if sum(map(_is_over_radius, own)) > 1 else len(own), table)
+        if own and table in OVER_RADIUS and table != "volume":
+            several = sum(name in OVER_RADIUS for name in own) > 1
+            own.insert(0 if several else len(own), table)
         names += own
     return names
 

@@ -15,7 +15,7 @@ def test_a_prism_hides_three_edges_and_a_cylinder_its_other_half(monkeypatch, az
     monkeypatch.setattr(drawn, "AZIMUTH", azimuth)
     monkeypatch.setattr(drawn, "ELEVATION", elevation)
     with style.context():
-        axes = drawn.draw(Box(1.5, 1.0), {}).axes[0]
+        axes = drawn.draw(Box(1.5, 1.0)).axes[0]
     edges = [line for line in axes.lines if len(line.get_xdata()) == 2]
     assert len(edges) == 12
     assert sum(line.is_dashed() for line in edges) == 3

@@ -44,7 +44,7 @@ def test_the_largest_discs_touch_each_other_and_walls(box):
     assert marks == [([shape], [radius / min(box.width, box.height)])]
 
 
-@pytest.mark.parametrize("box", [PAPER, UPRIGHT, Box(3.0, 1.0)], ids=str)
+@pytest.mark.parametrize("box", [PAPER, UPRIGHT, Box(2.5, 1.0)], ids=str)
 def test_the_regimes_have_the_areas_of_their_hops(box):
     """The coloured segments on the axes are A − σ and B − σ long; the arc ends on the rectangle."""
     for axes in drawn("integration_regimes", box):

@@ -379,4 +379,16 @@ def test_an_mp4_is_written_by_ffmpeg(rows, tmp_path, monkeypatch):
     with pytest.raises(td.InputError, match=r"that ffmpeg can write, .*: no encoder"):
         video.write_mp4(path, [image], [50])
     with pytest.raises(td.InputError, match="path must be a file to write"):
-        video.write_mp4(tmp_path / "absent" / "a.mp4", [image], [50])
+        animation.animate(BOX, RADIUS, rows, [tmp_path / "absent" / "a.mp4"])
+
+
+def test_a_colon_in_the_name_of_an_mp4_begins_no_protocol(tmp_path, monkeypatch):
+    """ffmpeg reads file:b.mp4 as the file b.mp4, which it would overwrite."""
+    program = tmp_path / "bin" / "ffmpeg"
+    program.parent.mkdir()
+    program.write_text(RECORDER.format(python=sys.executable, status=0))
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", str(program.parent))
+    monkeypatch.chdir(tmp_path)
+    video.write_mp4("file:b.mp4", [Image.new("RGB", (3, 2))], [50])
+    assert json.loads((tmp_path / "file:b.mp4.json").read_text())[-1] == f"{tmp_path}/file:b.mp4"

@@ -36,7 +36,7 @@ def test_a_density_that_bins_are_too_wide_for_is_not_marked():
     rows = [row for row in tables_of("paper")["hop_histogram"] if row["left"] == 0]
     wide = [row | {"right": row["right"] + 0.2 * (i > 0)} for i, row in enumerate(rows)]
     with style.context():
-        axes = [hop_histogram.draw(PAPER, {"hop_histogram": r}).axes[1] for r in (rows, wide)]
+        axes = [hop_histogram.draw(PAPER, r).axes[1] for r in (rows, wide)]
     marked = [sum(not line.get_clip_on() for line in one.lines) for one in axes]
     assert marked[0] > marked[1]
 

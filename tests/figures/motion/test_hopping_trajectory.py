@@ -5,9 +5,7 @@ import pytest
 from figure_cases import tables_of, unclear
 
 from twodiscs.comparison.tables.trajectory import Trajectory
-from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.kit import style
-from twodiscs.figures.kit.captions import Shown
 from twodiscs.figures.motion import animation, hop_histogram, hopping_trajectory, many
 from twodiscs.model.box import Box
 
@@ -36,8 +34,8 @@ def test_the_longer_side_that_ends_at_walls_is_shown(box, axis):
     """With the hops along it; and the radius is written above if it is known."""
     rows = tables_of("paper")["trajectory"]
     with style.context():
-        figure = hopping_trajectory.draw(box, {"trajectory": rows}, radius=0.24)
-        bare = hopping_trajectory.draw(box, {"trajectory": rows})
+        figure = hopping_trajectory.draw(box, rows, radius=0.24)
+        bare = hopping_trajectory.draw(box, rows)
     hop = "horizontal_hop" if axis == "x" else "vertical_hop"
     times = [row["time"] for row in rows if row["event"] == hop]
     for axes in figure.axes:
@@ -47,12 +45,8 @@ def test_the_longer_side_that_ends_at_walls_is_shown(box, axis):
         path = next(line.get_data() for line in axes.lines if line.get_color() == style.BLUE)
         apart = [row[f"{axis}2"] - row[f"{axis}1"] for row in rows]
         np.testing.assert_array_equal(path, [[row["time"] for row in rows], apart])
-    entry = FIGURES["hopping_trajectory"]
-    for some in (rows, [row for row in rows if row["event"] != hop]):
-        said = "mark the hops" in entry.caption(Shown(box, None, some))
-        assert said == (some is rows)
-    texts = [" ".join(text.get_text() for text in one.axes[0].texts) for one in (figure, bare)]
-    assert ["$r=0.24$" in text for text in texts] == [True, False]
+    titles = [one.axes[0].get_title("left") for one in (figure, bare)]
+    assert ["$r=0.24$" in title for title in titles] == [True, False]
 
 
 #: As many effects as go together, with values of three digits.
@@ -75,9 +69,9 @@ def test_effects_stand_clear_of_the_legend(effects):
     """In every figure whose heading says more than the box."""
     tables, box = tables_of("paper"), Box(1.55, 1.05, effects)
     with style.context():
-        figure = hopping_trajectory.draw(box, tables, radius=0.245)
+        figure = hopping_trajectory.draw(box, tables["trajectory"], radius=0.245)
         assert unclear(figure) == []
-        assert unclear(hop_histogram.draw(box, tables)) == []
+        assert unclear(hop_histogram.draw(box, tables["hop_histogram"])) == []
 
 
 @pytest.mark.parametrize(
@@ -95,7 +89,7 @@ def test_sides_of_any_size_stand_clear(sides, radius):
     box = Box(*sides)
     rows = Trajectory.rows(box, radius, 1908)
     with style.context():
-        assert unclear(hopping_trajectory.draw(box, {"trajectory": rows}, radius=radius)) == []
+        assert unclear(hopping_trajectory.draw(box, rows, radius=radius)) == []
         stage = animation.Stage(box, radius, rows)
         stage.show(stage.centre)
         assert unclear(stage.figure) == []
@@ -104,7 +98,7 @@ def test_sides_of_any_size_stand_clear(sides, radius):
 def test_the_panel_beneath_enlarges_a_short_trajectory_too():
     rows = tables_of("paper")["trajectory"][:120]
     with style.context():
-        whole, close = hopping_trajectory.draw(Box(1.5, 1.0), {"trajectory": rows}).axes
+        whole, close = hopping_trajectory.draw(Box(1.5, 1.0), rows).axes
     (start, end), (first, last) = whole.get_xlim(), close.get_xlim()
     assert last - first <= (end - start) / 3 * (1 + 1e-12)
     assert start <= first < last <= end
@@ -114,8 +108,8 @@ def test_hops_are_in_the_legend_where_there_are_any():
     rows = tables_of("paper")["trajectory"]
     for shown, named in ((rows, True), ([r for r in rows if "hop" not in r["event"]], False)):
         with style.context():
-            figure = hopping_trajectory.draw(Box(1.5, 1.0), {"trajectory": shown})
-        texts = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+            figure = hopping_trajectory.draw(Box(1.5, 1.0), shown)
+        texts = [text.get_text() for text in figure.legends[0].get_texts()]
         assert ("hops" in texts) == named
 
 
@@ -124,7 +118,7 @@ def test_lines_of_many_discs_are_few_enough_to_follow_and_have_names(discs, radi
     box = Box(1.5, 1.0, discs=discs)
     rows = Trajectory.rows(box, radius, 1908)
     with style.context():
-        figure = hopping_trajectory.draw(box, {"trajectory": rows}, radius=radius)
+        figure = hopping_trajectory.draw(box, rows, radius=radius)
         assert unclear(figure) == []
     whole, close = figure.axes
     assert len(whole.lines) == len(close.lines) == discs
@@ -134,10 +128,10 @@ def test_lines_of_many_discs_are_few_enough_to_follow_and_have_names(discs, radi
     assert inside.sum() == many.CLOSE * discs + 1
     colours = [line.get_color() for line in whole.lines]
     assert len(set(colours)) == discs
-    legend = whole.get_legend()
     if discs > many.NAMED:
-        assert legend is None
+        assert figure.legends == []
         return
+    (legend,) = figure.legends
     assert [text.get_text() for text in legend.get_texts()][:2] == ["disc 1", "2"]
     assert [line.get_color() for line in legend.get_lines()] == colours
 
@@ -147,7 +141,7 @@ def test_lines_of_many_discs_are_those_of_the_trajectory():
     box = Box(1.5, 1.0, discs=3)
     rows = Trajectory.rows(box, 0.2, 1908)
     with style.context():
-        figure = hopping_trajectory.draw(box, {"trajectory": rows})
+        figure = hopping_trajectory.draw(box, rows)
     line = figure.axes[0].lines[0]
     times = [row["time"] for row in rows if row["time"] <= figure.axes[0].get_xlim()[1]]
     assert len(times) > len(line.get_xdata())

@@ -29,8 +29,8 @@ AZIMUTH, ELEVATION = -112.0, 24.0
 STRIPS, SHADES, CUT = 60, ((0.72, 0.60, 0.32), (0.99, 0.95, 0.82)), "#E2CF95"
 
 
-def draw(box, tables):
-    """Draw the two squares of the ``Box``; ``tables`` is not used."""
+def draw(box):
+    """Draw the two squares of the ``Box``."""
     width, height = drawing.outline(box)
     radius = RADIUS * min(width, height)
     side = (COLUMN - LEFT - RIGHT - GAP) / 2
@@ -62,19 +62,6 @@ def draw(box, tables):
     middle = (BOTTOM + side / 2) / figure.get_figheight()
     figure.text(cross, middle, r"$\times$", fontsize=12, ha="center", va="center")
     return figure
-
-
-def caption(shown):
-    """Return the caption."""
-    return """
-    Configuration space. Let x = (x1 − x2)/√2, X = (x1 + x2)/√2 and likewise y and Y; the discs
-    overlap if x² + y² < 2r². (a) The section Y = 0, in which the centres are as far above the
-    middle as below it. It is a prism without a cylinder, whose axis is the diagonal of x1 and x2.
-    (b) The whole is a product of two squares, one for x1 and x2 and one for y1 and y2, without the
-    overlaps. The dotted band of each square is excluded by the point shown in the other one; dashed
-    lines are its widest bounds, at ±√2 r. The hatched quarters, in which all four coordinates are
-    positive, hold a sixteenth of the volume. Each square is drawn to its own scale.
-    """
 
 
 def _sizes(halves):

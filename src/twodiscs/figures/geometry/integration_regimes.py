@@ -21,62 +21,42 @@ HEADINGS = {
     "no-hops": "no hops",
 }
 
-#: Inches around a panel: labels on the left, below and above, and the heading beside or beneath.
-LEFT, BELOW, ABOVE, BESIDE, BENEATH = 0.3, 0.22, 0.14, 1.0, 0.5
+#: Inches around a panel: labels on the left, below and above, and the heading beside it.
+LEFT, BELOW, ABOVE, BESIDE = 0.3, 0.22, 0.14, 1.3
+
+#: Longer boxes are drawn shorter.
+LONGEST = 2.5
+
+#: The largest height of all panels together, in inches.
+TALLEST = 4.5
 
 
-def draw(box, tables):
-    """Draw one panel for each regime of the ``Box``; ``tables`` is not used."""
-    shown = Box(*drawing.outline(box))
-    width, height = shown.width, shown.height
+def draw(box):
+    """Draw one panel for each regime of the ``Box``."""
+    shown = Box(*drawing.outline(box, LONGEST))
     panels = []
     for (low, below), (high, above) in pairwise([(0, "0"), *limits(shown)]):
         regime = shown.scene((low + high) / 2).regime
         here = shown.scene(low + FRACTION[regime] * (high - low))
         panels.append((here, f"${below}<r<{above}$"))
     ratios = [here.range_y / here.range_x for here, _ in panels]
-    wide = width > 1.2 * height
-    if wide:
-        side = COLUMN - LEFT - BESIDE
-        tall = [BELOW + ABOVE + side * ratio for ratio in ratios]
-        figure = new_figure(sum(tall))
-        corners = [(LEFT, sum(tall[i + 1 :]) + BELOW) for i in range(len(tall))]
-        scales = [side / here.range_x for here, _ in panels]
-    else:
-        room = COLUMN - (LEFT + 0.1) * len(panels)
-        side = min(room / sum(1 / ratio for ratio in ratios), 2.2)
-        broad = [max(LEFT + 0.1 + side / ratio, 1.1) for ratio in ratios]
-        spare = (COLUMN - sum(broad)) / 2
-        figure = new_figure(BENEATH + BELOW + side + ABOVE)
-        corners = [(spare + LEFT + sum(broad[:i]), BENEATH + BELOW) for i in range(len(broad))]
-        scales = [side / here.range_y for here, _ in panels]
-    for i, ((here, between), corner, inches) in enumerate(
-        zip(panels, corners, scales, strict=True)
-    ):
-        extent = (0, here.range_x, 0, here.range_y)
-        axes = drawing.add_axes(figure, *corner, inches, extent)
+    side = min(COLUMN - LEFT - BESIDE, TALLEST / sum(ratios))
+    left = (COLUMN - LEFT - BESIDE - side) / 2 + LEFT
+    heights = [BELOW + side * ratio + ABOVE for ratio in ratios]
+    figure = new_figure(sum(heights))
+    bottom = sum(heights)
+    for i, ((here, between), height) in enumerate(zip(panels, heights, strict=True)):
+        bottom -= height
+        inches, extent = side / here.range_x, (0, here.range_x, 0, here.range_y)
+        axes = drawing.add_axes(figure, left, bottom + BELOW, inches, extent)
         _panel(axes, here, 72 * inches)
         if i == 0:
             drawing.label(axes, "$u$", ((here.range_x + here.contact_distance) / 2, 0), (0, -7))
             drawing.label(axes, "$v$", (0, (here.range_y + here.contact_distance) / 2), (-8, 0))
         heading = f"({'abc'[i]}) {HEADINGS[here.regime]}\n{between}"
-        if wide:
-            at, offset, align = (here.range_x, here.range_y), (12, 2), {"ha": "left", "va": "top"}
-        else:
-            at, offset, align = (here.range_x / 2, 0), (0, -20), {"ha": "center", "va": "top"}
-        drawing.label(axes, heading, at, offset, linespacing=1.5, **align)
+        corner = (here.range_x, here.range_y)
+        drawing.label(axes, heading, corner, (12, 2), linespacing=1.5, ha="left", va="top")
     return figure
-
-
-def caption(shown):
-    """Return the caption."""
-    return """
-    The separations u = |x1 − x2| and v = |y1 − y2| fill a rectangle of sides A = w − 2r and B = h −
-    2r. The discs overlap in the quarter circle of radius σ = 2r, which is left out. The arc is the
-    surface of collisions; the coloured parts of the axes are the surfaces of vertical hops (below)
-    and horizontal hops (on the left). If σ exceeds B, horizontal hops are blocked; if it exceeds A,
-    vertical hops are. The overlaps are then a sector (hatched) and triangles (dotted).
-    """
 
 
 def _panel(axes, scene, points):

@@ -14,8 +14,8 @@ TALLEST, LEFT, RIGHT, ABOVE, BENEATH = 1.75, 0.34, 0.58, 0.08, 0.42
 MAP_LEFT, MAP_RIGHT, MAP_BOTTOM, MAP_HEIGHT = 0.48, 0.1, 0.36, 1.5
 
 
-def draw(box, tables):
-    """Draw the ``Box`` with discs that just fit, and the map; ``tables`` is not used."""
+def draw(box):
+    """Draw the ``Box`` with discs that just fit, and the map."""
     width, height = drawing.outline(box)
     inches = drawing.scale(width, height, COLUMN - LEFT - RIGHT, TALLEST)
     floor = MAP_BOTTOM + MAP_HEIGHT + BENEATH
@@ -26,16 +26,6 @@ def draw(box, tables):
     across = COLUMN - MAP_LEFT - MAP_RIGHT
     _map(panels.add_panel(figure, MAP_BOTTOM, MAP_HEIGHT, MAP_LEFT, across), box)
     return figure
-
-
-def caption(shown):
-    """Return the caption."""
-    return """
-    (a) The largest discs that fit the box. They jam along a diagonal, where w − 2r, h − 2r and 2r
-    are the sides of a right triangle. If one side of the box is at least twice the other, each
-    disc spans the shorter one instead. (b) The hops that are possible in boxes of any shape; this
-    box is marked.
-    """
 
 
 def _jammed(axes, width, height):
@@ -103,7 +93,9 @@ def _map(axes, box):
         drawing.label(axes, f"${long}/{short}={shape:g}$", (last - 0.25, 0.46), (-4, 0), ha="right")
     axes.set(xlim=(1, last), ylim=(0, 0.6), xlabel=f"${long}/{short}$", ylabel=f"$r/{short}$")
     axes.xaxis.set_major_locator(MultipleLocator(0.5))
-    panels.letter(axes, "b")
+    drawing.label(
+        axes, "(b)", (0, 1), (2 - 72 * MAP_LEFT, 3), ha="left", va="top", xycoords="axes fraction"
+    )
     clear = 2.3 if shape > 2.45 else 2.9
     drawing.label(axes, "both hops", (clear, 0.125))
     drawing.label(axes, f"{hops} hops", (clear, 0.375))

@@ -13,8 +13,8 @@ CENTRES = ((-0.45, -0.52), (0.45, 0.5))
 VELOCITIES = ((0.7, 1.6), (0.95, -1.3))
 
 
-def draw(box, tables):
-    """Draw two discs in the ``Box``; ``tables`` is not used."""
+def draw(box):
+    """Draw two discs in the ``Box``."""
     width, height = drawing.outline(box)
     radius = RADIUS * min(width, height)
     a, b = width / 2 - radius, height / 2 - radius
@@ -45,16 +45,6 @@ def draw(box, tables):
     text = "$b=h/2-r$" if height > width / 2 else "$b$"
     drawing.dimension(axes, (right + far, 0), (right + far, b), text, (7, 0), **turned)
     return figure
-
-
-def caption(shown):
-    """Return the caption."""
-    text = """
-    Two hard discs of radius r in a box of width w and height h. The origin of the coordinates is
-    the centre of the box. The centres of the discs stay in the dashed rectangle, of half-sides
-    a = w/2 − r and b = h/2 − r.
-    """
-    return text + ("Boxes longer than 4:1 are drawn shorter." if shown.is_longer_than(4) else "")
 
 
 def _origin(axes, reach):

@@ -12,53 +12,30 @@ RADIUS = 0.2
 THICKNESS = 0.06
 
 #: Longer boxes are drawn shorter: the shells are at one end of them.
-LONGEST = 1.8
+LONGEST = 1.5
 
 LEFT, GAP, RIGHT, BELOW, ABOVE = 0.3, 0.42, 0.08, 0.3, 0.26
 
+#: The largest height of the panels, in inches.
+TALLEST = 1.5
 
-def draw(box, tables):
-    """Draw the shells in the ``Box``; ``tables`` is not used."""
+
+def draw(box):
+    """Draw the shells in the ``Box``."""
     width, height = drawing.outline(box, LONGEST)
     short = min(width, height)
     radius, epsilon = RADIUS * short, THICKNESS * short
     a, b = width / 2 - radius, height / 2 - radius
     room = COLUMN - LEFT - GAP - RIGHT
-    side = room / (1 + a / b)
-    if side < 0.85:
-        # A long box: one panel above the other.
-        side, across = 1.3, COLUMN - 0.4 - RIGHT
-        lower = across * b / a
-        figure = new_figure(2 * (BELOW + ABOVE) + side + lower)
-        corners = (
-            (LEFT + (COLUMN - LEFT - RIGHT - side) / 2, 2 * BELOW + lower + ABOVE),
-            (0.4, BELOW),
-        )
-        scales = (side / (2 * b), across / (sqrt(2) * a))
-    else:
-        upright = min(side, 2.6) if side < 1.4 else min(1.6 + 0.3 * b / a, 2.6)
-        across = max(upright * a / b, 0.8)
-        side = min(side, 1.5, room - across)
-        figure = new_figure(BELOW + max(side, upright) + ABOVE)
-        spare = (room - side - across) / 2
-        corners = ((LEFT + spare, BELOW), (LEFT + spare + side + GAP, BELOW))
-        scales = (side / (2 * b), upright / (sqrt(2) * b))
-    _hop(drawing.add_axes(figure, *corners[0], scales[0], (-b, b, -b, b)), b, epsilon)
+    side = min(room / (1 + a / b), TALLEST)
+    left = LEFT + (room - side * (1 + a / b)) / 2
+    figure = new_figure(BELOW + side + ABOVE)
+    square = drawing.add_axes(figure, left, BELOW, side / (2 * b), (-b, b, -b, b))
+    _hop(square, b, epsilon)
     extent = (0, sqrt(2) * a, 0, sqrt(2) * b)
-    _collision(drawing.add_axes(figure, *corners[1], scales[1], extent), a, b, radius, epsilon)
+    quarter = drawing.add_axes(figure, left + side + GAP, BELOW, side / (sqrt(2) * b), extent)
+    _collision(quarter, a, b, radius, epsilon)
     return figure
-
-
-def caption(shown):
-    """Return the caption."""
-    text = """
-    The area of a surface is estimated from the samples within a distance ε of it. (a) The surface
-    of vertical hops can be crossed from both sides: its shell is 2ε thick, and extends √2 ε to
-    either side along y1. (b) The surface of collisions, with x = |x1 − x2|/√2 and
-    y = |y1 − y2|/√2, has a shell on its outer side only.
-    """
-    longer = shown.is_longer_than(1.8)
-    return text + ("Boxes longer than 1.8:1 are drawn shorter." if longer else "")
 
 
 def _hop(axes, b, epsilon):

@@ -14,24 +14,24 @@ from itertools import cycle
 import numpy as np
 from matplotlib import rcParams
 from matplotlib.lines import Line2D
-from matplotlib.patheffects import withStroke
-from matplotlib.ticker import FuncFormatter
+from matplotlib.ticker import Formatter
 
 from twodiscs.figures.kit import drawing
-from twodiscs.figures.kit.captions import is_judged
 from twodiscs.figures.kit.limits import limits
 from twodiscs.figures.kit.style import BLACK, COLUMN, GREY, SERIES, SIZES, new_figure
 from twodiscs.model.effects import EFFECTS
 
-#: Inches: margins, the panel of the curves, the gap and the panel of the residuals.
-LEFT, RIGHT, BOTTOM, TOP = 0.48, 0.1, 0.34, 0.3
-MAIN, GAP, LOWER = 1.9, 0.07, 0.82
+#: Inches: margins of panels that are placed by hand.
+LEFT, RIGHT = 0.48, 0.1
 
-#: Inches and points: a second line above, for the box and its effects.
+#: Inches: the panels of curves, of residuals and beneath, with their labels.
+MAIN, LOWER, BENEATH = 2.3, 0.95, 1.7
+
+#: Names of limits that are closer than this share of the abscissa are written as one.
+NEAR = 0.12
+
+#: Inches: a further line of a heading. Points: the distance of a title above names of limits.
 LINE, ABOVE = 0.13, 14
-
-#: Points by which the name of a box moves aside for the power of ten of the ordinate.
-FACTOR = 9
 
 #: The most digits of a box and a radius that leave space for something beside them.
 BESIDE = 11
@@ -67,26 +67,53 @@ class Series:
         return bool(np.any(self.exact > 0)) or any(drawn)
 
 
-def panels(box, label, beneath=0, judged=True):
-    """Return (figure, main axes, axes of the residuals) for curves over the radius.
+def panels(box, label, judged=True, beneath=False):
+    """Return (figure, main axes, axes of residuals, axes beneath) for curves over the radius.
 
-    ``label`` is the label of the main ordinate; ``beneath`` is the space for another panel, in
-    inches. Unless the estimates are ``judged``, there is no panel of residuals, but None.
+    ``label`` is the label of the main ordinate. The axes of residuals are None unless the estimates
+    are ``judged``, the axes beneath unless there are any ``beneath``.
     """
-    line = 0 if is_short(box) else LINE
-    under = LOWER + GAP if judged else 0
-    figure = new_figure(beneath + BOTTOM + under + MAIN + TOP + line + room(box))
-    main = add_panel(figure, beneath + BOTTOM + under, MAIN, name="main")
-    lower = add_panel(figure, beneath + BOTTOM, LOWER, name="residuals") if judged else None
+    heights = [MAIN] + [LOWER] * judged + [BENEATH] * beneath
+    figure = new_figure(sum(heights), layout="constrained")
+    axes = figure.subplots(len(heights), height_ratios=heights, squeeze=False)[:, 0]
+    main, lower = axes[0], axes[1] if judged else None
+    for one, name in zip(axes, ["main"] + ["residuals"] * judged + ["beneath"], strict=False):
+        one.set_label(name)
     main.set_ylabel(label)
     (lower or main).set_xlabel("radius $r$")
     if judged:
         main.tick_params(labelbottom=False)
         lower.set_ylabel("residual $z$")
         scale_residuals(lower)
-    mark((main, lower) if judged else (main,), limits(box))
-    name_box(main, box, up=ABOVE if line else 0)
-    return figure, main, lower
+    mark([main, lower] if judged else [main], limits(box))
+    title(main, "a" if beneath else "", box, up=ABOVE)
+    if beneath:
+        title(axes[-1], "b")
+    return figure, main, lower, axes[-1] if beneath else None
+
+
+def stacked(width=COLUMN, **heights):
+    """Return (figure, its axes) of lettered panels above each other.
+
+    ``heights`` are inches, with labels and titles, by the names of the panels from the top down.
+    """
+    figure = new_figure(sum(heights.values()), width, layout="constrained")
+    axes = figure.subplots(len(heights), height_ratios=[*heights.values()])
+    for one, name, letter in zip(axes, heights, "abcdefgh", strict=False):
+        one.set_label(name)
+        title(one, letter)
+    return figure, axes
+
+
+def title(axes, letter="", box=None, more="", up=3):
+    """Write the ``letter`` of a panel, the sides of its box, ``more`` and its effects above it.
+
+    ``up`` is the distance from the panel, in points.
+    """
+    words = [f"({letter})"] if letter else []
+    if box is not None:
+        words.append(",\n".join(heading(box, more)))
+    axes.set_title("  ".join(words), loc="left", pad=up)
 
 
 def scale_residuals(lower):
@@ -101,11 +128,22 @@ def scale_residuals(lower):
 
 def mark(panels, ends):
     """Mark the limits ``ends`` in all ``panels``, axes from the top; the last ends the abscissa."""
+    last = 1.02 * ends[-1][0]
     for axes in panels:
-        axes.set_xlim(0, 1.02 * ends[-1][0])
+        axes.set_xlim(0, last)
         for radius, _ in ends:
             axes.axvline(radius, color=GREY, lw=0.5, ls=(0, (5, 1.5, 1, 1.5)), zorder=0)
-    name_limits(panels[0], ends)
+    groups = [[ends[0]]]
+    for end in ends[1:]:
+        if end[0] - groups[-1][-1][0] < NEAR * last:
+            groups[-1].append(end)
+        else:
+            groups.append([end])
+    at_top = {"xycoords": ("data", "axes fraction"), "va": "bottom", "fontsize": 7.5}
+    for group in groups:
+        middle = sum(radius for radius, _ in group) / len(group)
+        names = r",\,".join(name for _, name in group)
+        drawing.label(panels[0], f"${names}$", (middle, 1), (0, 3), **at_top)
 
 
 def add_panel(figure, bottom, height, left=LEFT, width=COLUMN - LEFT - RIGHT, name=""):
@@ -155,28 +193,6 @@ def of_radius(radius):
     return f",  $r={math_of(radius)}$" if radius else ""
 
 
-def letter(axes, name):
-    """Write the letter of a panel beside its upper left corner."""
-    align = {"ha": "left", "va": "top", "xycoords": "axes fraction"}
-    drawing.label(axes, f"({name})", (0, 1), (2 - 72 * LEFT, 3), **align)
-
-
-def name_box(axes, box, more="", up=0):
-    """Write the sides of the box, ``more`` and the effects above the left end of ``axes``.
-
-    ``up`` is the distance, in points, from the usual height. Lines beyond the first take ``room``.
-    """
-
-    def frame(renderer):
-        """Return the frame of the axes, moved if a power of ten would look like a factor."""
-        beside = not up and axes.yaxis.get_offset_text().get_text()
-        return axes.bbox.translated(renderer.points_to_pixels(FACTOR) if beside else 0, 0)
-
-    text = ",\n".join(heading(box, more))
-    corner = {"xycoords": frame, "ha": "left", "va": "bottom", "fontsize": 7.5}
-    drawing.label(axes, text, (0, 1), (0, 5 + up), **corner)
-
-
 def is_short(box, radius=0):
     """Return whether the ``heading``, maybe with a ``radius``, leaves space beside it."""
     digits = sum(len(math_of(value)) for value in (box.width, box.height, radius or 0))
@@ -200,54 +216,6 @@ def effects(box):
     return [powers(text.format(named[name])) for name, text in SYMBOLS.items() if named.get(name)]
 
 
-def name_limits(axes, ends):
-    """Write the names of the limits above ``axes``, moved apart if they would overlap."""
-    x0, x1 = axes.get_xlim()
-    points = 72 * axes.get_position().width * axes.figure.get_figwidth() / (x1 - x0)
-    renderer = axes.figure.canvas.get_renderer()
-    texts = [
-        axes.annotate(f"${name}$", (0, 1), xycoords="axes fraction", fontsize=7.5, va="bottom")
-        for _, name in ends
-    ]
-    scale = 72 / axes.figure.dpi
-    widths = [text.get_window_extent(renderer).width * scale for text in texts]
-    wanted = [(radius - x0) * points for radius, _ in ends]
-    most = (x1 - x0) * points + 72 * RIGHT - 1
-    for text, x, middle in zip(texts, wanted, spread(wanted, widths, 4, most), strict=True):
-        text.remove()
-        pointer = {"arrowstyle": "-", "color": GREY, "linewidth": 0.5, "shrinkA": 0, "shrinkB": 0}
-        drawing.label(
-            axes, text.get_text(), (x / points, 1), (middle - x, 5),
-            xycoords=("data", "axes fraction"), va="bottom", fontsize=7.5,
-            arrowprops=pointer | {"relpos": (0.5, 0)},
-        )  # fmt: skip
-
-
-def spread(wanted, widths, gap, most):
-    """Return middles for intervals of ``widths``, in order, ``gap`` apart, near those ``wanted``.
-
-    Intervals that would overlap become a block around the mean of their wanted middles; none ends
-    beyond ``most``.
-    """
-    blocks = []
-    for middle, width in zip(wanted, widths, strict=True):
-        block = [middle - width / 2, [width]]
-        while blocks and blocks[-1][0] + sum(blocks[-1][1]) + gap * len(blocks[-1][1]) > block[0]:
-            left, before = blocks.pop()
-            length = sum(before) + gap * len(before)
-            share = len(before) / (len(before) + len(block[1]))
-            block = [left * share + (block[0] - length) * (1 - share), before + block[1]]
-        blocks.append(block)
-    middles, end = [], most
-    for left, members in reversed(blocks):
-        right = min(end, left + sum(members) + gap * (len(members) - 1))
-        for width in reversed(members):
-            middles.append(right - width / 2)
-            right -= width + gap
-        end = right
-    return middles[::-1]
-
-
 def with_looks(series):
     """Return ((colour, marker), ``Series``) for each of the ``series``."""
     return [(part.look or look, part) for look, part in zip(cycle(SERIES), series, strict=False)]
@@ -268,11 +236,6 @@ def draw_series(main, lower, radii, series, single=False):
 #: The style of a limiting law, and its name in a legend.
 LAW = {"color": BLACK, "lw": 0.7, "ls": (0, (4, 2)), "zorder": 6}
 LAW_NAME = "limiting law"
-
-
-def asymptote(axes, x, y):
-    """Draw a limiting law."""
-    axes.plot(x, y, **LAW)
 
 
 def _column(rows, *names):
@@ -306,6 +269,11 @@ def open_symbol(colour, marker, scale=1):
     return {"color": colour, "marker": marker, "markersize": size, "markerfacecolor": "white"}
 
 
+def is_judged(row):
+    """Return whether the residual of a ``row`` is drawn: there is one, and it may differ from 0."""
+    return row.get("z") is not None and row.get("test") != "certain"
+
+
 def residuals(axes, rows, colour, marker):
     """Draw the residuals of ``rows`` over their radii, except the certain ones."""
     rows = [row for row in rows if is_judged(row)]
@@ -324,14 +292,12 @@ def residuals(axes, rows, colour, marker):
 CLEAR = {"borderpad": 1.2, "borderaxespad": -0.6}
 
 
-def legend(axes, box, series, loc, single=None, more=()):
-    """Explain the symbols at a ``loc``; ``single`` names the method of the only series.
+def legend(axes, series, single=None, more=()):
+    """Explain the symbols at the emptiest place; ``single`` names the method of the only series.
 
     ``more`` are (name, style) of other lines. Series without a visible value, of impossible events,
-    are left out. ``loc`` is a corner in matplotlib's words, or "best": a ``box`` with effects
-    always has "best", the emptiest place.
+    are left out.
     """
-    loc = loc if box.is_plain else "best"
     handles, names = [], []
     for (colour, marker), part in with_looks(series):
         style = open_symbol(colour, marker)
@@ -347,11 +313,10 @@ def legend(axes, box, series, loc, single=None, more=()):
     for name, style in more:
         handles.append(Line2D([], [], **style))
         names.append(name)
-    made = axes.legend(handles, names, loc=loc, **CLEAR)
     if len(names) > 4:  # no place without a curve is large enough
-        made.set_zorder(7)
-        for text in made.get_texts():
-            text.set(fontsize=6.3, path_effects=[withStroke(linewidth=2, foreground="white")])
+        axes.figure.legend(handles, names, loc="outside lower center", ncols=3)
+    else:
+        axes.legend(handles, names, loc="best", **CLEAR)
 
 
 #: The least ratio of the ends of a logarithmic ordinate: there is a tick or two within.
@@ -373,20 +338,31 @@ def logarithmic(axes, radii, series):
     label_decades(axes.yaxis, high / low)
 
 
+class _PlainNumbers(Formatter):
+    """Labels of ticks as numbers over 10^``power``, at the ticks that begin with a digit."""
+
+    def __init__(self, digits, power):
+        self.digits, self.power = digits, power
+
+    def __call__(self, x, pos=None):
+        return f"{x / 10.0**self.power:g}" if f"{x:e}"[0] in self.digits else ""
+
+    def get_offset(self):
+        return rf"$\times10^{{{self.power}}}$" if self.power else ""
+
+
 def label_decades(axis, ratio):
     """Label a logarithmic ``axis``, between decades too if its ends have a ``ratio`` below 100.
 
     These labels are at 2 and 5 or, below a ratio of 3, at every tick. A power of ten of small or
     large numbers is at the end of the axis, as on linear axes.
     """
-    if ratio < 100:
-        digits = "25" if ratio >= 3 else "123456789"
-        power = math.floor(math.log10(max(axis.get_view_interval())))
-        low, high = rcParams["axes.formatter.limits"]
-        unit = 1.0 if low < power < high else float(f"1e{power}")
-        major = FuncFormatter(lambda x, _: f"{x / unit:g}")
-        major.set_offset_string("" if unit == 1.0 else rf"$\times10^{{{power}}}$")
-        axis.set_major_formatter(major)
-        axis.set_minor_formatter(lambda x, _: major(x) if f"{x:e}"[0] in digits else "")
-    else:
+    if ratio >= 100:
         axis.set_minor_formatter("")
+        return
+    digits = "25" if ratio >= 3 else "123456789"
+    power = math.floor(math.log10(max(axis.get_view_interval())))
+    low, high = rcParams["axes.formatter.limits"]
+    power = 0 if low < power < high else power
+    axis.set_major_formatter(_PlainNumbers("123456789", power))
+    axis.set_minor_formatter(_PlainNumbers(digits, power))

@@ -5,7 +5,9 @@ machine. pyplot is not used: nothing here needs windows, and its import takes ti
 """
 
 import logging
+import threading
 from contextlib import contextmanager
+from io import BytesIO
 from pathlib import Path
 
 import matplotlib
@@ -43,6 +45,11 @@ SETTINGS = {
     "axes.labelpad": 2,
     "axes.linewidth": 0.6,
     "axes.unicode_minus": True,
+    "axes.titlesize": 7.5,
+    "figure.constrained_layout.h_pad": 0.02,
+    "figure.constrained_layout.w_pad": 0.02,
+    "figure.constrained_layout.hspace": 0.0,
+    "figure.constrained_layout.wspace": 0.0,
     "xtick.labelsize": 7.3,
     "ytick.labelsize": 7.3,
     "xtick.direction": "in",
@@ -92,19 +99,47 @@ def _have_fonts():
             fontManager.addfont(path)
 
 
+#: matplotlib's settings belong to the process, so one thread at a time changes them.
+_ONE_AT_A_TIME = threading.RLock()
+
+
 @contextmanager
 def context():
     """Draw and save in the style of this package, and restore matplotlib's settings afterwards."""
-    _have_fonts()
-    with matplotlib.rc_context():
+    with _ONE_AT_A_TIME, matplotlib.rc_context():
+        _have_fonts()
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(SETTINGS)
         yield
 
 
-def new_figure(height, width=COLUMN):
-    """Return an empty figure of ``width`` × ``height`` inches."""
-    figure = Figure(figsize=(width, height))
+class StyledFigure(Figure):
+    """A figure that is also drawn and saved in the style of this package by its own methods."""
+
+    def draw(self, renderer):
+        with context():
+            super().draw(renderer)
+
+    def savefig(self, *args, **options):
+        with context():
+            super().savefig(*args, **options)
+
+    def settle(self):
+        """Place all parts for good: a layout that is computed again moves them by a pixel."""
+        if self.get_layout_engine() is not None:
+            self.draw_without_rendering()
+            self.set_layout_engine("none")
+
+    def _repr_png_(self):
+        """Return the picture that a notebook shows."""
+        stream = BytesIO()
+        self.savefig(stream, format="png", dpi=150)
+        return stream.getvalue()
+
+
+def new_figure(height, width=COLUMN, **options):
+    """Return an empty figure of ``width`` × ``height`` inches, with ``options`` of matplotlib."""
+    figure = StyledFigure(figsize=(width, height), **options)
     FigureCanvasAgg(figure)
     return figure
 
@@ -124,5 +159,7 @@ def save(figure, path, origin=None):
     }
     if kind not in metadata:
         raise InputError(f"path must be a .pdf, .png or .svg file, not {str(path)!r}")
+    if isinstance(figure, StyledFigure):
+        figure.settle()
     with writing_to(path):
         figure.savefig(path, format=kind, metadata=metadata[kind])

@@ -7,7 +7,9 @@ itself. On a periodic axis a disc that leaves the box at one end enters at the o
 equal steps of time, and one of them shows the moment of the hop.
 """
 
+import os
 from collections import Counter
+from pathlib import Path
 
 import numpy as np
 from matplotlib.collections import LineCollection
@@ -354,6 +356,8 @@ def animate(box, radius, rows, paths):
             raise InputError(f"path must be a .gif, .png, .html or .mp4 file, not {str(path)!r}")
         if str(path).endswith(".mp4"):
             video.ffmpeg()
+        with writing_to(path):
+            os.stat(Path(path).parent)  # raises for a folder that does not exist
     if not rows:
         raise InputError("trajectory must have rows, but is empty")
     stage = (StageOfMany if box.family == "many" else Stage)(box, radius, rows)
@@ -389,35 +393,6 @@ def animate(box, radius, rows, paths):
         else:
             with writing_to(path):
                 first.save(path, save_all=True, append_images=others, duration=shown, loop=0)
-
-
-def caption(shown):
-    """Return the caption."""
-    periodic = shown.effects.get("periodic")
-    if shown.many:
-        text = """
-        The discs as they move, coloured by their order along the longer side at the start. Traces
-        are the latest paths of the centres. Beneath are the positions along the longer side.
-        """
-    else:
-        text = """
-        The discs as they move. Traces are the latest paths of the centres. Beneath is the
-        separation of the discs against time.
-        """
-        if shown.any_row(lambda row: row["event"] in HOPS):
-            text += """
-            The picture stops at a hop, of the rarer kind if there are two, which changes the sign
-            of the separation.
-            """
-    if periodic:
-        text += "Discs that leave at a dotted end come in at the opposite one. "
-    if shown.many and periodic and many.along(shown.box) in periodic:
-        text += "Beneath, positions go on beyond the box. "
-    if shown.has("depth"):
-        text += "Balls are drawn as viewed along z, the nearer one in front. "
-    if "moment_of_inertia" in shown.effects:
-        text += "The spin of rough discs is not shown."
-    return text
 
 
 def _palette(image, kept):

@@ -10,8 +10,8 @@ from twodiscs.figures.kit.style import BLACK, SERIES, new_figure
 from twodiscs.model.events import AXIS
 from twodiscs.theory import tails
 
-#: Inches: the panel of all intervals, the panel of short ones, the gap between, the space above.
-ALL, SHORT, GAP, TOP = 1.75, 1.1, 0.42, 0.22
+#: Inches: the panel of all intervals, and the panel of short ones.
+ALL, SHORT = 2.4, 1.7
 
 #: The longest of the short intervals, in mean times.
 LONGEST_SHORT = 2.5
@@ -29,13 +29,10 @@ DASH = 0.035
 APART, APART_SHORT = 1.2, 0.4
 
 
-def draw(box, tables):
+def draw(box, rows):
     """Draw the densities of hop_histogram.csv, in units of the mean interval (``unit_of``)."""
-    rows = tables["hop_histogram"]
-    more = f",  {name_of(rows[0]['event'])}"
-    figure = new_figure(panels.BOTTOM + SHORT + GAP + ALL + TOP + panels.room(box, more))
-    whole = panels.add_panel(figure, panels.BOTTOM + SHORT + GAP, ALL)
-    short = panels.add_panel(figure, panels.BOTTOM, SHORT)
+    figure = new_figure(ALL + SHORT, layout="constrained")
+    whole, short = figure.subplots(2, height_ratios=[ALL, SHORT])
     groups = [list(group) for _, group in groupby(rows, key=lambda row: row["radius"])]
     radii = panels.numbers([group[0]["radius"] for group in groups])
     low, last = 0.1, 1.0
@@ -65,32 +62,9 @@ def draw(box, tables):
     whole.set(yscale="log", ylim=(low / 3, None))
     short.set_ylim(0, None)
     whole.legend(loc="upper right")
-    panels.letter(whole, "a")
-    panels.letter(short, "b")
-    panels.name_box(whole, box, more)
+    panels.title(whole, "a", box, f",  {name_of(rows[0]['event'])}")
+    panels.title(short, "b")
     return figure
-
-
-def caption(shown):
-    """Return the caption."""
-    text = """
-    Density of the time t between successive hops, both in units of the mean time τ. The dashed line
-    is the exponential density of the same mean. Bins in (a) widen with t; (b) enlarges short times
-    in equal bins. Symbols tell the radii apart; error bars are one standard error.
-    """
-    if shown.many:
-        text += "Hops are those of any pair of discs. "
-    if shown.any_row(lambda row: row["exact_mean"] is not None):
-        text += "The mean time is exact. "
-    if shown.many and shown.any_row(lambda row: row["exact_mean"] is None):
-        text += "If no exact mean time is known it is measured. "
-    if shown.plain:
-        text += """
-        Thick dashes on the axis of (b) are the exact densities at t = 0, of hops that are undone
-        after one bounce. They are 3√2/16, divided by h − 2r for vertical hops and by w − 2r for
-        horizontal ones.
-        """
-    return text
 
 
 def _mark_zero(axes, box, row, colour):

@@ -7,15 +7,15 @@ from twodiscs.figures.kit.style import BLUE, GREY, ORANGE, VERMILLION, new_figur
 from twodiscs.figures.motion import many
 from twodiscs.model.events import AXIS
 
-#: Inches: each of the two panels, the gap between them and the space above.
-PANEL, GAP, TOP = 1.05, 0.42, 0.22
+#: Inches: each of the two panels.
+PANEL = 1.55
 
 #: The mean number of rows in the lower panel, which is lower if hops would be closer than ``APART``
 #: of its width; and its longest time, over that of the upper panel.
 CLOSE, APART, MOST = 150, 0.02, 1 / 3
 
 
-def draw(box, tables, radius=None):
+def draw(box, rows, radius=None):
     """Draw x2 − x1 against time from trajectory.csv.
 
     In a box higher than wide, or if x is periodic, it is y2 − y1. The ``radius``, if given, is
@@ -24,21 +24,15 @@ def draw(box, tables, radius=None):
     ``many.world_lines``.
     """
     if box.family == "many":
-        return many.world_lines(box, tables["trajectory"], radius)
+        return many.world_lines(box, rows, radius)
     hop = shown_hop(box)
     axis = AXIS[hop]
-    rows = tables["trajectory"]
     times = np.array([row["time"] for row in rows])
     apart = np.array([row[f"{axis}2"] - row[f"{axis}1"] for row in rows])
     hops = times[[row["event"] == hop for row in rows]]
 
-    # Points: a heading that leaves no space for the legend beside it is higher.
-    above = 0 if panels.is_short(box, radius) else panels.ABOVE
-    more = panels.of_radius(radius)
-    room = above / 72 + panels.room(box, more)
-    figure = new_figure(panels.BOTTOM + 2 * PANEL + GAP + TOP + room)
-    whole = panels.add_panel(figure, panels.BOTTOM + PANEL + GAP, PANEL)
-    close = panels.add_panel(figure, panels.BOTTOM, PANEL)
+    figure = new_figure(2 * PANEL, layout="constrained")
+    whole, close = figure.subplots(2)
     length = (times[-1] - times[0]) * min(MOST, CLOSE / len(rows))
     start, end = _crowded(hops, length, times[0], times[-1])
     gaps = np.diff(hops[(hops > start) & (hops < end)])
@@ -53,43 +47,13 @@ def draw(box, tables, radius=None):
     reach = 1.08 * np.abs(apart).max()
     whole.set(xlim=(times[0], times[-1]), ylim=(-reach, reach))
     close.set(xlim=(start, end), ylim=(-reach, reach))
-    for axes, name in ((whole, "a"), (close, "b")):
-        panels.letter(axes, name)
     whole.axvspan(start, end, color=ORANGE, alpha=0.45, lw=0, zorder=0, label="stretch in (b)")
     if hops.size:
         whole.plot([], [], ls="", marker="o", markersize=2.2, color=VERMILLION, label="hops")
-    whole.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2)  # above, beside the box
-    panels.name_box(whole, box, more, up=above)
+    figure.legend(loc="outside lower center", ncols=2)
+    panels.title(whole, "a", box, panels.of_radius(radius))
+    panels.title(close, "b")
     return figure
-
-
-def caption(shown):
-    """Return the caption."""
-    if shown.many:
-        return _caption_of_many(shown)
-    text = """
-    (a) One trajectory: the separation of the discs in one direction against time. (b) The shaded
-    stretch of time enlarged.
-    """
-    if shown.any_row(lambda row: row["event"] == shown_hop(shown.box)):
-        text += """
-        Dots mark the hops, at which the separation changes sign. A hop is
-        often undone soon, before collisions have scrambled the motion.
-        """
-    return text
-
-
-def _caption_of_many(shown):
-    axis = many.along(shown.box)
-    hop = "horizontal_hop" if axis == "x" else "vertical_hop"
-    text = """
-    (a) The beginning of one trajectory: the positions of the discs along the longer side against
-    time, coloured by their order at the start. (b) The first part of it enlarged.
-    """
-    if axis in shown.effects.get("periodic", ""):
-        return text + "On the periodic axis positions go on beyond the box."
-    hops = shown.any_row(lambda row: row["event"] == hop)
-    return text + ("Discs hop at the points where lines cross." if hops else "")
 
 
 def shown_hop(box):
@@ -97,8 +61,6 @@ def shown_hop(box):
 
     It is the one along the longer side, unless this axis is periodic.
     """
-    if box is None:
-        return "horizontal_hop"
     periodic = box.effects.get("periodic", "")
     along_x = "y" in periodic or (box.width >= box.height and "x" not in periodic)
     return "horizontal_hop" if along_x else "vertical_hop"

@@ -25,8 +25,8 @@ FEW = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
 #: The part of the map of colours of more discs that is neither too dark nor too light.
 LOW, HIGH = 0.05, 0.95
 
-#: Inches: each of the two panels, the gap between them and the space above.
-PANEL, GAP, TOP = 1.45, 0.42, 0.22
+#: Inches: each of the two panels.
+PANEL = 2.0
 
 #: Points: a line for each disc, in the upper panel and in the lower one.
 THIN, THICK = 0.5, 0.9
@@ -62,11 +62,8 @@ def world_lines(box, rows, radius=None):
     axis, side = along(box), max(box.width, box.height)
     rows = [row for row in rows if row["event"] not in HOPS][: MANY * box.discs + 1]
     times = np.array([row["time"] for row in rows])
-    more = panels.of_radius(radius)
-    room = panels.ABOVE / 72 + panels.room(box, more)
-    figure = new_figure(panels.BOTTOM + 2 * PANEL + GAP + TOP + room)
-    whole = panels.add_panel(figure, panels.BOTTOM + PANEL + GAP, PANEL)
-    close = panels.add_panel(figure, panels.BOTTOM, PANEL)
+    figure = new_figure(2 * PANEL, layout="constrained")
+    whole, close = figure.subplots(2)
     shades = colours(box, rows[0])
     whole.set_xlim(times[0], times[-1])
     close.set_xlim(times[0], times[min(CLOSE * box.discs, len(times) - 1)])
@@ -78,12 +75,11 @@ def world_lines(box, rows, radius=None):
         axes.set(xlabel="time $t$", ylabel=f"${axis}$", ylim=(low, high))
         for line, colour in zip(places, shades, strict=True):
             axes.plot(times, line, color=colour, lw=width)
-    for axes, name in ((whole, "a"), (close, "b")):
-        panels.letter(axes, name)
     if box.discs <= NAMED:
-        handles = close.get_lines()
         names = ["disc 1", *map(str, range(2, box.discs + 1))]
-        above = {"loc": "lower right", "bbox_to_anchor": (1, 1), "ncols": box.discs}
-        whole.legend(handles, names, handlelength=1, columnspacing=1, **above)
-    panels.name_box(whole, box, more, up=panels.ABOVE)
+        figure.legend(
+            close.get_lines(), names, loc="outside lower center", ncols=box.discs, handlelength=1
+        )
+    panels.title(whole, "a", box, panels.of_radius(radius))
+    panels.title(close, "b")
     return figure

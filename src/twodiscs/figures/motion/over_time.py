@@ -10,16 +10,15 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.theory import tails
 
-#: Inches: the panel, and the space above.
-HEIGHT, TOP = 1.9, 0.22
+#: Inches: the height of the figure.
+HEIGHT = 2.5
 
 
 def _panel(scene, more=""):
     """Return (figure, axes); the heading has the box, the radius, ``more`` and effects."""
-    box, more = Box.of(scene), panels.of_radius(scene.radius) + more
-    figure = new_figure(panels.BOTTOM + HEIGHT + TOP + panels.room(box, more))
-    axes = panels.add_panel(figure, panels.BOTTOM, HEIGHT, name="main")
-    panels.name_box(axes, box, more)
+    figure = new_figure(HEIGHT, layout="constrained")
+    axes = figure.subplots()
+    panels.title(axes, "", Box.of(scene), panels.of_radius(scene.radius) + more)
     return figure, axes
 
 

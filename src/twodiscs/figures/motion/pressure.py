@@ -3,7 +3,6 @@
 import numpy as np
 
 from twodiscs.figures.kit import curves, panels
-from twodiscs.figures.kit.captions import is_judged
 from twodiscs.figures.kit.looks import name_of
 from twodiscs.figures.kit.style import BLACK, SERIES
 from twodiscs.theory import virial
@@ -12,16 +11,12 @@ from twodiscs.theory.laws import threshold_time
 
 WALLS = ("right_wall", "top_wall")
 
-#: Inches: the height of the lower panel, and with its margins.
-VIRIALS, ROOM = 1.4, 1.8
-
 #: The law below the largest radius is drawn up to this relative distance from it.
 LAST = 0.12
 
 
-def draw(box, tables):
+def draw(box, rows):
     """Draw the pressures from the rows of mean_times.csv, and the terms of the virial."""
-    rows = tables["mean_times"]
     radii = np.concatenate([np.append(branch, np.nan) for branch in curves.branches(box)])
     summed = virial.weights(box.tiny) is not None
     events = [event for event in WALLS if any(row["event"] == event for row in rows)]
@@ -29,9 +24,9 @@ def draw(box, tables):
         _series(f"disc 1, {name_of(event)}", box, event, rows, radii, virial.pressure_factor)
         for event in events
     ]
-    label, beneath = "pressure over that of an ideal gas", ROOM if summed else 0
-    judged = any(is_judged(row) for part in series for row in part.rows)
-    figure, main, lower = panels.panels(box, label, beneath, judged)
+    label = "pressure over that of an ideal gas"
+    judged = any(panels.is_judged(row) for part in series for row in part.rows)
+    figure, main, lower, beneath = panels.panels(box, label, judged, summed)
     panels.draw_series(main, lower, radii, series)
     ideal = {"color": BLACK, "lw": 0.7, "ls": (0, (1, 1.5))}
     main.axhline(1, **ideal)
@@ -47,35 +42,13 @@ def draw(box, tables):
                 for scene in near
                 for time in [threshold_time(scene, event)]
             ]
-            panels.asymptote(main, [scene.radius for scene in near], laws)
+            main.plot([scene.radius for scene in near], laws, **panels.LAW)
     panels.logarithmic(main, radii, series)
     main.set_ylim(min(main.get_ylim()[0], 0.97), None)
-    panels.legend(main, box, series, "upper left", more=more)
+    panels.legend(main, series, more=more)
     if summed:
-        panels.letter(main, "a")
-        beneath = panels.add_panel(figure, panels.BOTTOM, VIRIALS, name="virials")
         _virials(beneath, box, rows, radii)
     return figure
-
-
-def caption(shown):
-    """Return the caption."""
-    text = """
-    Force of disc 1 on a wall, divided by the force in an ideal gas of one particle (dotted): exact
-    (lines) and from the hits that dynamics counted (symbols). Hits transfer the same momentum on
-    average at every radius.
-    """
-    if shown.square and shown.shows("right_wall_time", "top_wall_time"):
-        text += "In a square box both pressures are the same. "
-    if shown.plain:
-        text += "Dashed lines in (a) are the limiting laws below the largest radius. "
-    if shown.box is None or virial.weights(shown.box.tiny) is not None:
-        text += """
-        (b) The virials of the walls and of the collisions of the discs, divided by twice the mean
-        kinetic energy. The sum over the walls minus the virial of collisions is one at every
-        radius.
-        """
-    return text
 
 
 def _series(name, box, event, rows, radii, factor):
@@ -115,5 +88,4 @@ def _virials(axes, box, rows, radii):
     axes.set_ylabel(r"virial$\,/\,2\langle E_{\mathrm{k}}\rangle$")
     panels.logarithmic(axes, radii, series)
     axes.set_ylim(0.01, None)
-    panels.legend(axes, box, series, "best")
-    panels.letter(axes, "b")
+    panels.legend(axes, series)

@@ -2,6 +2,7 @@
 
 import io
 import json
+import os
 import shutil
 import subprocess
 from base64 import b64encode
@@ -87,14 +88,13 @@ def write_mp4(path, images, durations):
     """
     program, step = ffmpeg(), min(durations)
     width, height = images[0].size
-    with writing_to(path), open(path, "ab"):
-        pass  # raises before any work if the path cannot be written
     command = [
         program, "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24",
         "-video_size", f"{width}x{height}", "-framerate", f"{1000 / step:g}", "-i", "-",
         # Every player knows this pixel format, whose encoders need even numbers of pixels.
         "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p",
-        "-movflags", "+faststart", str(path),
+        "-movflags", "+faststart",
+        os.path.abspath(path),  # else a colon in the name begins a protocol
     ]  # fmt: skip
     frames = b"".join(
         image.convert("RGB").tobytes() * round(duration / step)

@@ -8,9 +8,9 @@ from twodiscs.comparison.measured.transmission import QUIET
 from twodiscs.comparison.tables.base import NUMBER, TEXT, Table
 from twodiscs.dynamics.intervals import RETURNS
 from twodiscs.figures.catalogue import FIGURES
+from twodiscs.model.box import Box
 from twodiscs.sampling.montecarlo import COST_RATIO
 from twodiscs_paper.catalogue import STUDY_FIGURES
-from twodiscs_paper.pipeline.documents.captions import caption_parts
 from twodiscs_paper.pipeline.results.provenance import commit, versions
 
 #: Numbers of the methods; they are in no table.
@@ -27,13 +27,14 @@ class PaperNumbers(Table):
     }
 
 
-def captions(results, scene):
-    """Return {figure: (its own caption, the sentences that it shares or "", its key in ``NOTES``)}.
+def captions(scene):
+    """Return {figure: (its own caption, the sentences that it shares with others or "")}.
 
-    ``scene`` is the scene that the manuscript is about; see ``captions.caption_parts``.
+    ``scene`` is the scene that the manuscript is about, with its "width" and "height".
     """
+    box = Box(scene["width"], scene["height"])
     return {
-        name: (*caption_parts(entry, results, scene), entry.note)
+        name: (entry.own.of(box), entry.note.of(box) if entry.note else "")
         for name, entry in (FIGURES | STUDY_FIGURES).items()
     }
 
@@ -54,7 +55,7 @@ def typeset(template, output, scenes, figures, seed, configuration):
     results, folder = Path(output).absolute().parent, Path(template).absolute().parent
     root = Path(os.path.commonpath([results, folder.parent]))  # CITATION.cff is there
     contents = {
-        "captions": captions(results, scenes[0]),
+        "captions": captions(scenes[0]),
         "commit": commit(folder),
         "configuration": configuration,
         "constants": CONSTANTS | {"seed": seed},

@@ -20,8 +20,8 @@ from twodiscs.comparison.tables.cost import Cost
 from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.comparison.tables.theory import Grid
 from twodiscs.figures.catalogue import ANIMATION, GEOMETRY
+from twodiscs.model.box import Box
 from twodiscs_paper.catalogue import ENTRIES
-from twodiscs_paper.pipeline.documents.captions import box_of, caption
 from twodiscs_paper.pipeline.results.provenance import commit, versions
 
 #: The large figures of the section of a scene, of which it has ``SOME``, and of the section of all
@@ -44,6 +44,13 @@ SUBSCRIPT = re.compile(r"\b([A-Za-z])_(\w+)\b")
 
 #: The first sentence of a caption: its full stop is no decimal point.
 SENTENCE = re.compile(r".*?\.(?= [A-Z(]|$)|.+", re.DOTALL)
+
+
+def box_of(scene):
+    """Return the ``Box`` of a scene with "width", "height" and "effects", among these "discs"."""
+    effects = dict(scene.get("effects", ()))
+    discs = effects.pop("discs", 2)
+    return Box(scene["width"], scene["height"], effects, discs)
 
 
 def agreement(folder, scene):
@@ -85,7 +92,7 @@ def figure(folder, path, scenes):
     entry, scene = ENTRIES[path.stem], scenes.get(path.parts[0])
     main = next((candidate for candidate in scenes.values() if not candidate["effects"]), None)
     about = scene or main
-    text = caption(entry, folder, about) if about else entry.caption()
+    text = entry.caption(about and box_of(about))
     if scene:
         text += f" Scene {scene['name']}, {scene['box']}."
     with Image.open(Path(folder, path)) as image:

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
 
 from twodiscs.figures.kit import drawing
-from twodiscs.figures.kit.panels import add_panel, name_box
+from twodiscs.figures.kit.panels import add_panel, title
 from twodiscs.figures.kit.style import (
     BLACK,
     BLUE,
@@ -49,7 +49,7 @@ DOTTED = (0, (1, 1.5))
 SHELLS = (("#3B0F4F", "o"), ("#7A2A7F", "s"), ("#B04F9E", "^"), (PURPLE, "v"))
 
 
-def draw(box=None, *, tables):
+def draw(box, tables):
     """Draw the rows of accuracy_cost.csv; ``box`` is not used, because the table has its own."""
     rows = tables["accuracy_cost"]
     figure = new_figure(BOTTOM + 2 * HEIGHT + BETWEEN + TOP, WIDTH)
@@ -65,25 +65,8 @@ def draw(box=None, *, tables):
             axes.xaxis.set_minor_formatter(NullFormatter())
         draw_panel(axes, rows)
         axes.yaxis.set_minor_formatter(NullFormatter())
-    name_box(figure.axes[0], Box(rows[0]["width"], rows[0]["height"]), up=12)
+    title(figure.axes[0], "", Box(rows[0]["width"], rows[0]["height"]), up=12)
     return figure
-
-
-def caption(shown):
-    """Return the caption."""
-    return """
-    The cost of a digit: true relative error against processor time on one core, root mean square
-    over repeated runs. Error bars are one standard error. Dashed lines ∝ 1/√t are the law of
-    independent samples, with a fitted factor. (a) Volume by rejection sampling, by the conditioned
-    sampler and by scrambled Sobol points. (b) Area of disc collisions by shells of thickness ε,
-    whose bias (dotted) no work removes, and by shells with the ε at which bias and noise balance.
-    The other two methods draw samples or Sobol points on the surface itself. (c) Mean time between
-    vertical hops by event-driven dynamics: one trajectory at a time, and many in lock step. Time
-    steps search for overlaps every Δt; their error ∝ Δt (dotted) does not
-    fall with time. The dash-dotted line is the smallest error of time steps with any Δt. The arrow
-    compares the times to an error of 1e-3. (d) Gauss quadrature along the arc against the number of
-    its nodes, and exact evaluation; the legend has their processor times.
-    """
 
 
 def _of(rows, part, method, **where):

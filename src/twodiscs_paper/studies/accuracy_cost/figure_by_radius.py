@@ -5,43 +5,20 @@ import numpy as np
 from twodiscs.figures.kit import panels
 from twodiscs.figures.kit.limits import limits
 from twodiscs.figures.kit.looks import LOOKS, name_of
-from twodiscs.figures.kit.style import BLACK, SIZES, new_figure
+from twodiscs.figures.kit.style import BLACK, SIZES
 from twodiscs.model.box import Box
 from twodiscs.theory.exact import event_rate, mean_times
-
-#: Inches: heights of the panels of the times and of their ratios to a Poisson process.
-TIMES, RATIOS = 1.7, 1.0
 
 #: The smallest relative distance of a curve from the radius where its event ends.
 CLOSEST = 1e-3
 
 
-def draw(box=None, *, tables):
+def draw(box, tables):
     """Draw the rows of accuracy_cost.csv; ``box`` is not used, because the table has its own."""
     rows = tables["accuracy_cost"]
-    upper = panels.BOTTOM + RATIOS + panels.GAP
-    figure = new_figure(upper + TIMES + panels.TOP)
-    times = panels.add_panel(figure, upper, TIMES, name="times by radius")
-    ratios = panels.add_panel(figure, panels.BOTTOM, RATIOS, name="ratios")
+    figure, (times, ratios) = panels.stacked(times=2.1, ratios=1.4)
     _times(times, ratios, [row for row in rows if row["part"] == "radius"])
-    for axes, name in zip(figure.axes, "ab", strict=True):
-        panels.letter(axes, name)
     return figure
-
-
-def caption(shown):
-    """Return the caption."""
-    return """
-    (a) Processor time for a relative error of 1e-3 in each mean time, against the radius. It comes
-    from the speed and the errors of a pilot (open symbols) or from a run to that error (full
-    symbols). Lines are predicted from the exact rates and one speed for a Poisson process. Hops
-    near the radius where they are blocked are counted from initial states in a strip next to their
-    surface (grey). Their cost stays constant, here up to a relative distance of 1e-6. (b) The times
-    of pilots divided by the times of a Poisson process. Apart from the speed at that radius, this
-    ratio is the variance of the number of events divided by its mean. If it is below one, as for
-    hits of any wall, events are more regular than in a Poisson process. Above one they come in
-    clusters.
-    """
 
 
 def _times(axes, ratios, rows):
@@ -77,7 +54,7 @@ def _times(axes, ratios, rows):
     axes.tick_params(labelbottom=False)
     axes.set_ylabel("time for an error of $10^{-3}$ (s)")
     axes.legend(loc="upper left", ncols=2, columnspacing=0.7, handlelength=0.9, handletextpad=0.4)
-    panels.name_box(axes, box)
+    panels.title(axes, "a", box, up=panels.ABOVE)
     ratios.axhline(1, color=BLACK)
     ratios.set(yscale="log", xlabel="radius $r$", ylabel="time / Poisson")
     panels.label_decades(ratios.yaxis, 100)

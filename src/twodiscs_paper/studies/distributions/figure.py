@@ -4,13 +4,10 @@ import numpy as np
 
 from twodiscs.figures.kit import panels
 from twodiscs.figures.kit.looks import name_of
-from twodiscs.figures.kit.style import BLACK, GREY, SERIES, SIZES, new_figure
+from twodiscs.figures.kit.style import BLACK, GREY, SERIES, SIZES
 from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
 from twodiscs.theory import tails
-
-#: Inches: heights of the panels of the rates and of the first passages, the gap, the margin above.
-RATES, PASSAGES, GAP, TOP = 1.85, 1.2, 0.42, 0.22
 
 #: The longest time shown, in mean times, and the largest relative error of a rate.
 LONGEST, LARGEST_ERROR = 12, 0.15
@@ -32,37 +29,18 @@ def draw(box, tables):
     """Draw the rows of distributions.csv on its first scene; without rows only name ``box``."""
     rows = tables["distributions"]
     rows = [row for row in rows if row["scene"] == rows[0]["scene"]]
-    figure = new_figure(panels.BOTTOM + PASSAGES + GAP + RATES + TOP)
-    rates = panels.add_panel(figure, panels.BOTTOM + PASSAGES + GAP, RATES)
-    passages = panels.add_panel(figure, panels.BOTTOM, PASSAGES)
+    figure, (rates, passages) = panels.stacked(rates=2.4, passages=1.7)
     if not rows:
-        panels.name_box(rates, box, ": hops are too rare to record intervals")
+        panels.title(rates, "", box, ": hops are too rare to record intervals")
         for axes in (rates, passages):
             axes.set_axis_off()
         return figure
     _rates(rates, rows)
     _passages(passages, rows)
-    panels.letter(rates, "a")
-    panels.letter(passages, "b")
     first = rows[0]
     box = Box(first["width"], first["height"])
-    panels.name_box(rates, box, f",  (a) {name_of(first['event'])}")
+    panels.title(rates, "a", box, f",  {name_of(first['event'])}")
     return figure
-
-
-def caption(shown):
-    """Return the caption."""
-    return """
-    (a) Rate of hops at a time t after the last hop, in units of the exact mean time τ. An
-    exponential distribution would have the dashed line. The rate starts from the exact density at 0
-    (thick dashes), of hops that one bounce undoes. It jumps at the time from which both discs may
-    have bounced, t = √2 (h − 2r) for vertical hops. Thick lines are constant rates fitted to all
-    intervals after four mean times. They are dotted if the rate is not constant there (by χ² or by
-    a trend, at the level of 1e-3). The rates of small discs go on falling, towards the rate of a
-    cubic tail, 3τ/t (dash-dotted). (b) Mean time from a random moment to the next hop (open
-    symbols), and its value from the intervals, τ(1 + CV²)/2 (dots), with CV their coefficient of
-    variation. Error bars are one standard error.
-    """
 
 
 def _rates(axes, rows):

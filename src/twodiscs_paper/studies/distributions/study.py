@@ -11,7 +11,7 @@ from twodiscs.comparison.tables.base import (
     WIDTH,
     Table,
 )
-from twodiscs.figures.catalogue import DYNAMICS, Entry
+from twodiscs.figures.catalogue import DYNAMICS, Caption, Entry
 from twodiscs_paper.study import AS_ESTIMATE, SEE_QUANTITY, Study, scaled
 
 
@@ -101,7 +101,20 @@ STUDY = Study(
         "distributions": Entry(
             "Rate of hops since the last one",
             DYNAMICS,
-            "twodiscs_paper.studies.distributions.figure",
+            Caption(
+                """
+                (a) Rate of hops at a time t after the last hop, in units of the exact mean time τ.
+                An exponential distribution would have the dashed line. The rate starts from the
+                exact density at 0 (thick dashes), of hops that one bounce undoes. It jumps at the
+                time from which both discs may have bounced, t = √2 (h − 2r) for vertical hops.
+                Thick lines are constant rates fitted to all intervals after four mean times. They
+                are dotted if the rate is not constant there (by χ² or by a trend, at the level of
+                1e-3). The rates of small discs go on falling, towards the rate of a cubic tail,
+                3τ/t (dash-dotted). (b) Mean time from a random moment to the next hop (open
+                symbols), and its value from the intervals, τ(1 + CV²)/2 (dots), with CV their
+                coefficient of variation. Error bars are one standard error.
+                """
+            ),
             tables=("distributions",),
         ),
     },

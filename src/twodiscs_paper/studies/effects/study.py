@@ -13,7 +13,7 @@ from twodiscs.comparison.tables.base import (
     Table,
     Z,
 )
-from twodiscs.figures.catalogue import DYNAMICS, Entry
+from twodiscs.figures.catalogue import DYNAMICS, Caption, Entry
 from twodiscs_paper.study import AS_EXACT, Study
 
 
@@ -146,7 +146,22 @@ STUDY = Study(
         "effects": Entry(
             "Mean times with effects",
             DYNAMICS,
-            "twodiscs_paper.studies.effects.figure",
+            Caption(
+                """
+                Mean times of scenes with one effect or two, divided by the mean times of plain
+                discs in the same box at the same radius (of disc 1) and total energy: exact (lines)
+                and by event-driven molecular dynamics (symbols). The events are (a) vertical hops,
+                (b) disc collisions and (c) hits of any disc on any wall, up to the largest radius
+                of plain discs. Error bars are one standard error; they are hidden if they are
+                smaller than the symbols. Vertical lines mark h/4 and w/4, where hops of plain discs
+                become blocked, and their largest radius. The torus has neither hops nor walls.
+                Residuals z beneath are in standard errors, with guide lines at ±2 and ±5. (d)
+                Processor time per wall hit or disc collision at r = 0.2, divided by the time for
+                plain discs with all events counted. Leaving a periodic cell takes as much time as
+                an event, but is not counted. Crosses are estimates from too few events for an
+                error bar.
+                """
+            ),
             tables=("effects", "effects_cost", "effects_curves"),
         ),
     },

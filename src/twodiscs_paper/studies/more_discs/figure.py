@@ -1,11 +1,11 @@
 """Mean times against the number of discs: theory, Monte Carlo and dynamics."""
 
-from twodiscs.figures.kit import drawing, panels
+from twodiscs.figures.kit import panels
 from twodiscs.figures.kit.looks import LOOKS, name_of
-from twodiscs.figures.kit.style import BLACK, GREY, new_figure
+from twodiscs.figures.kit.style import BLACK, GREY
 
-#: Inches: heights of a panel of one radius and of the residuals, the gap, the margin above.
-PANEL, RESIDUALS, GAP, TOP = 1.4, 0.8, 0.1, 0.22
+#: Inches: heights of a panel of one radius and of the residuals.
+PANEL, RESIDUALS = 1.6, 1.3
 
 #: Times longer than this are not drawn: hops that almost never happen.
 LONGEST = 1e3
@@ -23,44 +23,22 @@ def draw(box, tables):
     """
     rows = tables["more_discs"]
     radii = sorted({row["radius"] for row in rows})
-    bottom = panels.BOTTOM + RESIDUALS + GAP
-    figure = new_figure(bottom + len(radii) * (PANEL + GAP) + TOP)
-    upper = [
-        panels.add_panel(figure, bottom + index * (PANEL + GAP), PANEL)
-        for index in reversed(range(len(radii)))
-    ]
-    lower = panels.add_panel(figure, panels.BOTTOM, RESIDUALS)
-    for name, axes, radius in zip("abcdefgh", upper, radii, strict=False):
+    heights = {f"radius {radius}": PANEL for radius in radii}
+    figure, (*upper, lower) = panels.stacked(**heights, residuals=RESIDUALS)
+    for axes, radius in zip(upper, radii, strict=True):
         _times(axes, [row for row in rows if row["radius"] == radius])
         axes.set(yscale="log", ylabel=f"mean time, $r={panels.math_of(radius)}$")
         axes.tick_params(labelbottom=False)
-        panels.letter(axes, name)
     _legend(upper[0])
     _residuals(lower, rows, radii)
-    panels.letter(lower, "abcdefgh"[len(radii)])
     lower.set_xlabel("number of discs $N$")
-    corner = {"xycoords": "axes fraction", "ha": "left", "va": "bottom", "fontsize": 7.5}
-    drawing.label(upper[0], r"$w\times h=0.75\,N\times 1$", (0, 1), (0, 5), **corner)
+    upper[0].set_title(r"(a)  $w\times h=0.75\,N\times 1$", loc="left")
     numbers = sorted({row["discs"] for row in rows})
     for axes in (*upper, lower):
         axes.set(xscale="log", xlim=(numbers[0] / 1.15, numbers[-1] * 1.15))
         axes.set_xticks(numbers, [str(number) for number in numbers])
         axes.minorticks_off()
     return figure
-
-
-def caption(shown):
-    """Return the caption."""
-    return """
-    Mean times of N discs in a box of 0.75 N × 1, at the energy per disc of two discs: exact if a
-    theory is known (lines), by Monte Carlo (dotted) and by event-driven molecular dynamics
-    (symbols). Error bars are one standard error; they are hidden if they are smaller than the
-    symbols. Collisions and hops count for any pair of discs, wall hits for one disc at one wall.
-    Two discs have the theory of the box, three discs an exact quadrature; at r = 0.28 only
-    neighbours touch, and a transfer operator gives every N. Insertions take too long for 64 discs.
-    Times beyond 1000 are not shown. (d) Residuals z of the dynamics in standard errors, from exact
-    values, or from Monte Carlo if no exact value is known; radii stand side by side.
-    """
 
 
 def _times(axes, rows):

@@ -13,17 +13,10 @@ from twodiscs.figures.kit.style import (
     SIZES,
     SKY,
     VERMILLION,
-    new_figure,
 )
 from twodiscs.model.box import Box
 from twodiscs.theory import exact, tails
 from twodiscs_paper.studies.passages.measure import ONE_INERTIA, thresholds
-
-#: Points between a panel and the name of its box, above a legend.
-UP = 24
-
-#: Inches: the heights of the panels of κ(t) and of the times, the gap, the margin above.
-CURVES, TIMES, GAP, TOP = 2.0, 1.8, 0.4, 0.56
 
 #: Halvings of the distance at which κ(t) is shown, for smooth discs and for rough discs.
 SHOWN = {None: (3, 5, 7, 9, 12), ONE_INERTIA: (3, 5, 7)}
@@ -38,40 +31,20 @@ LOOKS = {
 def draw(box, tables):
     """Draw the rows of passages.csv: κ(t) and mean times, for the last hop of the first scene."""
     rows = tables["passages"]
-    bottom = panels.BOTTOM + TIMES + GAP
-    figure = new_figure(bottom + CURVES + TOP)
-    curves = panels.add_panel(figure, bottom, CURVES, name="curves")
-    times = panels.add_panel(figure, panels.BOTTOM, TIMES, name="times")
+    figure, (curves, times) = panels.stacked(curves=2.9, times=2.3)
     if is_empty(figure, curves, rows, box):
         return figure
     main, hop, limit, ours = measured(rows, box)
     _curves(curves, main, hop, limit, ours)
     _times(times, main, hop, limit, ours)
-    panels.name_box(curves, main, f",  {name_of(hop)}", up=UP)
+    panels.title(curves, "a", main, f",  {name_of(hop)}")
     return figure
 
 
-def caption(shown):
-    """Return the caption."""
-    return """
-    Hops near the radius r_c at which they become blocked, at distances δ = (r_c − r)/r_c that are
-    halved from one to the next. (a) Transmission coefficient κ(t): the correlation between the
-    order of the discs at a time t after a hop and the direction of the hop. It is averaged over
-    states on the surface of the hop, for smooth discs (circles) and rough ones (squares). κ(t)
-    starts with the exact slope −2p(0⁺) (dashed, in the limit δ → 0). If hops are rare it has a
-    plateau, which falls as passages follow one another (lines). There κ is the fraction of odd
-    clusters among all hops, from independent runs. (b) Exact mean time τ between hops (lines, ∝ δ⁻²
-    close to the threshold) and mean time τ/κ between passages (symbols). Error bars are one
-    standard error.
-    """
-
-
 def is_empty(figure, upper, rows, box):
-    """Letter the panels of a ``figure``; return whether there are no ``rows``, and say so."""
-    for axes, name in zip(figure.axes, "abcde", strict=False):
-        panels.letter(axes, name)
+    """Return whether there are no ``rows``; the empty ``figure`` then has a title about it."""
     if not rows:
-        panels.name_box(upper, box, ": no hop becomes blocked")
+        panels.title(upper, "", box, ": no hop becomes blocked")
         for axes in figure.axes:
             axes.set_axis_off()
     return not rows
@@ -152,7 +125,8 @@ def _curves(axes, box, hop, limit, rows):
     axes.set(xscale="log", xlim=(0.095, 26), ylim=(0, 1.06))
     axes.xaxis.set_major_formatter("{x:g}")
     axes.set(xlabel="time $t$ / range along the hop", ylabel=r"transmission $\kappa(t)$")
-    axes.legend(loc="lower right", bbox_to_anchor=(1.02, 1), ncols=2, columnspacing=1.2)
+    handles, names = axes.get_legend_handles_labels()
+    axes.figure.legend(handles, names, loc="outside upper center", ncols=2)
 
 
 def scale(axes, xlim, ylim, label, yscale="log", **legend):

@@ -8,7 +8,6 @@ from twodiscs.figures.kit import panels
 from twodiscs.figures.kit.style import (
     BLACK,
     BLUE,
-    COLUMN,
     GREEN,
     GREY,
     PURPLE,
@@ -29,9 +28,8 @@ from twodiscs_paper.studies.passages.figure import (
 from twodiscs_paper.studies.passages.measure import ONE_INERTIA
 from twodiscs_paper.studies.passages.models import file
 
-#: Inches: the width of the figure, heights of the panels of the ring and its residuals, the gap,
-#: the margin above.
-WIDTH, RING, RESIDUALS, GAP, TOP = 7.0, 2.6, 1.1, 0.42, 0.22
+#: Inches: the width of the figure, the heights of its rows of panels.
+WIDTH, HEIGHTS = 7.0, (2.7, 1.7)
 
 #: Short files of more than two discs.
 FILES = {4: (SKY, "P"), 8: (BLACK, "D")}
@@ -53,17 +51,17 @@ RESIDUAL_LOOKS = {
 def draw(box, tables):
     """Draw the rows of passages.csv on diffusion; the ring has the box of the first scene."""
     rows = tables["passages"]
-    upper = panels.BOTTOM + RESIDUALS + panels.GAP
-    figure = new_figure(upper + RING + TOP, WIDTH)
-    ring = panels.add_panel(figure, upper, RING, name="ring")
-    lower = panels.add_panel(figure, panels.BOTTOM, RESIDUALS, name="residuals")
-    half = (upper + RING - panels.BOTTOM - GAP) / 2
-    right = WIDTH - COLUMN + panels.LEFT
-    moved = panels.add_panel(figure, panels.BOTTOM + half + GAP, half, right, name="moved")
-    collapse = panels.add_panel(figure, panels.BOTTOM, half, right, name="collapse")
+    figure = new_figure(sum(HEIGHTS), WIDTH, layout="constrained")
+    places = [["ring", "moved"], ["residuals", "collapse"]]
+    axes = figure.subplot_mosaic(places, height_ratios=HEIGHTS)
+    ring, lower, moved, collapse = (
+        axes[name] for name in ("ring", "residuals", "moved", "collapse")
+    )
+    for one, letter in ((lower, "b"), (moved, "c"), (collapse, "d")):
+        panels.title(one, letter)
     if is_empty(figure, ring, rows, box):
         return figure
-    panels.name_box(ring, first_scene(rows, box)[0])
+    panels.title(ring, "a", first_scene(rows, box)[0])
     _ring(ring, rows)
     # Two discs with friction have a figure of their own.
     residuals(lower, [r for r in rows if not r["friction"] or r["discs"] > 2], RESIDUAL_LOOKS)
@@ -76,26 +74,6 @@ def draw(box, tables):
     lower.xaxis.set_major_formatter("{x:g}")
     lower.xaxis.set_minor_formatter(lambda x, _: f"{x:g}" if f"{x:e}"[0] in "25" else "")
     return figure
-
-
-def caption(shown):
-    """Return the caption."""
-    return """
-    Diffusion by hops. (a) Coefficient D of diffusion on a ring, divided by its value for a random
-    walk with ν hops of a disc per time in either direction, each by ℓ (dashed), at distances δ =
-    (r_c − r)/r_c from the radius r_c at which hops become blocked. For two discs it is measured by
-    correlations of hops (open symbols) and by displacements (dots), for four and eight discs by
-    displacements, and for long files by the order of the discs. With friction, all velocities are
-    drawn anew at random times, at a rate γ. (b) Residuals z in standard errors, from the exact
-    rate, between two estimators, or of F from theory. (c) Mean square displacement of a tagged
-    disc in a long file on a ring, blocked (r = 0.28 h, full symbols) and open (δ = 1/8). Units are
-    ℓ² and the thermal speed. Black lines are theory of the blocked files at long times, without a
-    free parameter: sound, until it has gone around half of the ring, and damped sound. Rough discs
-    (I = 1/2, blocked) lose their momentum to the walls, too, but have no such line. Grey lines add
-    what hops do to the file of places, as the order of the discs has it. (d) Files with
-    friction: displacements in units of F√t×, at times over t× = (F/2D)², where single file and hops
-    contribute equally. The line is √u + u with u = t/t×. Error bars are one standard error.
-    """
 
 
 def _ring(axes, rows):

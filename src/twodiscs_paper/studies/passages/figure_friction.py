@@ -3,13 +3,10 @@
 import numpy as np
 
 from twodiscs.figures.kit import drawing, panels
-from twodiscs.figures.kit.style import BLACK, GREY, SERIES, new_figure
+from twodiscs.figures.kit.style import BLACK, GREY, SERIES
 from twodiscs.model.box import Box
 from twodiscs_paper.studies.passages.figure import columns, first_scene, is_empty, points, select
 from twodiscs_paper.studies.passages.measure import KICKED
-
-#: Inches: heights of the panels of κ and of the exponent, the gap, the margin above.
-KAPPA, EXPONENT, TOP = 1.9, 1.3, 0.22
 
 #: {rate of kicks: colour, marker}.
 LOOKS = dict(zip(KICKED, SERIES, strict=True))
@@ -24,12 +21,10 @@ DIFFUSIVE = 3 / 4
 def draw(box, tables):
     """Draw the rows of passages.csv with friction."""
     rows = [row for row in tables["passages"] if row["friction"] is not None]
-    figure = new_figure(panels.BOTTOM + EXPONENT + panels.GAP + KAPPA + TOP)
-    upper = panels.add_panel(figure, panels.BOTTOM + EXPONENT + panels.GAP, KAPPA, name="kappa")
-    lower = panels.add_panel(figure, panels.BOTTOM, EXPONENT, name="exponent")
+    figure, (upper, lower) = panels.stacked(kappa=2.3, exponent=1.8)
     if is_empty(figure, upper, rows, box):
         return figure
-    panels.name_box(upper, first_scene(rows, box)[0])
+    panels.title(upper, "a", first_scene(rows, box)[0])
     for friction, look in LOOKS.items():
         own = select(rows, friction=friction, quantity="coefficient")
         if own:
@@ -64,19 +59,6 @@ def draw(box, tables):
     upper.yaxis.set_major_formatter("{x:g}")
     upper.legend(loc="lower left")
     return figure
-
-
-def caption(shown):
-    """Return the caption."""
-    return """
-    Passages with friction: all velocities are drawn anew at random times of the rate γ. (a) The
-    fraction κ of hops that are passages, near the radius r_c = h/4 at which hops become blocked.
-    The abscissa is x = γ√(εσ), with the room ε = h − 4r that the discs leave in the neck and σ =
-    2r. Dashed: the limits of ballistic discs, 1, and of discs that diffuse through the neck,
-    3/(4x). (b) The local power of the distance r_c − r with which the time τ/κ between passages
-    grows, from one distance to the next. Dashed: the powers that were found for diffusive and for
-    ballistic discs. Error bars are one standard error.
-    """
 
 
 def scaled(rows):

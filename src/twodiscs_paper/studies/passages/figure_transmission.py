@@ -4,7 +4,7 @@ import numpy as np
 
 from twodiscs.figures.kit import drawing, panels
 from twodiscs.figures.kit.limits import QUARTERS
-from twodiscs.figures.kit.style import BLACK, BLUE, GREY, SKY, VERMILLION, new_figure
+from twodiscs.figures.kit.style import BLACK, BLUE, GREY, SKY, VERMILLION
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS
 from twodiscs_paper.studies.passages.figure import (
@@ -17,10 +17,6 @@ from twodiscs_paper.studies.passages.figure import (
     scale,
     select,
 )
-
-#: Inches: the heights of the panels of smooth discs, rough discs and residuals, the gap, the margin
-#: above.
-SMOOTH, ROUGH, RESIDUALS, GAP, TOP = 1.8, 1.8, 0.8, 0.4, 0.22
 
 #: Colour and marker of further boxes and hops of smooth discs.
 OTHERS = ((SKY, "P"), (BLACK, "D"))
@@ -35,12 +31,7 @@ RESIDUAL_LOOKS = {
 def draw(box, tables):
     """Draw the rows of passages.csv: smooth discs at every threshold, rough discs at one."""
     rows = tables["passages"]
-    middle = panels.BOTTOM + RESIDUALS + GAP
-    upper = middle + ROUGH + GAP
-    figure = new_figure(upper + SMOOTH + TOP)
-    smooth = panels.add_panel(figure, upper, SMOOTH, name="smooth")
-    rough = panels.add_panel(figure, middle, ROUGH, name="rough")
-    lower = panels.add_panel(figure, panels.BOTTOM, RESIDUALS, name="residuals")
+    figure, (smooth, rough, lower) = panels.stacked(smooth=2.3, rough=2.3, residuals=1.4)
     if is_empty(figure, smooth, rows, box):
         return figure
     main, hop, _, ours = measured(rows, box)
@@ -48,19 +39,6 @@ def draw(box, tables):
     _rough(rough, ours, place(main, hop))
     residuals(lower, select(rows, friction=None), RESIDUAL_LOOKS)
     return figure
-
-
-def caption(shown):
-    """Return the caption."""
-    return """
-    Transmission coefficient κ near the radius r_c at which hops become blocked, w/4 or h/4, over
-    the distance δ = (r_c − r)/r_c. (a) Smooth discs: 1 − κ, multiplied by the range A along the hop
-    and divided by ∛(εσ²), with σ = 2r and the room ε that the discs leave in the neck. It would be
-    constant if 1 − κ fell as ∛ε. Dashed: its limit c for δ → 0, which is computed in that limit.
-    (b) Rough discs: κ falls, and its slope depends on their moment of inertia I, in units of mr².
-    The grey line is for a separation that diffuses in the neck. (c) Residuals z in standard errors,
-    from exact values or between two estimators. Error bars are one standard error.
-    """
 
 
 def _smooth(axes, rows, ours):

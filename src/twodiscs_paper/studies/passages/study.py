@@ -12,7 +12,7 @@ from twodiscs.comparison.tables.base import (
     Table,
     Z,
 )
-from twodiscs.figures.catalogue import DYNAMICS, Entry
+from twodiscs.figures.catalogue import DYNAMICS, Caption, Entry
 from twodiscs.model.events import HOPS
 from twodiscs_paper.study import AS_ESTIMATE, Study, scaled
 
@@ -138,25 +138,79 @@ STUDY = Study(
         "passages": Entry(
             "Hops that are passages",
             DYNAMICS,
-            "twodiscs_paper.studies.passages.figure",
+            Caption(
+                """
+                Hops near the radius r_c at which they become blocked, at distances δ = (r_c −
+                r)/r_c that are halved from one to the next. (a) Transmission coefficient κ(t): the
+                correlation between the order of the discs at a time t after a hop and the direction
+                of the hop. It is averaged over states on the surface of the hop, for smooth discs
+                (circles) and rough ones (squares). κ(t) starts with the exact slope −2p(0⁺)
+                (dashed, in the limit δ → 0). If hops are rare it has a plateau, which falls as
+                passages follow one another (lines). There κ is the fraction of odd clusters among
+                all hops, from independent runs. (b) Exact mean time τ between hops (lines, ∝ δ⁻²
+                close to the threshold) and mean time τ/κ between passages (symbols). Error bars are
+                one standard error.
+                """
+            ),
             tables=("passages",),
         ),
         "transmission": Entry(
             "Passages near the threshold",
             DYNAMICS,
-            "twodiscs_paper.studies.passages.figure_transmission",
+            Caption(
+                """
+                Transmission coefficient κ near the radius r_c at which hops become blocked, w/4 or
+                h/4, over the distance δ = (r_c − r)/r_c. (a) Smooth discs: 1 − κ, multiplied by the
+                range A along the hop and divided by ∛(εσ²), with σ = 2r and the room ε that the
+                discs leave in the neck. It would be constant if 1 − κ fell as ∛ε. Dashed: its limit
+                c for δ → 0, which is computed in that limit. (b) Rough discs: κ falls, and its
+                slope depends on their moment of inertia I, in units of mr². The grey line is for a
+                separation that diffuses in the neck. (c) Residuals z in standard errors, from exact
+                values or between two estimators. Error bars are one standard error.
+                """
+            ),
             tables=("passages",),
         ),
         "friction": Entry(
             "Passages with friction",
             DYNAMICS,
-            "twodiscs_paper.studies.passages.figure_friction",
+            Caption(
+                """
+                Passages with friction: all velocities are drawn anew at random times of the rate γ.
+                (a) The fraction κ of hops that are passages, near the radius r_c = h/4 at which
+                hops become blocked. The abscissa is x = γ√(εσ), with the room ε = h − 4r that the
+                discs leave in the neck and σ = 2r. Dashed: the limits of ballistic discs, 1, and of
+                discs that diffuse through the neck, 3/(4x). (b) The local power of the distance r_c
+                − r with which the time τ/κ between passages grows, from one distance to the next.
+                Dashed: the powers that were found for diffusive and for ballistic discs. Error bars
+                are one standard error.
+                """
+            ),
             tables=("passages",),
         ),
         "diffusion": Entry(
             "Diffusion by hops",
             DYNAMICS,
-            "twodiscs_paper.studies.passages.figure_diffusion",
+            Caption(
+                """
+                Diffusion by hops. (a) Coefficient D of diffusion on a ring, divided by its value
+                for a random walk with ν hops of a disc per time in either direction, each by ℓ
+                (dashed), at distances δ = (r_c − r)/r_c from the radius r_c at which hops become
+                blocked. For two discs it is measured by correlations of hops (open symbols) and by
+                displacements (dots), for four and eight discs by displacements, and for long files
+                by the order of the discs. With friction, all velocities are drawn anew at random
+                times, at a rate γ. (b) Residuals z in standard errors, from the exact rate, between
+                two estimators, or of F from theory. (c) Mean square displacement of a tagged disc
+                in a long file on a ring, blocked (r = 0.28 h, full symbols) and open (δ = 1/8).
+                Units are ℓ² and the thermal speed. Black lines are theory of the blocked files at
+                long times, without a free parameter: sound, until it has gone around half of the
+                ring, and damped sound. Rough discs (I = 1/2, blocked) lose their momentum to the
+                walls, too, but have no such line. Grey lines add what hops do to the file of
+                places, as the order of the discs has it. (d) Files with friction: displacements in
+                units of F√t×, at times over t× = (F/2D)², where single file and hops contribute
+                equally. The line is √u + u with u = t/t×. Error bars are one standard error.
+                """
+            ),
             tables=("passages",),
         ),
     },

@@ -30,24 +30,8 @@ def draw(box, tables):
     _shares(panel(figure, "c"), parts.get("sampling", []))
     estimates = parts.get("estimates", [])
     _estimates(panel(figure, "d", 0.5), estimates, radii_of(estimates))
-    panels.name_box(figure.axes[0], box)
+    panels.title(figure.axes[0], "", box)
     return figure
-
-
-def caption(shown):
-    """Return the caption."""
-    text = """
-    Theory and sampling at hard radii; dashed lines are the required bounds. (a) Relative error of
-    closed forms in double precision, and of the worst of volume, areas and mean times as computed
-    here, below the largest radius. (b) The same on both sides of the radii where a hop becomes
-    blocked. (c) Accepted share of proposed configurations, by rejection from the prism and
-    by the conditioned sampler of initial states. (d) Residuals z of volume and areas by this
-    sampler.
-    """
-    return text + shown.if_any(
-        lambda row: row["part"] == "estimates" and row["status"] != "sampled",
-        "A radius without symbols has too few samples in its shells for an error bar.",
-    )
 
 
 def by_part(rows):

@@ -48,27 +48,8 @@ def draw(box, tables):
     _times(panel(figure, "b", 0.85), parts.get("times", []))
     _reversal(panel(figure, "c"), parts.get("reversal", []))
     _coverage(panel(figure, "d"), parts.get("coverage", []))
-    panels.name_box(figure.axes[2], box)
+    panels.title(figure.axes[2], "", box)
     return figure
-
-
-def caption(shown):
-    """Return the caption."""
-    text = """
-    The dynamics in hard cases; dashed lines are the required bounds. (a) Largest values in a long
-    run: error of the energy, overlap of the discs, distance of centres beyond their range. Symbols
-    at 0 are exact zeros. (b) Worst error of predicted times to a contact (circles) and to a wall
-    (squares), against 50 digits, for many kinds of approach. (c) Velocities are reversed after n
-    events: error of return after n more events, against the binary digits that the Lyapunov
-    exponent λ per event costs. The line is one rounding that grows at this rate. The legend has the
-    number of events after which half of the digits are lost, and in brackets the number that λ
-    predicts. (d) Share of 95 % intervals that contain the exact mean time, over independent
-    repetitions.
-    """
-    return text + shown.if_any(
-        lambda row: row["part"] == "coverage" and row["value"] is None,
-        "Crosses are events too rare for an interval.",
-    )
 
 
 def _runs(axes, rows, radii):

@@ -4,10 +4,7 @@ import numpy as np
 
 from twodiscs.figures.kit import panels
 from twodiscs.figures.kit.looks import name_of
-from twodiscs.figures.kit.style import BLACK, BLUE, GREEN, VERMILLION, new_figure
-
-#: Inches: heights of the panels of the tails, their ratio to the law and the exponential; gaps.
-TAILS, RATIO, EXPONENTIAL, JOINT, GAP, TOP = 1.6, 0.85, 1.15, 0.07, 0.42, 0.22
+from twodiscs.figures.kit.style import BLACK, BLUE, GREEN, VERMILLION
 
 #: Colour and marker of the cases, in the order of the table.
 LOOKS = ((BLUE, "o"), (VERMILLION, "s"), (GREEN, "^"))
@@ -19,11 +16,7 @@ LARGEST_ERROR = 0.3
 def draw(box, tables):
     """Draw the rows of tails.csv, in the ``Box`` of the first scene; they have their own radii."""
     rows = tables["tails"]
-    low = panels.BOTTOM + EXPONENTIAL + GAP
-    figure = new_figure(low + RATIO + JOINT + TAILS + TOP)
-    tails = panels.add_panel(figure, low + RATIO + JOINT, TAILS)
-    ratio = panels.add_panel(figure, low, RATIO)
-    exponential = panels.add_panel(figure, panels.BOTTOM, EXPONENTIAL)
+    figure, (tails, ratio, exponential) = panels.stacked(tails=1.9, ratio=1.4, exponential=1.7)
     cases = list(dict.fromkeys((row["event"], row["radius"]) for row in rows))
     for case, look in zip(cases, LOOKS, strict=False):
         own = [row for row in rows if (row["event"], row["radius"]) == case]
@@ -44,23 +37,8 @@ def draw(box, tables):
     ratio.yaxis.set_minor_formatter("")
     exponential.set(yscale="log", xlim=(0, 10.5), xlabel=r"interval $t/\tau$", ylabel=r"$P(T>t)$")
     exponential.legend(loc="upper right")
-    for axes, name in ((tails, "a"), (ratio, "b"), (exponential, "c")):
-        panels.letter(axes, name)
-    panels.name_box(tails, box)
+    panels.title(tails, "a", box)
     return figure
-
-
-def caption(shown):
-    """Return the caption."""
-    return """
-    (a) Probability that the next event takes longer than t, in units of the exact mean time τ. Open
-    symbols come from initial states near the motions that last, with exact weights, and dots from
-    plain counting. Discs that move almost along an axis pass clear of each other for a time ∝
-    1/(their drift). The tail therefore falls as C/t³, with the exact C (lines), and not
-    exponentially (dashed). (b) The same probabilities divided by C/t³. (c) Beyond h/4 no such
-    motion avoids vertical hops: the tail looks exponential, but its rate is not 1/τ (dashed). Error
-    bars are one standard error.
-    """
 
 
 def _name(row):

@@ -4,14 +4,11 @@ import numpy as np
 
 from twodiscs.figures.kit import drawing, panels
 from twodiscs.figures.kit.looks import LOOKS, name_of
-from twodiscs.figures.kit.style import BLACK, GREY, new_figure
+from twodiscs.figures.kit.style import BLACK, GREY
 from twodiscs.model.events import HOPS, SHELLS
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import leading_law
 from twodiscs_paper.studies.thresholds.measure import near, passages, start
-
-#: Inches: heights of the panels of the hops and of the ratios, the gap, the margin above.
-HOP_TIMES, RATIOS, GAP, TOP = 1.8, 1.45, 0.4, 0.22
 
 #: The least distance below the limit, relative to it, and points on a curve.
 NEAREST, POINTS = 2e-5, 80
@@ -19,9 +16,7 @@ NEAREST, POINTS = 2e-5, 80
 
 def draw(box, tables):
     """Draw mean_times.csv, if given, and the first passages of distributions.csv."""
-    figure = new_figure(panels.BOTTOM + RATIOS + GAP + HOP_TIMES + TOP)
-    hops = panels.add_panel(figure, panels.BOTTOM + RATIOS + GAP, HOP_TIMES)
-    ratios = panels.add_panel(figure, panels.BOTTOM, RATIOS)
+    figure, (hops, ratios) = panels.stacked(hops=2.3, ratios=2.0)
     for event, (colour, marker) in LOOKS.items():
         law = leading_law(box, event) if event in SHELLS else None
         if law is None:
@@ -62,24 +57,8 @@ def draw(box, tables):
         axes.set_xlabel(r"distance from the limit $\delta/r_{\rm c}$")
     hops.legend(loc="upper right", ncols=2)
     ratios.legend(loc="upper left")
-    panels.letter(hops, "a")
-    panels.letter(ratios, "b")
-    panels.name_box(hops, box)
+    panels.title(hops, "a", box)
     return figure
-
-
-def caption(shown):
-    """Return the caption."""
-    return """
-    Mean times near the radius at which their event ends, r = r_c − δ. For vertical hops r_c = w/4,
-    for horizontal ones h/4, and for all other events the largest radius. (a) Times between hops by
-    event-driven molecular dynamics (circles and squares), exact (lines) and by their limiting laws
-    ∝ δ⁻² (dashed), and mean first passages from a random moment (crosses). Grey lines have the
-    slopes of inertial and of diffusive motion. (b) Times divided by their limiting laws, which have
-    the exponent −2 for hops that become blocked and 1 for events that end with the largest radius.
-    Full symbols come from initial states in a strip around the surface of the hop, where the flux
-    is measured and not the waiting time. Error bars are one standard error.
-    """
 
 
 def _mean_times(tables):

@@ -1,0 +1,246 @@
+"""Figures over the radius: estimates of volume, areas and mean times against exact curves."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from matplotlib.lines import Line2D
+
+from twodiscs.figures.kit import curves, panels
+from twodiscs.figures.kit.limits import hop_ends
+from twodiscs.figures.kit.looks import LOOKS, name_of
+from twodiscs.figures.kit.style import SERIES
+from twodiscs.model.checks import InputError
+from twodiscs.theory.exact import mean_times
+from twodiscs.theory.laws import small_radius_time, threshold_time
+
+#: The range of the limiting laws, over the largest radius: from r = 0 up, and from the end down.
+SMALL, LAST = 0.4, 0.1
+
+#: The panel of an approach begins this close to the end, relatively; its law is drawn from LAW on.
+CLOSEST, LAW = 1e-5, 0.3
+
+WALLS = {
+    "right_wall": "disc 1, right wall",
+    "top_wall": "disc 1, top wall",
+    "any_wall": "any disc, any wall",
+}
+
+
+@dataclass(frozen=True)
+class Curves:
+    """A figure of quantities over the radius.
+
+    ``names`` maps the quantities, as theory.csv names them, to their names in the legend; the ones
+    in the table are drawn. ``label`` is that of the ordinate. It is logarithmic; if ``rooted``,
+    square roots are drawn instead, from zero on. ``single`` is the name of the method if there is
+    only one series. ``laws`` are limiting laws of plain scenes, "small" and "last". With
+    ``approach`` a panel beneath shows times over the distance from the radius where they end.
+    ``looks`` maps quantities to (colour, marker).
+    """
+
+    names: dict
+    label: str
+    single: str | None = None
+    rooted: bool = False
+    laws: tuple = ()
+    approach: bool = False
+    looks: dict | None = None
+
+
+def _one(quantity, name, label, **options):
+    """Return the ``Curves`` of one sampled quantity."""
+    return Curves({quantity: name}, label, single="Monte Carlo", **options)
+
+
+def _every(kind, label):
+    """Return the ``Curves`` of one kind of quantity, "time" or "area", for all events."""
+    names = {f"{event}_{kind}": name_of(event) for event in LOOKS}
+    return Curves(names, label, looks={f"{event}_{kind}": look for event, look in LOOKS.items()})
+
+
+#: The figures by their names. ``mean_times`` and ``areas`` show all events in one panel.
+OVER_RADIUS = {
+    "volume": _one("volume", "volume", "volume $V$"),
+    "vertical_hop_area": _one(
+        "vertical_hop_area",
+        "vertical hops",
+        r"root of the vertical-hop area, $\sqrt{S_{\mathrm{v}}}$",
+        rooted=True,
+    ),
+    "horizontal_hop_area": _one(
+        "horizontal_hop_area",
+        "horizontal hops",
+        r"root of the horizontal-hop area, $\sqrt{S_{\mathrm{h}}}$",
+        rooted=True,
+    ),
+    "collision_area": _one(
+        "disc_collision_area", "disc collisions", r"collision area $S_{\mathrm{coll}}$"
+    ),
+    "wall_area": Curves({f"{event}_area": name for event, name in WALLS.items()}, "wall area $S$"),
+    "mean_hop_time": Curves(
+        {"vertical_hop_time": "vertical hops", "horizontal_hop_time": "horizontal hops"},
+        r"mean time between hops $\tau$",
+        laws=("small",),
+        approach=True,
+    ),
+    "mean_collision_time": Curves(
+        {"disc_collision_time": "disc collisions"},
+        r"mean time between collisions $\tau_{\mathrm{coll}}$",
+        single="MD",
+        laws=("small", "last"),
+    ),
+    "mean_wall_time": Curves(
+        {f"{event}_time": name for event, name in WALLS.items()},
+        r"mean time between wall hits $\tau$",
+        laws=("small", "last"),
+    ),
+    "mean_times": _every("time", r"mean time $\tau$"),
+    "areas": _every("area", "area $S$"),
+}
+
+
+def draw(name, box, rows):
+    """Draw one of ``OVER_RADIUS`` for a ``Box``, with the ``rows`` of its table.
+
+    There is a panel of residuals if there are any, and no curve if no exact value is known. Raises
+    ``InputError`` if no row has one of the quantities.
+    """
+    shown = OVER_RADIUS[name]
+    radii, by_quantity = series_of(box, rows, shown.names, shown.looks or {})
+    if not by_quantity:
+        raise InputError(f"the table of {name} has no row of {', '.join(shown.names)}")
+    if shown.rooted:
+        by_quantity = {quantity: _rooted(part) for quantity, part in by_quantity.items()}
+    series = list(by_quantity.values())
+    drawn = [row for part in series for row in part.rows]
+    beneath = shown.approach and not _is_unknown(drawn)
+    figure, main, residuals, approach = panels.panels(
+        box, shown.label, any(map(panels.is_judged, drawn)), beneath
+    )
+    panels.draw_series(main, residuals, radii, series, bool(shown.single))
+    for quantity in by_quantity:
+        _laws(main, box, quantity.removesuffix("_time"), shown.laws)
+    if shown.rooted:
+        main.set_ylim(0, None)
+    else:
+        panels.logarithmic(main, radii, series)
+    laws = [(panels.LAW_NAME, panels.LAW)] if shown.laws and box.is_plain else []
+    panels.legend(main, series, shown.single, laws)
+    if beneath:
+        _approach(approach, box, by_quantity)
+    return figure
+
+
+def add(axes, box, rows, names):
+    """Draw the quantities among ``names`` into ``axes``, which may have other curves.
+
+    Every call takes unused colours and markers. Names in the legend include the box, because
+    ``axes`` may show several.
+    """
+    kinds = [OVER_RADIUS["volume"], OVER_RADIUS["mean_times"], OVER_RADIUS["areas"]]
+    present = {*map(quantity_of, rows)} & {*names}
+    kind = next(one for one in kinds if present & {*one.names})
+    before, looks = len(axes.get_legend_handles_labels()[1]), [*LOOKS.values()]
+    texts = {q: text for one in kinds for q, text in one.names.items() if q in present}
+    names = {q: ", ".join([text, *panels.heading(box)]) for q, text in texts.items()}
+    looks = {q: looks[(before + i) % len(looks)] for i, q in enumerate(texts)}
+    radii, found = series_of(box, rows, names, looks)
+    series, ends = [*found.values()], axes.get_ylim()
+    panels.draw_series(axes, None, radii, series)
+    for part in series:
+        axes.plot([], [], label=part.name, **panels.open_symbol(*part.look))
+    panels.logarithmic(axes, radii, series)
+    if before:
+        low, high = zip(ends, axes.get_ylim(), strict=True)
+        axes.set_ylim(min(low), max(high))
+    else:
+        axes.set(xlabel="radius $r$", ylabel=kind.label)
+    axes.legend()
+
+
+def series_of(box, rows, names, looks):
+    """Return (radii of the curves, {quantity: ``Series``}) of the quantities in ``rows``."""
+    radii, exact = curves.exact_curves(box)
+    found = {}
+    for quantity, name in names.items():
+        shown = [row for row in rows if quantity_of(row) == quantity]
+        if shown:
+            found[quantity] = panels.Series(name, shown, exact[quantity], looks.get(quantity))
+    return radii, found
+
+
+def quantity_of(row):
+    """Return the quantity of a row of a table, as theory.csv names it."""
+    return row["quantity"] if "quantity" in row else f"{row['event']}_time"
+
+
+def _is_unknown(rows):
+    """Return whether the ``rows`` have estimates, but no exact value is known for any of them."""
+    measured = [row for row in rows if row.get("estimate") is not None]
+    return bool(measured) and all(row.get("exact") is None for row in measured)
+
+
+def _rooted(series):
+    """Return a ``Series`` of square roots with their standard errors.
+
+    No sample can be in the shell of a blocked hop: this exact result is a symbol at 0.
+    """
+
+    def root(row):
+        if row["exact"] == 0 and row.get("hits") == 0:
+            return row | {"estimate": 0.0, "stderr": 0.0}
+        if not row["estimate"]:
+            return row
+        value = row["estimate"] ** 0.5
+        return row | {
+            "estimate": value,
+            "stderr": row["stderr"] and row["stderr"] / (2 * value),
+        }
+
+    return replace(series, rows=[*map(root, series.rows)], exact=np.sqrt(series.exact))
+
+
+def _laws(axes, box, event, laws):
+    """Draw laws for small discs and below the largest radius, known for boxes without effects."""
+    if not box.is_plain:
+        return
+    end = box.largest_radius
+    if "small" in laws:
+        radii = np.linspace(0, SMALL, 41)[1:] * end
+        axes.plot(radii, [small_radius_time(box, event, r) for r in radii], **panels.LAW)
+    if "last" in laws:
+        radii = end * (1 - np.geomspace(LAST, 1e-6, 60))
+        axes.plot(radii, [threshold_time(box.scene(r), event) for r in radii], **panels.LAW)
+
+
+def _approach(axes, box, by_quantity):
+    """Draw the times over the distance from the radius at which the hop ends."""
+    distances = np.geomspace(CLOSEST, 0.99, 70)
+    ends = hop_ends(box)
+    shown, handles = [], []
+    for (colour, marker), (quantity, part) in zip(SERIES, by_quantity.items(), strict=False):
+        event = quantity.removesuffix("_time")
+        end, name = ends[event]
+        scenes = [box.scene(float(end * (1 - d))) for d in distances]
+        times = [mean_times(scene)[event] for scene in scenes]
+        axes.plot(distances, np.array(times, float), color=colour, zorder=5)
+        if part.is_visible():
+            label = rf"{part.name}, $r_{{\mathrm{{c}}}}={name}$"
+            handles.append(Line2D([], [], label=label, color=colour))
+        shown += [time for time in times if time]
+        if None in times:
+            shown += [row["estimate"] for row in part.rows if row["estimate"]]
+        if box.is_plain:
+            near = distances < LAW
+            laws = [threshold_time(scene, event) for scene in scenes]
+            axes.plot(distances[near], np.array(laws)[near], **panels.LAW)
+        rows = [row | {"radius": 1 - row["radius"] / end} for row in part.rows]
+        panels.estimates(axes, [row for row in rows if row["radius"] > 0], colour, marker)
+    low, high = min(shown) / 3, 3 * max(shown)
+    axes.set(xscale="log", yscale="log", xlim=(CLOSEST, 1), ylim=(low, high))
+    panels.label_decades(axes.yaxis, high / low)
+    axes.set_xlabel(r"relative distance from the end, $1-r/r_{\mathrm{c}}$")
+    axes.set_ylabel(r"mean time $\tau$")
+    if box.is_plain:
+        handles.append(Line2D([], [], label=panels.LAW_NAME, **panels.LAW))
+    axes.legend(handles=handles, loc="best")

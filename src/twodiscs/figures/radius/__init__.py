@@ -1,1 +1,0 @@
-"""Figures over the radius: volume, areas and mean times, estimates against exact curves."""
