@@ -16,11 +16,10 @@ AS_ESTIMATE, AS_EXACT, SEE_QUANTITY = (
 class Study:
     """An analysis: its ``name``, what its target ``builds``, its ``tables`` and ``figures``.
 
-    The function ``rows`` makes the first table. It takes the ``parameters`` of a ``Configuration``
-    and, as ``tables``, the rows of the tables that the study ``reads``. These are {name: (name of a
-    scene or None, table)}. Other tables have their own rules. If a table takes long, it has
-    ``parts``, {name: parameters}: jobs of its function ``part``, whose rows are read as tables of
-    these names.
+    The function ``rows`` of each table makes it. It takes, by their names, ``parameters`` of a
+    ``Configuration`` and, as ``tables``, the rows of the tables that the study ``reads``. These are
+    {name: (name of a scene or None, table)}. If the first table takes long, it has ``parts``,
+    {name: parameters}: jobs of its function ``part``, whose rows are read as tables of these names.
 
     ``figures`` are {name: ``Entry``}. ``about_plain`` studies are about scenes without effects.
     ``seconds`` is about how long the table takes: a number, or a function of a ``Configuration``.

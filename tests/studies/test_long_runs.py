@@ -62,6 +62,16 @@ def test_the_table_of_passages_is_that_of_its_counts():
             assert sum(hops for _, hops in count["sizes"]) == blocks * HOPS_OF_BLOCK
 
 
+@pytest.mark.parametrize(("name", "table"), [("passages", Passages), ("tails", Tails)])
+def test_the_parameters_of_a_long_run_are_those_of_a_part(name, table, monkeypatch):
+    configuration, _ = kept(name, table)
+    given = []
+    monkeypatch.setitem(passages.PARTS, "long_run", lambda thresholds: given.append(thresholds))
+    monkeypatch.setattr(tails, "long_run", lambda weighted, counted: given.append(counted))
+    table.part(**configuration)
+    assert given == [configuration.get("thresholds", configuration.get("counted"))]
+
+
 def test_passages_agree_with_those_of_the_build():
     _, found = kept("passages", Passages)
     expected = of(Passages.read(PAPER / "expected" / "passages.csv"), scene="paper")

@@ -1,1 +1,1 @@
-"""Which formulas of the source are right, with the evidence."""
+"""Which formulas of the source are right."""
