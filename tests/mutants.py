@@ -144,7 +144,6 @@ MUTANTS = [
     ("comparison/measured/transmission.py", "passages of other pairs", "partial(of_clusters, others=others)", "of_clusters"),
     ("sampling/many/initial.py", "proposals of heights as states", "    settle(state, initial, centres, initial.chain)\n", ""),
     ("twodiscs_paper/studies/passages/measure.py", "error of the second estimate", "math.hypot(found.stderr, reference.stderr)", "found.stderr"),
-    ("twodiscs_paper/studies/passages/measure.py", "half of the rows that are due", "LONG_FILE)] * 2 * len(LAGS)", "LONG_FILE)] * len(LAGS)"),
     ("twodiscs_paper/studies/passages/measure.py", "error of a root", "variance.value / 2 if variance", "variance.value if variance"),
     ("twodiscs_paper/studies/passages/models/file.py", "limit of long waves", "np.polyfit(numbers**2, sizes", "np.polyfit(numbers, sizes"),
     ("twodiscs_paper/pipeline/results/verdict.py", "one of several rows that are due is enough", "(Counter(due) - there).elements()", "{*due} - there.keys()"),
