@@ -330,7 +330,7 @@ def test_a_new_box_runs_the_jobs_and_makes_the_tables_that_the_page_says(scene, 
 @pytest.fixture(scope="module")
 def checked(tmp_path_factory):
     """Do the work of the scene ``look``; return the path of its check.csv."""
-    scene, path = load.load(with_examples()).scene("look"), tmp_path_factory.mktemp("look")
+    scene, path = load.load(with_examples()).folders["look"], tmp_path_factory.mktemp("look")
     points = {
         stage: [cost.planned(scene, stage, radius).run() for radius in keys.values()]
         for stage, keys in scene.keys.items()

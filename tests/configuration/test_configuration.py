@@ -46,9 +46,6 @@ def test_the_default_configuration():
     assert paper.dynamics["accuracy"] == dict.fromkeys(EVENTS, 3e-4)
     assert long.box == Box(3.0, 1.0)
     assert len(long.radii) < 20
-    assert configuration.scene("long") is long
-    with pytest.raises(ValueError, match="name must be one of paper, long, not 'short'"):
-        configuration.scene("short")
 
 
 def test_the_draft_is_a_quick_look_at_the_same_scenes():

@@ -3,24 +3,18 @@
 The Snakefile imports this, so it must be quick.
 """
 
-import shlex
 from dataclasses import dataclass, field
 from functools import cached_property
 from hashlib import blake2b
 
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError
 from twodiscs.model.radii import key, stream_seed
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.model import MOST_EVENTS
 
-#: The stages whose jobs run once for each radius, and the module that does the work of a stage.
-STAGES = {
-    "monte_carlo": "twodiscs.sampling.montecarlo",
-    "dynamics": "twodiscs.dynamics.counting",
-    "intervals": "twodiscs.dynamics.intervals",
-}
+#: The stages whose jobs run once for each radius.
+STAGES = ("monte_carlo", "dynamics", "intervals")
 
 #: The tables of a scene that are made of points, and the stages of these points.
 GATHERED = {
@@ -205,14 +199,6 @@ class Configuration:
         """The first scene without effects, or None."""
         return next(iter(self.plain), None)
 
-    def scene(self, name):
-        """Return the scene called ``name``, or raise ``InputError``."""
-        for scene in self.scenes:
-            if scene.name == name:
-                return scene
-        names = ", ".join(scene.name for scene in self.scenes)
-        raise InputError(f"name must be one of {names}, not {name!r}")
-
     @cached_property
     def folders(self):
         """The scenes by the folders of their files, {folder: ``SceneRequest``}."""
@@ -306,18 +292,3 @@ class Configuration:
 
 def _pictures(path, first="pdf"):
     return f"{path}.{first}", f"{path}.png"
-
-
-def assigned(names, paths):
-    """Return arguments NAME=PATH. Paths are the inputs of a job: a module may prefix them."""
-    return [f"{name}={path}" for name, path in zip(names, paths, strict=True)]
-
-
-def braced(paths):
-    """Return paths in one folder as a person types them: folder/{a,b}.json; "" without paths."""
-    if not paths:
-        return ""
-    folders, names = zip(*(str(path).rsplit("/", 1) for path in paths), strict=True)
-    stems = [name.removesuffix(".json") for name in names]
-    listed = f"{{{','.join(stems)}}}" if len(stems) > 1 else stems[0]
-    return f"{shlex.quote(folders[0])}/{listed}.json"
