@@ -92,7 +92,8 @@ CODE = {
     "benchmark": modules("twodiscs_paper/benchmark.py"),
 }
 for name, study in STUDIES.items():
-    own = modules("twodiscs_paper/study.py", f"{study_folder(study)}/**/*.py")
+    shared = "twodiscs_paper/study.py", "twodiscs_paper/reference.py"
+    own = modules(*shared, f"{study_folder(study)}/**/*.py")
     CODE[name] = [path for path in own if path not in study_figures(study)]
 
 

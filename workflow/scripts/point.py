@@ -2,6 +2,7 @@
 
 import time
 
+import twodiscs.sampling.jit  # noqa: F401 - start saves collections of what is imported before it
 from twodiscs.model.box import Box
 from twodiscs.points.base import content_of, pieces_of
 from twodiscs.points.digests import read_seconds, write_json
