@@ -116,35 +116,6 @@ def test_the_installed_command():
 # Arguments --------------------------------------------------------------------------------------
 
 
-def test_parameters_come_back_from_their_text_or_from_a_file(tmp_path):
-    value = {"a": [1, 2.5, "x", 0.1 + 0.2], "b": {"c": None, "d": True}}
-    text = json.dumps(value)
-    assert arguments.parameters(text) == value
-    (tmp_path / "parameters.json").write_text(text)
-    assert arguments.parameters(f"@{tmp_path / 'parameters.json'}") == value
-    with pytest.raises(FileNotFoundError):
-        arguments.parameters("@absent.json")
-
-
-@pytest.mark.parametrize(
-    "text",
-    ["", "1", "[1]", "{", "{a: 1}", "{'a': 1}", "dict()", '{"a": NaN}', '{"a": Infinity}',
-     "null", "[" * 10**5],
-)  # fmt: skip
-def test_text_that_is_no_object_is_refused(text):
-    with pytest.raises(ValueError, match="parameters must be a JSON object, not ") as caught:
-        arguments.parameters(text)
-    assert len(str(caught.value)) < 200
-
-
-def test_named_values_come_back_from_their_texts():
-    assert arguments.named(["a=b", "c/d=e=f"], "--table") == {"a": "b", "c/d": "e=f"}
-    assert arguments.named([], "--table") == {}
-    for text in ("", "a", "a=", "=b", "="):
-        with pytest.raises(ValueError, match=f"--table must be given as NAME=VALUE, not '{text}'"):
-            arguments.named(["a=b", text], "--table")
-
-
 def test_a_number_is_a_float_or_a_mistake_of_the_caller():
     assert arguments.number("1e-3") == 1e-3
     with pytest.raises(argparse.ArgumentTypeError, match="must be a number, not 'x'"):
