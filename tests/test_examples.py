@@ -332,7 +332,7 @@ def checked(tmp_path_factory):
     """Do the work of the scene ``look``; return the path of its check.csv."""
     scene, path = load.load(with_examples()).folders["look"], tmp_path_factory.mktemp("look")
     points = {
-        stage: [cost.planned(scene, stage, radius).run() for radius in keys.values()]
+        stage: [cost.run_at(scene, stage, radius).run() for radius in keys.values()]
         for stage, keys in scene.keys.items()
     }
     theory = SCENE_TABLES["theory"].rows(scene.box, scene.exact_radii("theory"))

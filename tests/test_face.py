@@ -118,7 +118,7 @@ def test_defaults_are_those_of_a_configuration():
 
 def point(stage):
     """Return the point of the job of the configuration."""
-    return cost.planned(load.load(CONFIGURATION).scenes[0], stage, 0.2).run()
+    return cost.run_at(load.load(CONFIGURATION).scenes[0], stage, 0.2).run()
 
 
 def test_results_are_those_of_the_pipeline(simulated, sampled, intervals, trajectory):
