@@ -10,6 +10,7 @@ from twodiscs.comparison.tables.trajectory import Trajectory
 from twodiscs.dynamics import trajectory
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
+from twodiscs.sampling.starts import components
 from twodiscs.theory.exact import event_rate, mean_times
 
 PAPER = Scene(1.5, 1.0, 0.2)
@@ -47,3 +48,42 @@ def test_cells_are_the_periods_that_centres_have_gone_on():
     cells = trajectory.cell_of(scene.width, x1)
     assert len(set(cells.tolist())) > 1
     assert np.abs(x1 - scene.width * cells).max() <= scene.width / 2
+
+
+GIVEN = {
+    "ring": Scene(1.5, 1.0, 0.2, periodic="x"),
+    "torus": SCENES["torus"],
+    "balls": Scene(1.5, 1.0, 0.2, depth=1.0, periodic="yz", mass_ratio=2.0),
+    "rough": Scene(1.5, 1.0, 0.2, periodic="x", moment_of_inertia=0.5, radius_ratio=0.8),
+    "walls": SCENES["rough"],
+    "many": Scene(1.5, 1.0, 0.15, periodic="x", discs=3),
+}
+
+
+@pytest.mark.parametrize("scene", GIVEN.values(), ids=GIVEN)
+def test_a_trajectory_goes_on_from_its_end(scene):
+    """The start that is given comes back, cells and all, and the motion is that of the whole path.
+
+    Between images of the discs only roundings differ; they grow by far less than 1e6 in 1.
+    """
+    path = trajectory.followed(scene, 5, None, 40.0)
+    start = tuple(map(float, path[-1][4]))
+    whole = trajectory.followed(scene, 5, path[0][4], 41.0)
+    rows = trajectory.followed(scene, 5, start, 1.0)
+    assert tuple(map(float, rows[0][4])) == start
+    np.testing.assert_allclose(rows[-1][4], whole[-1][4], rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("scene", [GIVEN["ring"], GIVEN["torus"], GIVEN["balls"]], ids=repr)
+def test_an_image_of_disc_2_moves_as_disc_2_does(scene):
+    """Three periods away along each periodic axis, all rows are three periods away."""
+    start = trajectory.followed(scene, 7, None, 1.0)[0][4]
+    moved, column = list(start), dict(zip(components(scene), range(12), strict=False))
+    for axis in scene.periodic:
+        moved[column[f"{axis}2"]] += 3 * scene.side(axis)
+    near, far = (trajectory.followed(scene, 7, one, 2.0) for one in (start, moved))
+    assert [row[1:4] for row in near] == [row[1:4] for row in far]
+    shift = np.array(moved) - start
+    assert np.abs(shift).max() >= 3.0
+    for one, other in zip(near, far, strict=True):
+        np.testing.assert_allclose(np.array(other[4]) - one[4], shift, rtol=0, atol=1e-9)

@@ -141,10 +141,22 @@ def unwrap(scene, columns, wraps):
 
 
 class Jumps:
-    """The jumps of a periodic separation along one trajectory, which keep it within a period."""
+    """The jumps of a periodic separation along one trajectory, which keep it within a period.
 
-    def __init__(self, scene, law):
-        self.scene, self.wraps = scene, np.zeros((3, 1))
+    ``periods`` has the periods between the image of disc 2 that is followed and disc 2, by axis.
+    """
+
+    def __init__(self, scene):
+        self.scene, self.wraps, self.periods = scene, np.zeros((3, 1)), {}
+
+    def nearest(self, state):
+        """Return ``state`` with the image of disc 2 that is nearest to disc 1."""
+        columns = dict(zip(components(self.scene), state, strict=True))
+        for axis in self.scene.periodic:
+            side, apart = self.scene.side(axis), columns[f"{axis}1"] - columns[f"{axis}2"]
+            self.periods[axis] = round((apart - math.remainder(apart, side)) / side)
+            columns[f"{axis}2"] += self.periods[axis] * side
+        return tuple(columns.values())
 
     def see(self, code, state):
         """Count the jump that ends a flight with this ``code`` in ``state``, if it is one."""
@@ -154,12 +166,11 @@ class Jumps:
             self.wraps["xyz".index(axis)] -= math.copysign(1.0, apart)
 
     def undone(self, state):
-        """Return ``state`` with centres that go on beyond the cell."""
-        if not self.scene.periodic:
-            return state
-        names = components(self.scene)
-        columns = dict(zip(names, state, strict=True))
+        """Return ``state`` with centres that go on beyond the cell, from those of the start."""
+        columns = dict(zip(components(self.scene), state, strict=True))
         unwrap(self.scene, columns, self.wraps[:, 0])
+        for axis, periods in self.periods.items():
+            columns[f"{axis}2"] -= periods * self.scene.side(axis)
         return tuple(columns.values())
 
 
@@ -172,8 +183,9 @@ def events_of(scene, state, duration, seed=0):
     start, the last one the end. Along periodic axes centres go on beyond the cell.
     """
     law, time, kicks = law_of(scene), 0.0, kicks_of(scene, 1, seed)
-    jumps = Jumps(scene, law)
+    jumps = Jumps(scene)
     yield time, "start", None, None, state
+    state = jumps.nearest(state)
     while True:
         left = duration - time
         until_kick = before_kick(left, 0, kicks)
@@ -182,8 +194,7 @@ def events_of(scene, state, duration, seed=0):
         hops = []
         for name, horizontal in (("vertical_hop", None), ("horizontal_hop", True)):
             before, rising = across(state, horizontal)
-            passed = crosses(before, across(after, horizontal)[0])
-            if name in scene.events and passed:
+            if name in scene.events and crosses(before, across(after, horizontal)[0]):
                 hops.append((crossing_time(before, rising), name))
         for until, name in sorted(hops):
             at_hop = after_event(state, until, END_OF_TIME, law)
@@ -217,8 +228,8 @@ def state_of(scene, start):
     """Return ``start`` as a state of the ``Scene``: a tuple of floats, as ``law`` has it.
 
     ``start`` is one of ``sampling.starts.records``, or as many numbers. On periodic axes any image
-    of disc 2 serves. Raises ``InputError`` for anything else, for discs that overlap or lie
-    outside, and for another energy than 1/2.
+    of disc 2 serves, and it stays. Raises ``InputError`` for anything else, for discs that overlap
+    or lie outside, and for another energy than 1/2.
     """
     state, apart = dict(zip(components(scene), given_state(scene, start), strict=True)), {}
     for axis in scene.axes:
@@ -234,7 +245,6 @@ def state_of(scene, start):
         apart[axis] = state[f"{axis}1"] - state[f"{axis}2"]
         if axis in scene.periodic:
             apart[axis] = math.remainder(apart[axis], side)
-            state[f"{axis}2"] = state[f"{axis}1"] - apart[axis]
     distance, contact = math.hypot(*apart.values()), scene.contact_distance
     if distance < contact * (1 - ROUNDING):
         raise InputError(
