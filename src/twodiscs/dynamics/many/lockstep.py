@@ -31,7 +31,7 @@ from twodiscs.dynamics.law import (
     rough_wall_collision,
     wall_quotient,
 )
-from twodiscs.model.events import SHELLS, by_kind
+from twodiscs.model.events import by_kind
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import insertions
 from twodiscs.sampling.many.initial import (
@@ -57,8 +57,9 @@ EVENTS_OF_DISC = 64
 #: A flight on a ring that ends without an event.
 LOOK_AGAIN = -1.0
 
-#: Classes of events, in the order of all counts.
-N = len(SHELLS)
+#: Classes of events, in the order of all counts. Both walls of an axis are in one class.
+CLASSES = ("vertical_hop", "horizontal_hop", "disc_collision", "right_wall", "top_wall")
+N = len(CLASSES)
 VERTICAL, HORIZONTAL, COLLISIONS, BESIDE, ABOVE = range(N)
 
 #: The classes whose counts are those of an event, in the order of ``EVENTS``.
@@ -377,7 +378,7 @@ def count_events(states, seed, first, lanes, duration, law, hops_x, kicks):
     """Follow the columns of ``states`` (rows, replicas) for a ``duration`` and add up their counts.
 
     Returns (sums, products): Σ N_e (n) and Σ N_e N_f for e ≤ f (n, n) over all replicas, int64, in
-    the order of ``SHELLS``. ``hops_x`` is None where hops in x are impossible. ``kicks`` are those
+    the order of ``CLASSES``. ``hops_x`` is None where hops in x are impossible. ``kicks`` are those
     of the lanes, None without friction: the column k has the stream of ``seed`` for the replica
     ``first`` + k.
     """
@@ -577,11 +578,11 @@ def run_intervals(scene, event, seed, first, stop, replicas, window, bins, sums,
 
 
 def of_events(sums, products):
-    """Return (sums, products) of ``EVENTS``, given the sums and products of ``SHELLS``.
+    """Return (sums, products) of ``EVENTS``, given the sums and products of ``CLASSES``.
 
     In every replica, the hits of all walls are the hits of the two classes of walls together.
     """
-    matrix = np.array([[name in parts for name in SHELLS] for parts in PARTS.values()], np.int64)
+    matrix = np.array([[name in parts for name in CLASSES] for parts in PARTS.values()], np.int64)
     whole = products + np.triu(products, 1).T
     return matrix @ sums, np.triu(matrix @ whole @ matrix.T)
 
