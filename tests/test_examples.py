@@ -25,6 +25,8 @@ import twodiscs
 from twodiscs import cli
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import FIGURES
+from twodiscs.points.base import with_arrays
+from twodiscs.points.dynamics import DynamicsPoint
 from twodiscs_paper.configuration import load
 from twodiscs_paper.configuration.load import read
 from twodiscs_paper.pipeline import cost
@@ -267,7 +269,8 @@ def agreement(folder, scene):
     rows = SCENE_TABLES["check"].read(folder / scene.name / "check.csv")
     compared = [abs(row["z"]) for row in rows if row["passed"] is not None]
     points = json.loads((folder / scene.name / "points" / "dynamics.json").read_text())
-    events = sum(point["events"] for point in points.values())
+    parts = [with_arrays(point["parts"]) for point in points.values()]
+    events = sum(DynamicsPoint.of(0.0, part).events for part in parts)
     independent = sum(row["independent"] for row in rows)
     largest = Context(prec=2, rounding=ROUND_CEILING).create_decimal(max(compared))
     counts = f"{len(points)} | {len(compared)} | {independent} | {largest} | {events:.1e}"

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     )
     from twodiscs.comparison.measured.observe import Observed, diffusion, observe
     from twodiscs.comparison.measured.pressure import free_energy, pressure
-    from twodiscs.comparison.measured.result import load_result
+    from twodiscs.comparison.measured.saved import load_result
     from twodiscs.comparison.measured.scan import Scan, scan
     from twodiscs.comparison.measured.trajectory import Trajectory, trajectory
     from twodiscs.comparison.measured.transmission import Transmission, transmission
@@ -108,7 +108,7 @@ _NAMES = {
     ),
     "comparison.measured.observe": "Observed diffusion observe",
     "comparison.measured.pressure": "free_energy pressure",
-    "comparison.measured.result": "load_result",
+    "comparison.measured.saved": "load_result",
     "comparison.measured.scan": "Scan scan",
     "comparison.measured.trajectory": "Trajectory trajectory",
     "comparison.measured.transmission": "Transmission transmission",

@@ -29,7 +29,6 @@ import math
 from itertools import groupby
 
 from twodiscs.comparison import scores
-from twodiscs.comparison.tables.base import by_radius
 from twodiscs.model.events import DECLARED
 from twodiscs.points.estimates import MIN_EVENTS, Estimate
 from twodiscs.theory import virial
@@ -166,7 +165,7 @@ def comparisons(box, volume, areas, times, histogram, dynamics, monte_carlo=()):
         if row["exact_mean"] is None:
             values["status"] = "counted"
         rows.append(_comparison("hop_interval", f"{event}_interval", "intervals", values))
-    for point in by_radius(dynamics):
+    for point in dynamics:
         scene = box.scene(point.radius)
         if set(SUM_RULE) <= set(point.counts) and virial.weights(scene):
             rows.append(_sum_rule(scene, point))

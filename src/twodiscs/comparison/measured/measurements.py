@@ -320,6 +320,10 @@ class Measurements(Result, Mapping[str, Measurement]):
             )
         return found
 
+    def _again(self, settings, options):
+        make = {"simulate": run_simulation, "sample": run_sampling}[self.kind]
+        return make(self.scene, **settings, **options, kept=self.parts)
+
     def _has_error(self, name):
         return name in self and self[name].stderr is not None
 
@@ -474,6 +478,9 @@ class Intervals(Result):
 
     def __hash__(self):
         return hash((self.scene, self.hop))
+
+    def _again(self, settings, options):
+        return run_intervals(self.scene, **settings, **options, kept=self.parts)
 
     def texts(self) -> pd.DataFrame:
         """Return the texts of the printed table: the mean and the density at 0."""

@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 from html import escape
-from os import PathLike
 from typing import TYPE_CHECKING, ClassVar, Self
 
 import twodiscs
 from twodiscs.model.box import Box
-from twodiscs.model.checks import (
-    InputError,
-    answering,
-    quote,
-    writing_to,
-)
-from twodiscs.points.base import content_of, with_arrays
-from twodiscs.points.digests import read_json, write_json
+from twodiscs.model.checks import InputError, writing_to
+from twodiscs.points.base import content_of
+from twodiscs.points.digests import write_json
 
 if TYPE_CHECKING:
+    from os import PathLike
+
     import pandas as pd
 
-    from twodiscs import Intervals, Measurements, Scan, Transmission
     from twodiscs.model.scene import Scene
 
 
@@ -97,7 +92,7 @@ class Result:
 
     def _again(self, settings, options):
         """Return the result of these ``settings``, which uses the sums of this one."""
-        return made(self.kind, self.scene, settings, self.parts, **options)
+        raise NotImplementedError
 
     def to_dict(self) -> dict[str, object]:
         """Return the result as ``save`` writes it.
@@ -164,79 +159,3 @@ def note_of_number(what, asked, done):
 
 #: Settings that can grow when a result goes on; the first one of a kind is its amount.
 MORE = ("error", "samples", "number", "hops", "duration", "budget")
-
-
-def made(kind, scene, settings, kept, **options):
-    """Return the result of a ``kind`` with these ``settings``; it uses the parts ``kept``."""
-    from twodiscs.comparison.measured import measurements, transmission
-
-    makers = {
-        "simulate": measurements.run_simulation,
-        "sample": measurements.run_sampling,
-        "intervals": measurements.run_intervals,
-        "transmission": transmission.run_transmission,
-    }
-    return makers[kind](scene, **settings, **options, kept=kept)
-
-
-def from_dict(content):
-    """Return the result that ``to_dict`` describes, made again from its sums."""
-    if content["kind"] == "scan":
-        from twodiscs.comparison.measured.scan import Scan
-
-        return Scan(map(from_dict, content["results"]), dict(content["refused"]))
-    scene = dict(content["scene"])
-    radius = scene.pop("radius")
-    parts = with_arrays(content["parts"])
-    return made(content["kind"], Box(**scene).scene(radius), content["settings"], parts)
-
-
-@answering
-def load_result(
-    path: str | PathLike[str],
-) -> Measurements | Intervals | Transmission | Scan:
-    """Read a result that ``save(path)`` wrote; ``more`` can go on from it.
-
-    A type checker needs to know its class before you use it:
-    ``assert isinstance(result, td.Measurements)``.
-
-    Parameters
-    ----------
-    path : path-like
-        The file. Only the version of the package that wrote it can read it.
-
-    Returns
-    -------
-    Measurements, Intervals, Transmission or Scan
-        The result.
-
-    Raises
-    ------
-    InputError
-        For a file of another version, and for any other file.
-
-    Examples
-    --------
-    >>> td.simulate(scene, 0.1, seed=1, events="any_wall").save("walls.json")
-    >>> more = td.load_result("walls.json").more(error=5e-4)
-    >>> more["any_wall_time"].relative_stderr < 5e-4
-    True
-    """
-    if not isinstance(path, str | PathLike) or "\0" in str(path):
-        raise InputError(f"path must be the path of a file, not {quote(path)}")
-    try:
-        content = read_json(path)
-    except OSError as error:
-        raise InputError(
-            f"path must be a file to read, not {str(path)!r}: {error.strerror}"
-        ) from None
-    except InputError:
-        raise InputError(
-            f"path must be a file that save() wrote, or a point of a build, not {str(path)!r}"
-        ) from None
-    if (version := content.get("twodiscs")) != twodiscs.__version__:
-        raise InputError(
-            f"the result must be of version {twodiscs.__version__}, so that its numbers are the "
-            f"same, not of {quote(version)}"
-        )
-    return from_dict(content)

@@ -194,6 +194,9 @@ class Transmission(Result):
 
     kind = "transmission"
 
+    def _again(self, settings, options):
+        return run_transmission(self.scene, **settings, **options, kept=self.parts)
+
     @property
     def passage_time(self) -> Estimate | None:
         """The mean time between passages τ/κ, an ``Estimate``; None without κ or an exact τ."""
