@@ -224,6 +224,7 @@ def targets():
         options = argparse.ArgumentParser(exit_on_error=False)
         options.add_argument("--cores")
         options.add_argument("--dry-run", action="store_true")
+        options.add_argument("--touch", action="store_true")
         options.add_argument("--configfile")
         options.add_argument("--profile")
         options.add_argument("--seconds-between-status-checks")

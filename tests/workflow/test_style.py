@@ -1,6 +1,8 @@
 """The Snakefiles: what Snakemake's linter says of them, and the pages about them."""
 
 import re
+import subprocess
+import sys
 
 import pages
 import pytest
@@ -53,6 +55,23 @@ def test_editors_find_the_schema_of_a_configuration(path):
     head = path.read_text(encoding="utf-8").split("\n", 1)[0]
     (place,) = re.fullmatch(r"# yaml-language-server: \$schema=(.+)", head).groups()
     assert (path.parent / place).resolve() == REPOSITORY / "config/schema.json"
+
+
+def test_the_drawing_of_the_rules_is_the_graph_of_snakemake():
+    command = [sys.executable, "-m", "snakemake", "--rulegraph", "--forceall", "--nolock", "all"]
+    done = subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True, check=True)
+    names = dict(re.findall(r'(\d+)\[label = "(\w+)"', done.stdout))
+    edges = re.findall(r"(\d+) -> (\d+)", done.stdout)
+    read = {(names[source], names[target]) for source, target in edges if source != target}
+    read = {arrow for arrow in read if not {"code", "all"} & {*arrow}}
+    page = (REPOSITORY / "docs" / "pipeline.md").read_text(encoding="utf-8")
+    drawn = {*re.findall(r"^    (\w+) --> (\w+)$", page, re.MULTILINE)}
+    assert drawn <= read
+    assert {rule for arrow in drawn for rule in arrow} == {*names.values()} - {"code", "all"}
+    joined = {*drawn}
+    while longer := {(a, d) for a, b in joined for c, d in drawn if b == c} - joined:
+        joined |= longer
+    assert read <= joined
 
 
 def test_the_page_lists_every_target():
