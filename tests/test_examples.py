@@ -316,7 +316,7 @@ def test_a_new_box_runs_the_jobs_and_makes_the_tables_that_the_page_says(scene, 
     said = Counter()
     text = page("docs/add-a-box.md")
     (rows,) = re.findall(rf"\| jobs in `{scene}` \|.*\n\|---.*\n((?:\|.*\n)+)", text)
-    watched = load.load(with_examples()).scene(scene).quantities.names
+    watched = load.load(with_examples()).folders[scene].quantities.names
     called = sum(entry.is_called(watched) for entry in FIGURES.values())
     for row in rows.splitlines():
         names, number, _ = row.strip("|").split("|")
