@@ -82,6 +82,8 @@ MUTANTS = [
     ("dynamics/law.py", "wrong mass in a collision", "divided(2.0, m2, m1)", "divided(2.0, m1, m2)"),
     ("dynamics/law.py", "sign of a spin", "u_before - side_y * s", "u_before + side_y * s"),
     ("dynamics/law.py", "wall of the wrong ball", "z2 + w2 * time, code == WALL_Z2", "z2 + w2 * time, code == WALL_Z1"),
+    ("dynamics/two/follow.py", "velocities not reversed", "= -value if turned else value", "= value"),
+    ("dynamics/two/follow.py", "replicas numbered anew in each block", "(block - 1) * replicas + used, 0", "used, 0"),
     ("dynamics/two/lockstep.py", "wrong wall", "hit(code, WALL_Y1, WALL_Y2,", "hit(code, WALL_Y1, WALL_X2,"),
     ("dynamics/two/lockstep.py", "missing product", "for f in range(e, N):", "for f in range(e + 1, N):"),
     ("dynamics/two/lockstep.py", "wrong disc at a wall in a field", "else b[3], side, gravity)", "else b[1], side, gravity)"),
