@@ -37,7 +37,6 @@ EXTRAS = [
 #: The modules of a requirement, where they are not called like it.
 MODULES = {
     "pyyaml": "yaml",
-    "snakemake-logger-plugin-rich": "snakemake_logger_plugin_rich",
 }
 
 #: The files of the workflow, beside its Snakefile.

@@ -115,7 +115,7 @@ def test_an_edited_shard_is_refused(run):
 @pytest.fixture
 def points(run, tmp_path):
     """The files of the exact values and of fabricated points at some radii."""
-    exact = {"box": PARAMETERS, "radii": [*RADII]}
+    exact = {"box": PARAMETERS, "given": {"radii": [*RADII]}}
     run("table", exact, table="theory.csv")
     files, rng = {"theory": "theory.csv", "intervals": []}, np.random.default_rng(1)
     for stage in ("monte_carlo", "dynamics"):
@@ -126,7 +126,7 @@ def points(run, tmp_path):
     return files
 
 
-MADE = {"box": PARAMETERS, "areas": ["right_wall", "disc_collision"]}
+MADE = {"box": PARAMETERS, "given": {"areas": ["right_wall", "disc_collision"]}}
 
 
 @pytest.mark.parametrize("name", ["volume", "areas", "mean_times", "check"])

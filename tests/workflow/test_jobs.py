@@ -1,6 +1,7 @@
 """Which jobs run after which edit: what depends on the edit, and nothing else."""
 
 import os
+import re
 
 SIX, WALLS = "scene=six", "scene=walls"
 
@@ -36,6 +37,28 @@ def test_one_more_radius_runs_one_job_of_each_kind(built):
         *("study_table", "figure", "paper", "report", "manifest", "provenance"),
         *("configuration", "shared_figure"),
     }
+
+
+#: Sources that no result depends on, or only through the parameters of jobs.
+NO_CODE = {"__init__", "__main__", "arguments", "catalogue", "cli", "configuration"}
+
+
+def test_the_checksums_are_those_of_all_sources(unbuilt):
+    """A folder or module that is added belongs to a group, or to ``NO_CODE``."""
+    printed = unbuilt.snakemake("--dry-run", "--forceall", "--", "all", "benchmark").stdout
+    jobs = printed.split("rule code:")[1:]
+    listed = {
+        path
+        for job in jobs
+        for path in re.search(r"^    input: (.*)$", job, re.MULTILINE)[1].split(", ")
+    }
+    source = unbuilt.path / "src"
+    paths = {path.relative_to(source) for path in source.rglob("*.py")}
+    counted = {path.as_posix() for path in paths if path.with_suffix("").parts[1] not in NO_CODE}
+    # Those that draw a figure of a study are inputs of its jobs; the folder of studies has no code.
+    drawing = {path for path in counted if re.search("twodiscs_paper/studies/.*/figure", path)}
+    counted -= drawing | {"twodiscs_paper/studies/__init__.py"}
+    assert listed == {f"src/{path}" for path in counted}
 
 
 CODE = "\n\nREMARK = 1\n"

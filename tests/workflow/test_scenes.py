@@ -67,7 +67,8 @@ def of(jobs, scene):
         parts = (part for _, wildcards in mine for part in wildcards)
         return {part.partition("=")[2] for part in parts if part.startswith(f"{kind}=")}
 
-    return {rule for rule, _ in mine}, named("table"), named("figure") - {"animation"}
+    tables, figures = named("table") - {"trajectory"}, named("figure") - {"animation"}
+    return {rule for rule, _ in mine}, tables, figures
 
 
 @pytest.mark.parametrize("effects", [{}, {"field": 0.5, "mass_ratio": 2}])

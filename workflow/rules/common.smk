@@ -5,15 +5,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import twodiscs
-from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
-from twodiscs_paper.catalogue import (
-    ENTRIES,
-    STUDIES,
-    STUDY_FIGURES,
-    STUDY_TABLES,
-    is_reproducible,
-)
+from twodiscs_paper.catalogue import ENTRIES, STUDIES, STUDY_FIGURES, STUDY_TABLES, is_reproducible
 from twodiscs_paper.configuration.request import GATHERED, STAGES
 from twodiscs_paper.studies.effects.study import SCENES as EFFECTS
 from twodiscs_paper.studies.effects.study import boxes
@@ -36,22 +29,15 @@ def source(path):
 
 
 # The scenes of the configuration by their folders, and the scenes of the study of effects.
-EFFECT_FILES = [source(f"config/scenes/{name}.yaml") for name in EFFECTS]
-CONFIGURATION = replace(
-    CONFIGURATION,
-    effect_scenes=[
-        load({"seed": CONFIGURATION.seed} | read(file)).scenes[0]
-        for file in EFFECT_FILES
-    ],
-)
+of_effects = [read(source(f"config/scenes/{name}.yaml")) for name in EFFECTS]
+of_effects = [load({"seed": CONFIGURATION.seed} | block).scenes[0] for block in of_effects]
+CONFIGURATION = replace(CONFIGURATION, effect_scenes=of_effects)
 SCENES = CONFIGURATION.folders
 RESULTS = CONFIGURATION.results
 CONFIGURED = [scene.name for scene in CONFIGURATION.scenes]
 
 # The studies that the scenes allow, and their parts.
-ALLOWED = {
-    name: study for name, study in STUDIES.items() if MAIN or not study.about_plain
-}
+ALLOWED = {name: study for name, study in STUDIES.items() if MAIN or not study.about_plain}
 PARTS = {name: study.parts(CONFIGURATION) for name, study in ALLOWED.items()}
 
 # The studies by the names of their tables.
@@ -87,7 +73,7 @@ PHYSICS = ("model", "theory", "sampling", "dynamics", "points")
 CODE = {
     "physics": modules(*(f"twodiscs/{part}/**/*.py" for part in PHYSICS)),
     "tables": modules("twodiscs/comparison/**/*.py"),
-    "figures": modules("twodiscs/figures/**/*.py"),
+    "figures": modules("twodiscs/figures/**/*.py", "twodiscs_paper/drawings.py"),
     "documents": modules("twodiscs_paper/pipeline/**/*.py"),
     "benchmark": modules("twodiscs_paper/benchmark.py"),
 }

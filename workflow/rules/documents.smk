@@ -1,5 +1,5 @@
 # Documents from all results: the manuscript, the report, the manifest and the comparison with expected
-# results; and the speed of the engines on this machine.
+# results.
 
 
 rule configuration:
@@ -16,46 +16,27 @@ rule configuration:
 
 
 if MAIN:
+    LONG_RUNS = ("far/mean_times", "passages/passages", "tails/tails")
 
     rule paper:
         """The manuscript; every number in it is read from these results."""
         input:
             template=source("paper/paper.typ"),
+            typst=[source(f"paper/{name}.typ") for name in ("results", "numbers", "read")],
             texts=[
-                source("paper/results.typ"),
-                source("paper/numbers.typ"),
-                source("paper/read.typ"),
                 source("paper/references.bib"),
                 source("paper/published.yaml"),
-                source("paper/long_run/far/mean_times.csv"),
-                source("paper/long_run/passages/passages.csv"),
-                source("paper/long_run/tails/tails.csv"),
                 source("CITATION.cff"),
             ],
-            figures=[
-                files[0]
-                for scene in CONFIGURATION.plain
-                for files in CONFIGURATION.figures(scene.name).values()
-            ],
+            long_runs=[source(f"paper/long_run/{path}.csv") for path in LONG_RUNS],
+            results=CONFIGURATION.printed(),
             drawn=CONFIGURATION.studied("figures"),
-            tables=[
-                path
-                for scene in CONFIGURATION.plain
-                for path in CONFIGURATION.tables(scene.name).values()
-            ],
-            studied=CONFIGURATION.studied("tables"),
             code=code("paper", "documents"),
         output:
-            pdf=report(
-                f"{RESULTS}/paper.pdf",
-                category="Manuscript",
-                labels={"document": "manuscript"},
-            ),
+            pdf=report(f"{RESULTS}/paper.pdf", category="Manuscript"),
             numbers=CONFIGURATION.table("paper_numbers"),
         log:
             f"{RESULTS}/logs/paper.log",
-        benchmark:
-            f"{RESULTS}/benchmarks/paper.tsv"
         localrule: True
         params:
             scenes=CONFIGURATION.described(),
@@ -72,7 +53,7 @@ rule report:
     """The report: verdict, agreement and key figures, with links to everything else."""
     input:
         results=[
-            rules.check.output if MEASURED else [],
+            rules.check.output if rules.check.input.tables else [],
             [
                 CONFIGURATION.study(name) if name in STUDIES else rules.paper.output
                 for name in CONFIGURATION.shared
@@ -89,8 +70,6 @@ rule report:
         html=f"{RESULTS}/report.html",
     log:
         f"{RESULTS}/logs/report.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/report.tsv"
     localrule: True
     params:
         scenes=CONFIGURATION.described(),
@@ -106,13 +85,10 @@ rule manifest:
         manifest=f"{RESULTS}/manifest.sha256",
     log:
         f"{RESULTS}/logs/manifest.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/manifest.tsv"
     localrule: True
     params:
         names=lambda w, input, output: sorted(
-            os.path.relpath(path, os.path.dirname(output.manifest))
-            for path in input.files
+            os.path.relpath(path, os.path.dirname(output.manifest)) for path in input.files
         ),
     shell:
         '(cd "$(dirname {output.manifest:q})" && sha256sum {params.names:q}) > {output.manifest:q} 2> {log:q}'
@@ -127,13 +103,14 @@ rule provenance:
         json=f"{RESULTS}/provenance.json",
     log:
         f"{RESULTS}/logs/provenance.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/provenance.tsv"
     localrule: True
     params:
         sources=os.path.dirname(source("CITATION.cff")) or ".",
     script:
         "../scripts/provenance.py"
+
+
+PAGE = ("explorer.html", "theory.js", "dynamics.js", "plot.js", "page.js")
 
 
 rule explorer:
@@ -146,23 +123,12 @@ rule explorer:
             for name, path in CONFIGURATION.tables(scene.name).items()
             if name in ("volume", "areas", "mean_times") and os.path.exists(path)
         ],
-        parts=[
-            source(f"workflow/explorer/{name}")
-            for name in (
-                "explorer.html",
-                "theory.js",
-                "dynamics.js",
-                "plot.js",
-                "page.js",
-            )
-        ],
+        parts=[source(f"workflow/explorer/{name}") for name in PAGE],
         code=code("explorer", "physics", "documents"),
     output:
         html=f"{RESULTS}/explorer.html",
     log:
         f"{RESULTS}/logs/explorer.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/explorer.tsv"
     localrule: True
     params:
         scenes=CONFIGURATION.described(),
@@ -192,12 +158,7 @@ use rule verify as renew with:
         f"{RESULTS}/logs/renew.log",
     params:
         expected=rules.verify.params.expected,
-        points=[
-            path
-            for scene in CONFIGURED
-            for stage in STAGES
-            for path in CONFIGURATION.points(scene, "cost", stage)
-        ],
+        points=CONFIGURATION.all_points(),
 
 
 rule benchmark:
@@ -208,8 +169,6 @@ rule benchmark:
         table=f"{RESULTS}/benchmark.csv",
     log:
         f"{RESULTS}/logs/benchmark.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/benchmark.tsv"
     localrule: True
     threads: ALL_CORES
     params:

@@ -15,12 +15,9 @@ rule figure:
             f"{RESULTS}/{{scene}}/figures/{{figure}}.png",
             category=lambda w: ENTRIES[w.figure].category,
             subcategory="{scene}",
-            labels=lambda w: ENTRIES[w.figure].labels,
         ),
     log:
         f"{RESULTS}/logs/{{scene}}/figure-{{figure}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/{{scene}}/figure-{{figure}}.tsv"
     wildcard_constraints:
         figure="|".join(FIGURES),
     localrule: True
@@ -41,12 +38,9 @@ use rule figure as shared_figure with:
             f"{RESULTS}/figures/{{figure}}.png",
             category=lambda w: ENTRIES[w.figure].category,
             subcategory="all scenes",
-            labels=lambda w: ENTRIES[w.figure].labels,
         ),
     log:
         f"{RESULTS}/logs/figure-{{figure}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/figure-{{figure}}.tsv"
     wildcard_constraints:
         figure="|".join(STUDY_FIGURES),
     localrule: True
@@ -60,7 +54,6 @@ use rule figure as animate with:
             f"{RESULTS}/{{scene}}/figures/{{figure}}.png",
             category=ANIMATION.category,
             subcategory="{scene}",
-            labels=ANIMATION.labels,
         ),
     wildcard_constraints:
         figure="animation",

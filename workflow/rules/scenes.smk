@@ -16,26 +16,6 @@ rule code:
         "sha256sum {input.sources:q} | sed 's|  .*/|  |' > {output.sums:q} 2> {log:q}"
 
 
-rule exact:
-    """Exact values at all radii of a scene: the regime, volume, areas, mean times."""
-    input:
-        code=code("table", "physics", "tables"),
-    output:
-        table=f"{RESULTS}/{{scene}}/{{table}}.csv",
-    log:
-        f"{RESULTS}/logs/{{scene}}/{{table}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/{{scene}}/{{table}}.tsv"
-    wildcard_constraints:
-        table="grid|theory",
-    localrule: True
-    params:
-        box=box,
-        radii=lambda w: SCENES[w.scene].exact_radii(w.table),
-    script:
-        "../scripts/table.py"
-
-
 rule monte_carlo:
     """Volume and areas at one radius, by Monte Carlo."""
     input:
@@ -83,7 +63,6 @@ use rule monte_carlo as shard with:
     wildcard_constraints:
         stage="|".join(STAGES),
     params:
-        box=box,
         work=lambda w: SCENES[w.scene].shard_arguments(w.stage),
 
 
@@ -92,20 +71,31 @@ rule trajectory:
     input:
         code=code("table", "physics", "tables"),
     output:
-        table=f"{RESULTS}/{{scene}}/trajectory.csv",
+        table=f"{RESULTS}/{{scene}}/{{table}}.csv",
     log:
-        f"{RESULTS}/logs/{{scene}}/trajectory.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/{{scene}}/trajectory.tsv"
+        f"{RESULTS}/logs/{{scene}}/{{table}}.log",
+    wildcard_constraints:
+        table="trajectory",
     params:
         box=box,
-        radius=lambda w: SCENES[w.scene].quantities.trajectory,
-        seed=lambda w: SCENES[w.scene].trajectory_seed,
+        given=lambda w: {
+            "radius": SCENES[w.scene].quantities.trajectory,
+            "seed": SCENES[w.scene].trajectory_seed,
+        },
     script:
         "../scripts/table.py"
 
 
-rule table:
+use rule trajectory as exact with:
+    """Exact values at all radii of a scene: the regime, volume, areas, mean times."""
+    wildcard_constraints:
+        table="grid|theory",
+    localrule: True
+    params:
+        given=lambda w: {"radii": SCENES[w.scene].exact_radii(w.table)},
+
+
+use rule exact as table with:
     """The points of a scene in a table, beside the exact values."""
     input:
         theory=f"{RESULTS}/{{scene}}/theory.csv",
@@ -114,48 +104,23 @@ rule table:
         intervals=lambda w: CONFIGURATION.points(w.scene, w.table, "intervals"),
         code=code("table", "physics", "tables"),
     output:
-        table=report(
-            f"{RESULTS}/{{scene}}/{{table}}.csv",
-            category="Tables",
-            subcategory="{scene}",
-        ),
-    log:
-        f"{RESULTS}/logs/{{scene}}/{{table}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/{{scene}}/{{table}}.tsv"
+        table=report(f"{RESULTS}/{{scene}}/{{table}}.csv", category="Tables", subcategory="{scene}"),
     wildcard_constraints:
         table="|".join(GATHERED),
     localrule: True
     params:
-        box=box,
-        areas=lambda w: SCENES[w.scene].quantities.areas,
-    script:
-        "../scripts/table.py"
-
-
-# The tables with comparisons of simulations: of scenes and of studies.
-MEASURED = [
-    CONFIGURATION.table("check", scene)
-    for scene in CONFIGURED
-    if "check" in SCENES[scene].tables
-] + [
-    CONFIGURATION.table(study.tables[0].name())
-    for study in STUDIES.values()
-    if study.checked and study.name in CONFIGURATION.shared
-]
+        given=lambda w: {"areas": SCENES[w.scene].quantities.areas},
 
 
 rule check:
     """Do exact theory, Monte Carlo and dynamics agree? If not, it fails and names the comparisons."""
     input:
-        tables=MEASURED,
+        tables=CONFIGURATION.checked(),
         code=code("check", "tables", "documents"),
     output:
         passed=f"{RESULTS}/check.passed",
     log:
         f"{RESULTS}/logs/check.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/check.tsv"
     localrule: True
     script:
         "../scripts/check.py"

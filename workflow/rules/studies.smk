@@ -9,11 +9,7 @@ rule study_table:
         code=code("study", "physics", "tables"),
         own_code=lambda w: sums(MADE_BY[w.table].name),
     output:
-        table=report(
-            f"{RESULTS}/{{table}}.csv",
-            category="Tables",
-            subcategory="all scenes",
-        ),
+        table=report(f"{RESULTS}/{{table}}.csv", category="Tables", subcategory="all scenes"),
     log:
         f"{RESULTS}/logs/{{table}}.log",
     benchmark:

@@ -13,7 +13,7 @@ from twodiscs_paper.pipeline.job import start
 
 start(snakemake.log[0])
 table = SCENE_TABLES[Path(snakemake.output.table).stem]
-given = dict(snakemake.params.items()) | {"box": Box(**snakemake.params.box)}
+given = snakemake.params.given | {"box": Box(**snakemake.params.box)}
 if snakemake.input.get("theory"):
     given |= {"theory": SCENE_TABLES["theory"].read(snakemake.input.theory)}
     given |= {"points": {}, "seconds": {}}

@@ -218,6 +218,23 @@ class Configuration:
         keys = self.folders[scene].keys[stage] if stage in GATHERED[table] else ()
         return [f"{self.results}/{scene}/points/{stage}/{key}.json" for key in keys]
 
+    def all_points(self):
+        """Return the paths of the points of all scenes of the configuration."""
+        return [
+            path
+            for scene in self.scenes
+            for stage in STAGES
+            for path in self.points(scene.name, "cost", stage)
+        ]
+
+    def checked(self):
+        """Return the paths of the tables that compare simulations: of scenes and of studies."""
+        scenes = [scene.name for scene in self.scenes if "check" in scene.tables]
+        studies = [STUDIES[name] for name in self.shared if name in STUDIES]
+        return [self.table("check", name) for name in scenes] + [
+            self.table(study.tables[0].name()) for study in studies if study.checked
+        ]
+
     def figures(self, scene):
         """Return {name: (PDF, PNG)} of the figures of a scene."""
         request = self.folders[scene]
@@ -269,6 +286,13 @@ class Configuration:
         if kind == "tables":
             return [self.table(table.name()) for study in studies for table in study.tables]
         return [f"{self.results}/figures/{name}.pdf" for study in studies for name in study.figures]
+
+    def printed(self):
+        """Return the paths of the tables, and of the figures of scenes, of the manuscript."""
+        figures = (self.figures(scene.name).values() for scene in self.plain)
+        tables = (self.tables(scene.name).values() for scene in self.plain)
+        drawn = [pdf for pictures in figures for pdf, _ in pictures]
+        return [*drawn, *(path for paths in tables for path in paths), *self.studied("tables")]
 
     def configuration_hash(self):
         """Return 16 hexadecimal digits of the configuration with every default filled in."""
