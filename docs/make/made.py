@@ -60,9 +60,8 @@ def reference(text, site):
 def _described(line):
     name, value = line[1], getattr(twodiscs, line[1])
     if isinstance(value, type):
-        kind, below = "autoclass", ":members:"
-        if issubclass(value, Result):
-            below += "\n   :inherited-members: Mapping, Sequence"
+        own = ":members:\n   :inherited-members: Mapping, Sequence"
+        kind, below = "autoclass", own if issubclass(value, Result) else ":members:"
     elif callable(value):
         kind, below = "autofunction", ""
     else:

@@ -44,9 +44,7 @@ def draw(name, results):
         if path is None:
             return None
         tables[table] = TABLES[table].read(path)
-    if name in DRAW:
-        return DRAW[name](BOX, tables)
-    return draw_figure(name, BOX, *tables.values())
+    return DRAW[name](BOX, tables) if name in DRAW else draw_figure(name, BOX, *tables.values())
 
 
 def keep_panel(figure, number, abscissa):
