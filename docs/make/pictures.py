@@ -32,7 +32,7 @@ PANELS = {
 }
 
 #: Inches of a picture from bottom to top, the place of its panel, dots per inch: two are a pixel.
-HEIGHT, PLACE, DPI = 2.5, (0.16, 0.18, 0.8, 0.7), 200
+HEIGHT, PLACE, DPI = 2.5, (0.16, 0.18, 0.76, 0.66), 200
 
 
 def draw(name, results):
