@@ -14,12 +14,12 @@ import pytest
 
 import twodiscs as td
 from twodiscs.comparison.measured import progress as progress_module
+from twodiscs.dynamics import runs
 from twodiscs.model.checks import PRESETS
 from twodiscs.model.effects import EFFECTS
 from twodiscs.points.base import content_of, pieces_of, reached
 from twodiscs.points.digests import write_json
 from twodiscs.sampling.blocks.rounds import all_at_once, joined
-from twodiscs_paper.pipeline import cost
 
 SCENE = td.Scene(1.5, 1.0, 0.2)
 NARROW = td.Scene(1.5, 1.0, 0.249)
@@ -97,21 +97,21 @@ JOBS = {
 def kept(path, stage, scene, settings, parts):
     """Write the file of a job of the pipeline."""
     parameters = td.Box.of(scene).parameters() | {"radius": scene.radius}
-    write_json(path, content_of(cost.KINDS[stage], parameters, settings, parts))
+    write_json(path, content_of(runs.KINDS[stage], parameters, settings, parts))
 
 
 @pytest.mark.parametrize("stage", JOBS)
 def test_a_point_of_the_pipeline_goes_on_and_a_saved_result_adds_up(stage, tmp_path):
     settings, larger, function = JOBS[stage]
     settings = settings | {"seed": 3, "name": "paper"}
-    run = cost.run_of(stage, NARROW, settings)
+    run = runs.run_of(stage, NARROW, settings)
     kept(tmp_path / "0.2.json", stage, NARROW, settings, run.run().parts)
     read, made = td.load_result(tmp_path / "0.2.json"), function(NARROW, **settings)
     assert read == made
     assert bits(read.more(**larger)) == bits(function(NARROW, **settings | larger))
     # The pipeline adds up what the result has and the shards of the rest.
     made.save(tmp_path / "saved.json")
-    paths, run = [tmp_path / "saved.json"], cost.run_of(stage, NARROW, settings | larger)
+    paths, run = [tmp_path / "saved.json"], runs.run_of(stage, NARROW, settings | larger)
     for name, part in run.parts.items():
         _, stop = reached(made.parts[name]["sums"])
         piece = {(stop, part.planned): part.work(stop, part.planned)}
@@ -253,7 +253,7 @@ def test_progress_is_true_or_false():
 
 def test_jobs_of_the_pipeline_do_not_import_what_shows_progress():
     code = (
-        "import sys; from twodiscs import Scene; from twodiscs_paper.pipeline.cost import run_of;"
+        "import sys; from twodiscs import Scene; from twodiscs.dynamics.runs import run_of;"
         " work = {'error': {'any_wall': 0.5}, 'budget': 1, 'seed': 1, 'name': 'a'};"
         " run_of('dynamics', Scene(1.5, 1.0, 0.2), work).run();"
         " assert not {'tqdm', 'pandas'} & {*sys.modules}"

@@ -11,10 +11,10 @@ from factory import BOX, POINTS, RADII, Laws, scenes, write
 from snakemake.iocontainers import Namedlist
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.dynamics.runs import run_of
 from twodiscs.model.checks import InputError
 from twodiscs.points.digests import digest, read_json, write_json
 from twodiscs_paper.pipeline import job
-from twodiscs_paper.pipeline.cost import run_of
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "workflow" / "scripts"
 PARAMETERS = BOX.parameters()

@@ -22,7 +22,7 @@ def changed(z):
 
 def test_what_agrees_passes_with_a_line_for_each_table():
     studies = {name: STUDY_TABLES[name].read(EXPECTED / f"{name}.csv") for name in CHECKED}
-    failures, summary = verdict({"paper": PAPER} | studies)
+    failures, summary = verdict([("paper", PAPER), *studies.items()])
     assert failures == []
     first, *others = summary.splitlines()
     scores = [row["z"] for row in PAPER if row["z"] is not None]
@@ -34,7 +34,7 @@ def test_what_agrees_passes_with_a_line_for_each_table():
 
 @pytest.mark.parametrize("z", [99.0, -99.0, math.inf, math.nan])
 def test_a_score_beyond_its_bound_is_named(z):
-    (failure,), _ = verdict({"paper": changed(z)})
+    (failure,), _ = verdict([("paper", changed(z))])
     assert failure.startswith("paper: comparison mean_time, quantity disc_collision_time, ")
     assert f"method dynamics, radius 0.1 has z = {z:.3g}, beyond the bound " in failure
 
@@ -44,7 +44,7 @@ def test_the_bound_of_a_study_grows_with_its_number_of_scores():
 
     def failures(scores):
         rows = [{"quantity": "diffusion", "radius": 0.1, "z": z} for z in scores]
-        return verdict({"passages": rows})[0]
+        return verdict([("passages", rows)])[0]
 
     assert failures([4.4] + [0.0] * 99) == []
     assert len(failures([4.4] + [0.0] * 9)) == 1
@@ -54,8 +54,14 @@ def test_the_bound_of_a_study_grows_with_its_number_of_scores():
 
 
 def test_an_empty_set_is_no_pass():
-    assert verdict({}) == (["nothing is compared"], "")
+    assert verdict([]) == (["nothing is compared"], "")
     for rows in ([], [row | {"z": None} for row in PAPER]):
-        failures, summary = verdict({"paper": PAPER, "other": rows})
+        failures, summary = verdict([("paper", PAPER), ("other", rows)])
         assert failures == ["other: nothing is compared"]
         assert not any(line.startswith("other") for line in summary.splitlines())
+
+
+def test_tables_of_one_name_are_all_compared():
+    """A scene may have the name of a study."""
+    failures, _ = verdict([("passages", changed(99.0)), ("passages", PAPER)])
+    assert len(failures) == 1

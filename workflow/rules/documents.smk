@@ -151,6 +151,7 @@ rule verify:
 
 
 use rule verify as renew with:
+    """Replace the expected results by these, which must be complete."""
     input:
         configuration=rules.configuration.output.json,
         tables=[p for p in rules.manifest.input.files if str(p).endswith(".csv")],

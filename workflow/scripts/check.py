@@ -8,9 +8,10 @@ from twodiscs_paper.pipeline.job import start
 from twodiscs_paper.pipeline.results.verdict import verdict
 
 start(snakemake.log[0])
-tables = {}
-for path in map(Path, snakemake.input.tables):
-    tables[path.parent.name if path.stem == "check" else path.stem] = read_table(path)
+paths = [Path(path) for path in snakemake.input.tables]
+tables = [
+    (path.parent.name if path.stem == "check" else path.stem, read_table(path)) for path in paths
+]
 failures, summary = verdict(tables)
 if failures:
     sys.exit("\n".join(failures))

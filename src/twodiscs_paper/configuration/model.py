@@ -131,7 +131,9 @@ Folder = text(
     200,
 )
 #: Names of folders and targets that a scene must not have.
-TAKEN = ("all", "benchmarks", "draft", "figures", "logs", "needed", "points", "scenes")
+TAKEN = (
+    "all", "benchmarks", "code", "draft", "effects", "figures", "logs", "parts", "points", "scenes",
+)  # fmt: skip
 Name = text(
     "a name of small letters, digits, - and _, 100 at most, that starts with a letter or a digit, "
     f"and none of {', '.join(TAKEN)}",

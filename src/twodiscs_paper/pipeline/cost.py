@@ -8,7 +8,7 @@ reached, usually earlier.
 
 import math
 
-from twodiscs.model.radii import key, stream_seed
+from twodiscs.dynamics.runs import run_of
 
 #: Events and samples per second of a core, and the largest factor by which effects slow it down.
 EVENTS_PER_SECOND, SAMPLES_PER_SECOND, SLOWER = 1e8, 1e8, 5.0
@@ -28,31 +28,6 @@ PATIENCE, MINUTES = 4.0, 10.0
 SOME = 100
 
 DAY = 86400.0
-
-
-#: The function of the face that does the work of a stage.
-KINDS = {"monte_carlo": "sample", "dynamics": "simulate", "intervals": "intervals"}
-
-
-def run_of(stage, scene, settings):
-    """Return the run of a ``stage`` for a ``Scene``: monte_carlo, dynamics or intervals.
-
-    ``settings`` are the arguments of its function of the face. Only the module of the stage is
-    imported.
-    """
-    given = dict(settings)
-    seed = stream_seed(given.pop("seed"), given.pop("name"), stage, key(scene.radius))
-    if stage == "monte_carlo":
-        from twodiscs.sampling.montecarlo import SamplingRun
-
-        return SamplingRun(scene, seed=seed, **given)
-    if stage == "dynamics":
-        from twodiscs.dynamics.counting import CountingRun
-
-        return CountingRun(scene, given["error"], given["budget"], seed)
-    from twodiscs.dynamics.intervals import IntervalRun
-
-    return IntervalRun(scene, given["hop"], given["number"], seed, given["budget"])
 
 
 def run_at(scene, stage, radius):

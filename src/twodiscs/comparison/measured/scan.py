@@ -90,7 +90,7 @@ class Scan(Result, Sequence[Measurements]):
         return Scan([result._again(settings, options) for result in self], self.refused)
 
     def to_dict(self) -> dict[str, object]:
-        """Return the scan as ``save`` writes it, as ``Measurements.to_dict`` does."""
+        """Return the scan as ``save`` writes it, as ``Result.to_dict`` does."""
         return {
             "twodiscs": self.version,
             "kind": self.kind,

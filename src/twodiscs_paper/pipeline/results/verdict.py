@@ -10,14 +10,14 @@ NAMES = (
 
 
 def verdict(tables):
-    """Return (sentences on the comparisons that fail, a line on each table) of {name: rows}.
+    """Return (sentences on the comparisons that fail, a line on each table) of [(name, rows)].
 
     A row fails if its |z| is over its bound. The rows of a scene have a column ``bound``. In a
     table of a study the bound follows from the number of scores (``bonferroni_bound``). A table
     without a score fails, too, and so does a verdict without a table.
     """
     failures, lines = [] if tables else ["nothing is compared"], []
-    for name, rows in tables.items():
+    for name, rows in tables:
         tested = [row for row in rows if row["z"] is not None]
         common = bonferroni_bound(len(tested), FALSE_ALARM) if tested else None
         for row in tested:

@@ -128,8 +128,6 @@ def renew(results, expected, tables, points):
 
     Digests, processor times and versions of points are left out.
     """
-    for old in (*expected.rglob("*.csv"), *expected.rglob("*.json")):
-        old.unlink()
     by_stage = {}
     for path in map(Path, points):
         point = json.loads(path.read_text("utf-8"))
@@ -142,6 +140,8 @@ def renew(results, expected, tables, points):
         rows = [lines[i] for i in compared_rows(path.stem, read(path)).index]
         texts[path.relative_to(results)] = "".join((header, *rows))
     texts["configuration.json"] = (results / "configuration.json").read_text("utf-8")
+    for old in (*expected.rglob("*.csv"), *expected.rglob("*.json")):
+        old.unlink()
     for name, text in texts.items():
         (expected / name).parent.mkdir(parents=True, exist_ok=True)
         (expected / name).write_text(text, "utf-8", newline="\n")

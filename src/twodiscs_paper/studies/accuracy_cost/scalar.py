@@ -1,6 +1,6 @@
 """The usual engine, for comparison: one trajectory at a time, with branches and divisions.
 
-It does the same experiment as ``counting.count_blocks``, from the same starts, with the same law in
+It does the same experiment as ``dynamics.two.lockstep``, from the same starts, with the same law in
 its most direct form. It serves as an independent check and as the baseline of the benchmarks.
 ``count_blocks.py_func`` is the plain Python program.
 """
@@ -27,7 +27,7 @@ def simulated_events(counts):
 
 @compiled
 def count_blocks(seed, first, stop, replicas, duration, sigma, draw, order):
-    """Return (sums, products) of ``COUNTED`` as ``counting.count_blocks`` does."""
+    """Return (sums, products) of ``COUNTED`` as ``dynamics.two.lockstep`` does."""
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
     starts = np.zeros((8, replicas))
     for block in range(first, stop):

@@ -4,8 +4,8 @@ With friction of the rate γ, κ depends on x = γ√(εσ): a neck of the width
 √(εσ), and a pair forgets its velocity within it if x is large.
 
 The distance below that radius is halved from step to step. Two quantities have two estimators each,
-which share only the exact rate of hops: κ, by clusters and by κ(t) (``dynamics.passages``), and the
-coefficient D of diffusion along a ring, by the correlations of hops and by displacements.
+which share only the exact rate of hops: κ, by clusters and by κ(t) (``dynamics.two.passages``), and
+the coefficient D of diffusion along a ring, by the correlations of hops and by displacements.
 """
 
 import math
