@@ -106,15 +106,12 @@ STUDY = Study(
             Caption(
                 """
                 (a) Processor time for a relative error of 1e-3 in each mean time, against the
-                radius. It comes from the speed and the errors of a pilot (open symbols) or from a
-                run to that error (full symbols). Lines are predicted from the exact rates and one
-                speed for a Poisson process. Hops near the radius where they are blocked are counted
-                from initial states in a strip next to their surface (grey). Their cost stays
-                constant, here up to a relative distance of 1e-6. (b) The times of pilots divided by
-                the times of a Poisson process. Apart from the speed at that radius, this ratio is
-                the variance of the number of events divided by its mean. If it is below one, as for
-                hits of any wall, events are more regular than in a Poisson process. Above one they
-                come in clusters.
+                radius, from the speed and the errors of a pilot (open symbols) or from a run to
+                that error (full symbols). Lines are predicted from the exact rates and one speed
+                for a Poisson process. Near the radius where they are blocked hops are counted from
+                initial states in a strip next to their surface (grey). (b) The times of pilots
+                divided by the times of a Poisson process: the variance of the number of events
+                divided by its mean.
                 """
             ),
             tables=("accuracy_cost",),
