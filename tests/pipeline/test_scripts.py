@@ -176,7 +176,7 @@ def test_a_figure_names_its_code_and_its_tables(run, points, tmp_path):
         "radius": None,
         "seed": 1,
     }
-    files = {"tables": ["volume.csv"], "code": ["sums"], "own_code": []}
+    files = {"tables": ["volume.csv"], "code": ["figure.py", "sums"], "own_code": []}
     run("figure", params, {"scene": "a", "figure": "volume"}, files, png="a.png", pdf="a.pdf")
     origin = f"twodiscs: scene a, seed 1, code {digest('sums')[:16]}, tables "
     assert f"{origin}{digest('volume.csv')[:16]}".encode() in Path("a.png").read_bytes()

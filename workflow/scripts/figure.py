@@ -24,7 +24,8 @@ with style.context():
         else:
             figure = draw.draw(name, box, *tables.values(), radius=radius)
         scene = f"scene {wildcards.scene}, " if wildcards.get("scene") else ""
-        code = digest(*files.code, *files.own_code)[:16]
+        # Not of this script: one that git fetched from elsewhere lacks its last newline.
+        code = digest(*files.code[1:], *files.own_code)[:16]
         origin = f"twodiscs: {scene}seed {params.seed}, code {code}"
         if tables:
             origin += f", tables {digest(*files.tables)[:16]}"

@@ -52,7 +52,8 @@ def typeset(template, output, scenes, figures, seed, configuration):
     """
     import typst
 
-    results, folder = Path(output).absolute().parent, Path(template).absolute().parent
+    # Without "..": Typst compares paths as texts.
+    results, folder = (Path(os.path.abspath(path)).parent for path in (output, template))
     root = Path(os.path.commonpath([results, folder.parent]))  # CITATION.cff is there
     contents = {
         "captions": captions(scenes[0]),
