@@ -306,6 +306,8 @@ class Measurements(Result, Mapping[str, Measurement]):
 
         names, means, covariances = self.point.moments()
         known = [k for k, name in enumerate(names) if self._has_error(name)]
+        if not known:
+            return {}
         numbers = correlated_values(means[known], covariances[np.ix_(known, known)])
         found = {}
         for k, number in zip(known, numbers, strict=True):
