@@ -316,6 +316,7 @@ def test_default_radii_keep_to_what_there_is():
     assert one(effects={"field": 2}, watch=True).quantities.trajectory == 0.0625
     # The larger disc has a hundredth of the side.
     assert one(effects={"radius_ratio": 4}).radii[0] == 0.0025
+    assert one(effects={"radius_ratio": 0.25}).radii[0] == 0.01
     assert len(one(radii={"count": 1}, effects={"field": 1}).radii) == 1
     include = one(effects={"field": 1}, radii={"count": 4, "include": [0.123]}).radii
     assert len(include) == 5

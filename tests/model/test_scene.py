@@ -1,5 +1,6 @@
 """Scene: the geometry that it derives, against bisection in exact arithmetic."""
 
+import math
 import pickle
 from dataclasses import FrozenInstanceError
 from fractions import Fraction
@@ -40,6 +41,14 @@ def test_largest_radius_separates_what_fits_from_what_does_not(width, height):
     assert largest == pytest.approx(Box(height, width).largest_radius, rel=4 * 2**-52)
     assert Box(width, height).fits(largest * (1 - 1e-9))
     assert not Box(width, height).fits(largest * (1 + 1e-9))
+
+
+def test_discs_that_jam_do_not_fit():
+    """In a box of 9/8 × 1 they jam at r = 5/16 exactly: centres at most (1/2, 3/8) apart touch."""
+    box = Box(1.125, 1.0)
+    assert box.largest_radius == 0.3125
+    assert not box.fits(0.3125)
+    assert box.fits(math.nextafter(0.3125, 0.0))
 
 
 @pytest.mark.parametrize(
