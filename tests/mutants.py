@@ -138,6 +138,7 @@ MUTANTS = [
     ("twodiscs_paper/pipeline/cost.py", "days of some radii", "taken * len(keys) / max(1, len(some)) / DAY", "taken / DAY"),
     ("twodiscs_paper/pipeline/results/verdict.py", "an empty set passes", "        if tested:", "        if True:"),
     ("twodiscs_paper/pipeline/results/verdict.py", "a score that is no number", 'not abs(row["z"]) <= bound', 'abs(row["z"]) > bound'),
+    ("twodiscs_paper/pipeline/results/verify.py", "tolerance of scores for all estimates", 'if name in TABLES_OF_SCORES and column == "estimate"', 'if column == "estimate"'),
     ("twodiscs_paper/pipeline/results/provenance.py", "the repository of a hook", "if name not in REPOSITORY", "if name"),
     ("twodiscs_paper/studies/distributions/measure.py", "error of a hazard", "math.sqrt(1 / rest - 1 / alive)", "math.sqrt(1 / rest + 1 / alive)"),
     ("twodiscs_paper/studies/passages/measure.py", "error of an exponent", "math.hypot(*errors) / math.log(2)", "math.hypot(*errors)"),

@@ -373,6 +373,6 @@ def test_numbers_of_rows_are_those_of_the_page(checked):
 
 
 def test_the_example_passes(checked):
-    failures, said = verdict({"look": SCENE_TABLES["check"].read(checked)})
+    failures, said = verdict([("look", SCENE_TABLES["check"].read(checked))])
     assert not failures
     assert said.startswith("look: ")

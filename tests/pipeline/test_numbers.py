@@ -168,6 +168,8 @@ def test_a_number_takes_its_rows(rows):
         'at-most(rows, "estimate")': "$8$",
         'at-least(rows, "estimate")': "$5$",
         'at-least(rows, "estimate", n: 3, scale: 100)': "$500$",
+        'at-most(rows, "stderr", n: 1, scale: 0.31)': "$0.4$",
+        'at-least(rows, "stderr", n: 1)': "$0.2$",
         'span(rows, "estimate")': "$-6$ to $8$",
         'span(first(rows), "time")': "$2$",
         'value(of(rows, event: "wall"), "estimate/law", 2)': "$4$",
