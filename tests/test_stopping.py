@@ -39,7 +39,7 @@ CALLS = {
     "sample": "td.sample(scene, 1e13 if large else 1)",
     "intervals": "td.intervals(scene, 'vertical_hop', 1e12 if large else 1)",
     "intervals of rare hops": "td.intervals(rare if large else scene, 'horizontal_hop', 1)",
-    "starts": "td.starts(td.Scene(1.5, 1.0, 0.34, field=0.1), 10**8 if large else 1)",
+    "starts": "td.starts(td.Scene(1.5, 1.0, 0.34, field=0.1), 10**7 if large else 1)",
     "starts of many discs": "td.starts(td.Scene(1.5, 1, 0.195, discs=8), 10**6 if large else 1)",
     "trajectory": "td.trajectory(scene, duration=2.5e6 if large else 3)",
     "transmission": "td.transmission(rare, 'horizontal_hop', 1e9 if large else 1)",

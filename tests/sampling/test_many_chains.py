@@ -67,7 +67,13 @@ def check(one, other):
 
 
 @pytest.mark.parametrize(
-    "scene", [box(256, 0.6), box(256, 0.6, "x"), Scene(40.0, 0.6, 0.18, discs=128)]
+    "scene",
+    [
+        box(256, 0.6),
+        box(256, 0.6, "x"),
+        Scene(40.0, 0.6, 0.18, discs=128),
+        Scene(0.41, 30.0, 0.1, discs=128, periodic="x"),
+    ],
 )
 def test_states_are_allowed(scene):
     x, y = np.split(drawn(scene, 10, 1), 4)[:2]
@@ -89,6 +95,8 @@ def test_states_are_allowed(scene):
         box(20, 0.1),
         box(20, 0.55),
         box(20, 0.5, "x"),
+        Scene(0.54, 5.0, 0.13, discs=20, periodic="x"),
+        Scene(0.7, 3.0, 0.1, discs=24, periodic="x"),
         pytest.param(box(32, 0.6), marks=pytest.mark.slow),
         Scene(9.6, 0.75, 0.18, discs=24),
     ],

@@ -17,9 +17,10 @@ from twodiscs.model.checks import (
 )
 from twodiscs.model.scene import check_scene
 from twodiscs.sampling.blocks.threads import in_threads
-from twodiscs.sampling.starts import components, states
+from twodiscs.sampling.starts import MOST_NUMBERS, components, states
 
-#: The most events of a trajectory, because all its rows are kept.
+#: The most events of a trajectory, because all its rows are kept. Those of many discs have at most
+#: ``MOST_NUMBERS``.
 MOST_EVENTS = 1e7
 
 #: Rows that are made at a time: some hundredths of a second.
@@ -126,12 +127,13 @@ def followed(scene, seed, start=None, duration=None, progress=None):
     """
     seed = check_integer("seed", seed, 0)
     rate = path_of(scene).trajectory_rate(scene)
+    most = min(MOST_EVENTS, MOST_NUMBERS / len(components(scene)))
     if duration is None:
         duration = path_of(scene).usual_duration(scene)
-    elif check_length("duration", duration) * rate > MOST_EVENTS:
+    elif check_length("duration", duration) * rate > most:
         raise InputError(
-            f"duration must be below {format_number(MOST_EVENTS / rate, '.3g')}, where "
-            f"{format_number(MOST_EVENTS, 'g')} events are due, not {duration!r}"
+            f"duration must be below {format_number(most / rate, '.3g')}, where "
+            f"{format_number(most, '.3g')} events are due, not {duration!r}"
         )
     if start is None:
         start = tuple(map(float, states(scene, 1, seed)[: len(components(scene)), 0]))

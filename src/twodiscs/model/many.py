@@ -12,6 +12,10 @@ from twodiscs.model.checks import MOST_WITH_VOLUME, InputError
 #: The effects of more than two discs.
 POSSIBLE = ("periodic", "moment_of_inertia", "friction")
 
+#: From this number of discs on, cells list the discs that may touch. The least side of a cell over
+#: σ: it must be longer. A ring has two columns of cells, or more.
+LARGE, LEAST_SIDE = 20, 1 + 2.0**-20
+
 #: The most decimal digits before or after the point of the volume of the prism: a double can then
 #: represent it.
 MOST_DIGITS = 150
@@ -49,7 +53,13 @@ def largest_radius(scene):
 
 
 def require_followable(scene):
-    """Accept every ``Scene``: its radius is below the largest one."""
+    """Raise ``InputError`` for ``LARGE`` numbers of discs on a ring that just fits two of them."""
+    longest = scene.width / (4 * LEAST_SIDE)
+    if scene.periodic and scene.discs >= LARGE and scene.radius > longest:
+        raise InputError(
+            f"radius {scene.radius!r} must not exceed {longest!r} for {scene.discs} discs on a "
+            f"ring of {scene.width!r}, which has to have room for two cells that hold a disc"
+        )
 
 
 def open_axes(scene):

@@ -37,6 +37,9 @@ CALL = 2**18
 #: Initial states in an array that stays in the processor's cache.
 PIECE = 2**13
 
+#: The most numbers of the states that are kept for a user: 1 GB.
+MOST_NUMBERS = 120_000_000
+
 #: Rows of an array of initial states of two discs.
 COMPONENTS = 12
 

@@ -865,7 +865,8 @@ def starts(
     scene : Scene
         The box, the discs and their effects.
     number : float
-        The number of states, an integer from 1 to 1e8.
+        The number of states, an integer from 1 to 1.5e7 for two plain discs. All states together
+        have at most 1.2e8 numbers.
     seed, name, progress : optional
         See ``help(twodiscs)``.
 
@@ -890,10 +891,12 @@ def starts(
     >>> bool((states["vx1"] == states["u1"]).all())
     True
     """
-    number = check_count("number", number, most=10**8)
-    seed = seed_of(scene, "trajectory", seed, name)
     from twodiscs.comparison.measured.states import with_aliases
-    from twodiscs.sampling.starts import records
+    from twodiscs.sampling.starts import MOST_NUMBERS, components, records
+
+    most = MOST_NUMBERS // len(components(check_scene(scene)))
+    number = check_count("number", number, most=most)
+    seed = seed_of(scene, "trajectory", seed, name)
 
     with progress_bar(progress, f"starts r = {scene.radius:g}") as progress:
         return with_aliases(records(scene, number, seed, progress))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import islice
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +13,6 @@ from twodiscs.comparison.measured.progress import progress_bar
 from twodiscs.comparison.measured.result import note_of_number
 from twodiscs.comparison.measured.states import with_aliases
 from twodiscs.dynamics.counting import engine_of
-from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, kicks_of, new_wraps, unwrap
 from twodiscs.model.checks import (
     InputError,
@@ -22,9 +22,10 @@ from twodiscs.model.checks import (
     format_number,
     quote,
 )
+from twodiscs.model.many import LARGE
 from twodiscs.model.scene import check_scene
 from twodiscs.sampling.blocks.threads import in_threads
-from twodiscs.sampling.starts import as_records, states
+from twodiscs.sampling.starts import as_records, components, states
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -34,8 +35,11 @@ if TYPE_CHECKING:
     from twodiscs import Axis
     from twodiscs.model.scene import Scene
 
-#: Replicas with one random stream; fewer where a family has smaller blocks than ``REPLICAS``.
+#: Replicas with one random stream. ``LARGE`` numbers of discs have the blocks of ``simulate``.
 BLOCK = 4096
+
+#: The most numbers of the states of a block at several times that are in memory together.
+KEPT = 2**22
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,8 +208,8 @@ def observe(
     times : float or iterable of float
         Ascending, from 0 on, in time.
     replicas : float, default 2¹⁶
-        Trajectories, an integer from 1 to 1e9. It is rounded up to whole blocks of 4096; ``note``
-        of the result has the number that was followed.
+        Trajectories, an integer from 1 to 1e9. It is rounded up to whole blocks: of 4096, and
+        of fewer for 20 discs or more. ``note`` of the result has the number that was followed.
     seed, name, cores, progress : optional
         See ``help(twodiscs)``.
 
@@ -219,7 +223,7 @@ def observe(
     Raises
     ------
     InputError
-        For times of more than 10⁷ events, and for a function that returns anything else.
+        For times of more than 10⁷ events and kicks, and for a function that returns anything else.
 
     Examples
     --------
@@ -232,54 +236,78 @@ def observe(
 
 def averages(
     scene, function, times, replicas, seed, name, cores=1, progress=None, names=(),
-    over_times=lambda values: values,
+    over_times=lambda values, before, steps: values,
 ):  # fmt: skip
     """Return the averages of a user's ``function`` as ``Observed``.
 
-    ``over_times`` is applied to the values of the replicas of a block, (replicas, times, …), before
-    they are averaged; ``names`` are the names of the averages.
+    ``over_times(values, before, steps)`` is applied to the values of the replicas of a block at
+    some of the times, (replicas, times, …), before they are averaged. ``before`` are the values at
+    the time before these, None at first. ``steps`` are the times since the time before each.
+    ``names`` are the names of the averages.
     """
     stream, times = seed_of(check_scene(scene), "observe", seed, name), _times(times)
     if not callable(function):
         raise InputError(f"function must take two arrays of states, not be {quote(function)}")
-    each = BLOCK * engine_of(scene).block_replicas(scene) // REPLICAS
+    each = BLOCK if scene.discs < LARGE else engine_of(scene).block_replicas(scene)
     blocks = -(-check_count("replicas", replicas, most=10**9) // each)
-    rate = engine_of(scene).expected_event_rate(scene)
+    rate = engine_of(scene).expected_event_rate(scene) + scene.friction
     if times[-1] * rate > MOST_EVENTS:
         raise InputError(
             f"times must be below {format_number(MOST_EVENTS / rate, '.3g')}, where "
             f"{format_number(MOST_EVENTS, 'g')} events are due, not {format_number(times[-1], 'g')}"
         )
 
+    steps = np.diff(times, prepend=0.0)
+
     def snapshots(block):
-        """Yield the states of a block at time 0, then at all ``times``."""
+        """Yield (states at time 0, states at a time) of a block, for all ``times``."""
         filled, wraps = states(scene, each, stream, block), new_wraps(scene, each)
         kicks = kicks_of(scene, each, stream, block)
-        yield with_aliases(as_records(scene, filled))
-        for step in np.diff(times, prepend=0.0):
+        start = with_aliases(as_records(scene, filled))
+        for step in steps:
             if step:
                 advance_all(scene, filled, wraps, step, kicks)
             now = as_records(scene, filled)
             unwrap(scene, now, wraps)
-            yield with_aliases(now)
+            yield start, with_aliases(now)
 
+    def moments(block, first, found, before):
+        """Return the last values of a block, and the means and sums of squares at some times."""
+        values = np.stack([_values(function, start, now) for start, now in found], axis=1)
+        _check_finite(values, times[first:], block * each)
+        last, values = values[:, -1], over_times(values, before, steps[first : first + len(found)])
+        return last, values.mean(axis=0), ((values - values.mean(axis=0)) ** 2).sum(axis=0)
+
+    # If the states of a block at all times are too many, one block a core goes on piece by piece.
+    together = max(1, KEPT // (each * len(components(scene))))
+    in_pieces = times.size > together
+    abreast = cores if in_pieces else blocks
     total = mean = square = None
     with progress_bar(progress, f"observe r = {scene.radius:g}") as progress:
-        every = in_threads(lambda b: [*snapshots(b)], ((b,) for b in range(blocks)), cores)
-        for done, (start, *later) in enumerate(every, 1):
-            values = np.stack([_values(function, start, now) for now in later], axis=1)
-            _check_finite(values, times, (done - 1) * each)
-            values = over_times(values)
-            own, spread = values.mean(axis=0), ((values - values.mean(axis=0)) ** 2).sum(axis=0)
-            if mean is None:
-                total, mean, square = each, own, spread
-            else:
-                # The mean and the sum of squares of two samples together (Chan et al., 1979).
-                n, apart = total + each, own - mean
-                square = square + spread + apart**2 * (total * each / n)
-                mean, total = mean + apart * (each / n), n
-            if progress is not None:
-                progress(done, blocks)
+        for low in range(0, blocks, abreast):
+            numbers = range(low, min(low + abreast, blocks))
+            paths = [*map(snapshots, numbers)] if in_pieces else map(snapshots, numbers)
+            parts = {}
+            for first in range(0, times.size, together):
+                calls = ((path,) for path in paths)
+                every = in_threads(lambda path: [*islice(path, together)], calls, cores)
+                for block, found in zip(numbers, every, strict=True):
+                    before = parts[block][-1][0] if first else None
+                    part = moments(block, first, found, before)
+                    parts.setdefault(block, []).append(part)
+                    if first + together < times.size:
+                        continue
+                    _, own, spread = map(np.concatenate, zip(*parts.pop(block), strict=True))
+                    if mean is None:
+                        total, mean, square = each, own, spread
+                    else:
+                        # The mean and the sum of squares of two samples together (Chan et al.,
+                        # 1979).
+                        n, apart = total + each, own - mean
+                        square = square + spread + apart**2 * (total * each / n)
+                        mean, total = mean + apart * (each / n), n
+                    if progress is not None:
+                        progress(block + 1, blocks)
     stderr = np.sqrt(square / (total - 1) / total)
     settings = {"replicas": total, "seed": int(seed), "name": name}
     note = note_of_number("replicas", int(replicas), total)
@@ -311,7 +339,7 @@ def diffusion(
     times : float or iterable of float
         Ascending, above 0, in time.
     replicas : float, default 2¹⁶
-        Trajectories, an integer from 1 to 1e9, rounded up to whole blocks of 4096.
+        Trajectories, an integer from 1 to 1e9, rounded up to whole blocks as in ``observe``.
     axis : str, optional
         "x", "y" or "z"; the first periodic one if left out.
     seed, name, cores, progress : optional
@@ -329,7 +357,7 @@ def diffusion(
     ------
     InputError
         For an axis with walls, between which displacements have a bound, for times of more than
-        10⁷ events, and for a time of 0.
+        10⁷ events and kicks, and for a time of 0.
 
     Notes
     -----
@@ -359,8 +387,9 @@ def diffusion(
     def squared(start, now):
         return sum((now[f"{axis}{n}"] - start[f"{axis}{n}"]) ** 2 for n in discs) / len(discs)
 
-    def with_slopes(values):
-        slopes = np.diff(values, axis=1, prepend=0.0) / (2 * np.diff(times, prepend=0.0))
+    def with_slopes(values, before, steps):
+        before = np.zeros(len(values)) if before is None else before
+        slopes = np.diff(values, axis=1, prepend=before[:, None]) / (2 * steps)
         return np.stack([values, slopes], axis=2)
 
     names = "squared_displacement", "diffusion"

@@ -171,6 +171,16 @@ def new_motion(discs, grid, rough=None):
 # Times --------------------------------------------------------------------------------------------
 
 
+@optional(lambda apart, column, columns, ring: apart)
+def apart_in(apart, column, columns, ring):
+    """Return the separation to the image in a ``column``, which may be one turn too low or high.
+
+    It need not be the nearest image on a ring of less than four columns.
+    """
+    apart -= ring[0] if column < 0 else 0.0
+    return apart + (ring[0] if column >= columns else 0.0)
+
+
 @inlined
 def find_contact(i, now, columns, rows, motion, grid, law):
     """Return (time, partner) of the soonest contact of disc ``i`` with a disc in those cells.
@@ -189,7 +199,7 @@ def find_contact(i, now, columns, rows, motion, grid, law):
             k = motion.places.head[cell]
             while k >= 0:
                 lag = now - motion.time[k]
-                dx = nearest(motion.x[k] + motion.u[k] * lag - x, law.ring)
+                dx = apart_in(motion.x[k] + motion.u[k] * lag - x, column, across, law.ring)
                 dy = motion.y[k] + motion.v[k] * lag - y
                 other_gap, other_speed, approach = contact_quotient(
                     dx, dy, None, motion.u[k] - u, motion.v[k] - v, None, law.sigma

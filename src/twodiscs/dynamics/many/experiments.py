@@ -2,7 +2,7 @@
 
 import math
 
-from twodiscs.dynamics.ensemble import RETURNS
+from twodiscs.dynamics.ensemble import RETURNS, nearest_power_of_two
 from twodiscs.dynamics.many import kernels, lockstep
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import HOPS
@@ -27,8 +27,11 @@ LONGER = 64
 
 
 def replica_duration(scene):
-    """Return the time T of one replica, a power of two, see ``lockstep``."""
-    return lockstep.replica_duration(scene)
+    """Return the time T of one replica, a power of two, see ``lockstep``.
+
+    With friction it is shorter, so that kicks do not add to the work.
+    """
+    return nearest_power_of_two(lockstep.replica_duration(scene) / work_per_event(scene))
 
 
 def expected_event_rate(scene):

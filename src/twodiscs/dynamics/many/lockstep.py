@@ -34,6 +34,7 @@ from twodiscs.dynamics.law import (
 from twodiscs.model.events import by_kind
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import insertions
+from twodiscs.sampling.many.chains import DENSEST, crowding
 from twodiscs.sampling.many.initial import (
     LARGE,
     draw_velocities,
@@ -51,8 +52,9 @@ from twodiscs.theory.many.rates import bulk_derivatives, rates
 #: Events of a replica, and of a replica whose initial state takes as long as ten thousand events.
 REPLICA_EVENTS, EVENTS_OF_CHAIN = 256, 8192
 
-#: Events of each disc in a replica of ``LARGE`` numbers of discs.
-EVENTS_OF_DISC = 64
+#: Events of each disc in a replica of ``LARGE`` numbers of discs, and the fewest replicas of a
+#: block of crowded ones.
+EVENTS_OF_DISC, FEWEST = 64, 8
 
 #: A flight on a ring that ends without an event.
 LOOK_AGAIN = -1.0
@@ -557,8 +559,18 @@ def record_intervals(states, seed, first, window, law, hops_x, bins, sums, going
 
 
 def replicas_of(scene):
-    """Return how many replicas of a ``Scene`` a block has: fewer of ``LARGE`` numbers of discs."""
-    return REPLICAS if scene.discs < LARGE else REPLICAS >> (scene.discs.bit_length() - 5)
+    """Return how many replicas of a ``Scene`` a block has: fewer of ``LARGE`` numbers of discs.
+
+    There are still fewer, for longer, if contacts are so many that initial states take long.
+    """
+    if scene.discs < LARGE:
+        return REPLICAS
+    usual = _roomy_replicas(scene)
+    return min(usual, max(FEWEST, usual >> (math.frexp(crowding(scene))[1] - 1)))
+
+
+def _roomy_replicas(scene):
+    return REPLICAS >> (scene.discs.bit_length() - 5)
 
 
 def epoch_of(scene):
@@ -594,7 +606,8 @@ def expected_rates(scene):
     Rates are exact if that is known, and otherwise from some insertions (``insertions.expected``),
     within a few per cent. If insertions find no room, the rates of wall hits and collisions are
     guessed (``replica_duration``), and so is one of them for which insertions give 0. For
-    ``LARGE`` numbers of discs rates follow from an equation of state, within some ten per cent.
+    ``LARGE`` numbers of discs rates follow from an equation of state, within some ten per cent. It
+    ends where discs are ``DENSEST``; there the guess, if it is more, takes its place.
     """
     known = methods.known_derivatives(scene)
     if known is None:
@@ -604,7 +617,10 @@ def expected_rates(scene):
         return guess
     by_class = rates(scene, known)
     summed = {event: sum(by_class[name] for name in parts) for event, parts in PARTS.items()}
-    return guess | {e: rate for e, rate in summed.items() if rate and e in scene.events}
+    found = guess | {e: rate for e, rate in summed.items() if rate and e in scene.events}
+    if scene.discs >= LARGE and crowding(scene) == DENSEST and not methods.method(scene):
+        found |= {event: max(rate, found[event]) for event, rate in guess.items()}
+    return found
 
 
 def expected_event_rate(scene):
@@ -623,10 +639,10 @@ def replica_duration(scene, events=None):
 
     The rate is guessed from the wall hits of an ideal gas and from the distance to the largest
     radius. By default ``events`` is 256, or ``EVENTS_OF_CHAIN`` if an initial state takes a chain
-    of moves; ``LARGE`` numbers of discs have ``EVENTS_OF_DISC`` each.
+    of moves. ``LARGE`` numbers of discs have ``EVENTS_OF_DISC`` each, more if replicas are fewer.
     """
     if events is None and scene.discs >= LARGE:
-        events = EVENTS_OF_DISC * scene.discs
+        events = EVENTS_OF_DISC * scene.discs * _roomy_replicas(scene) // replicas_of(scene)
     events = events or (EVENTS_OF_CHAIN if method(scene) == "chain" else REPLICA_EVENTS)
     return nearest_power_of_two(events / _guessed_rate(scene))
 

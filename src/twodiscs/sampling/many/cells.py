@@ -9,13 +9,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from twodiscs.model.many import LEAST_SIDE
 from twodiscs.sampling.jit import compiled, inlined, optional
 
-#: The least side of a cell over the root of the area per disc, and over σ.
-SPACING, LEAST_SIDE = 1.25, 1 + 2.0**-20
+#: The least side of a cell over the root of the area per disc.
+SPACING = 1.25
 
-#: The least number of columns around a ring; a neighbour then has one image within reach.
-LEAST_COLUMNS = 4
+#: The number of columns around a ring, if there is room for them. A short ring has two or three.
+#: With two columns each is the neighbour of the other on both sides, by another image.
+COLUMNS = 4
 
 
 class Grid(NamedTuple):
@@ -39,14 +41,12 @@ class Places(NamedTuple):
 
 
 def grid_of(scene):
-    """Return the ``Grid`` of a ``Scene``; None on a ring too short for ``LEAST_COLUMNS``."""
+    """Return the ``Grid`` of a ``Scene``, which must be followable."""
     a, b = scene.range_x, scene.range_y
     side = max(LEAST_SIDE * scene.contact_distance, SPACING * math.sqrt(a * b / scene.discs))
     columns, rows = max(1, int(a / side)), max(1, int(b / side))
     if scene.periodic:
-        columns = max(columns, min(LEAST_COLUMNS, int(a / (LEAST_SIDE * scene.contact_distance))))
-        if columns < LEAST_COLUMNS:
-            return None
+        columns = max(columns, min(COLUMNS, int(a / (LEAST_SIDE * scene.contact_distance))))
     return Grid(_borders(a, columns), _borders(b, rows))
 
 

@@ -29,8 +29,15 @@ from twodiscs.sampling.streams import next_bits, uniform
 CONTACTS, CONTACTS_OF_CHAIN = 512, 16
 
 #: Below this room of discs, relative to their radius, contacts are more in proportion: each moves a
-#: disc by less.
-ROOMY = 1 / 3
+#: disc by less. They are at most ``DENSEST`` times as many: closer to the largest radius all free
+#: lengths shrink alike, and as many moves, which shrink with them, mix the centres as well.
+ROOMY, DENSEST = 1 / 3, 16
+
+
+def crowding(scene):
+    """Return how many times as many contacts a ``Scene`` has as a roomy one, 1 to ``DENSEST``."""
+    room = (scene.largest_radius - scene.radius) / scene.radius
+    return min(max(1.0, ROOMY / room), DENSEST)
 
 
 def plan(scene):
@@ -43,7 +50,7 @@ def plan(scene):
     length = CONTACTS_OF_CHAIN * math.pi / 4 * scene.contact_distance * room
     # Small discs hardly touch.
     length = min(length, 4 * max(scene.width, scene.height))
-    contacts = CONTACTS * max(1.0, ROOMY / room)
+    contacts = CONTACTS * crowding(scene)
     return math.ceil(contacts * scene.discs / CONTACTS_OF_CHAIN), length
 
 
@@ -51,6 +58,12 @@ def plan(scene):
 def column_of(column, columns, ring):
     """Return the number of a column, −1 if there is none."""
     return around_columns(column, columns, ring)
+
+
+@optional(lambda dx, sign, ring: dx)
+def ahead_of(dx, sign, ring):
+    """Return the separation to the image ahead on a ring, given that to the nearest image."""
+    return dx + sign * ring if sign * dx < 0.0 else dx
 
 
 @inlined
@@ -79,7 +92,7 @@ def first_contact(i, axis, sign, left, centres, places, grid, initial):
             k = places.head[column * rows + row]
             while k >= 0:
                 dx, dy = around(centres[0, k] - at_x, ring), centres[1, k] - at_y
-                ahead, apart = (dx, dy) if axis == 0 else (dy, dx)
+                ahead, apart = (ahead_of(dx, sign, ring), dy) if axis == 0 else (dy, dx)
                 square = (sigma - apart) * (sigma + apart)
                 if square > 0.0 and sign * ahead > 0.0:
                     gap = sign * ahead - math.sqrt(square)

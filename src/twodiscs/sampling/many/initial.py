@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.many import arrangement, is_ordered
+from twodiscs.model.many import LARGE, arrangement, is_ordered
 from twodiscs.sampling.blocks.threads import in_a_thread, in_threads
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import chains, insertions
@@ -38,9 +38,6 @@ LEAST = 1e-3
 
 #: Sweeps of a chain, and the least number of sizes of its moves; each is half of the one before.
 SWEEPS, SCALES = 4000, 8
-
-#: From this number of discs on, moves are event chains, and cells list the discs that may touch.
-LARGE = 20
 
 #: The most discs for rejection of heights in a channel: with more, too few would be accepted.
 MOST_REJECTED = 64
@@ -141,10 +138,7 @@ def _chain(scene):
 
 
 def large_grid(scene):
-    """Return the ``Grid`` of a ``Scene`` of at least ``LARGE`` discs; None for fewer.
-
-    It is also None on a short ring.
-    """
+    """Return the ``Grid`` of a ``Scene`` of at least ``LARGE`` discs; None for fewer."""
     return grid_of(scene) if scene.discs >= LARGE else None
 
 
