@@ -232,15 +232,15 @@ def test_progress_is_shown_where_someone_looks(progress, monkeypatch, capsys):
 
 
 def test_a_bar_is_where_the_work_is(monkeypatch):
-    auto = pytest.importorskip("tqdm.auto", reason="tqdm shows progress")
+    tqdm = pytest.importorskip("tqdm", reason="tqdm shows progress")
     bars = []
 
-    class Bar(auto.tqdm):
+    class Bar(tqdm.tqdm):
         def __init__(self, *given, **options):
             super().__init__(*given, **options)
             bars.append(self)
 
-    monkeypatch.setattr(auto, "tqdm", Bar)
+    monkeypatch.setattr(tqdm, "tqdm", Bar)
     with progress_module.progress_bar(True, "work") as watch:
         for done in (2, 5, None, 9):
             watch(done, 10)

@@ -33,6 +33,7 @@ import numba  # noqa: E402
 from llvmlite import binding  # noqa: E402
 from numba.core import caching, types  # noqa: E402
 from numba.core.compiler_lock import global_compiler_lock  # noqa: E402
+from numba.core.registry import cpu_target  # noqa: E402
 from numba.extending import overload  # noqa: E402
 
 # No kernel needs BLAS. Numba would import SciPy's, which takes a quarter of the start. We hide it;
@@ -55,7 +56,12 @@ if numba.config.DISABLE_JIT:
 # LLVM uses 512-bit vectors if the processor has them, unless the user set a width.
 features = binding.get_host_cpu_features()
 if features.get("avx512f") and not (numba.config.CPU_NAME or numba.config.CPU_FEATURES):
+    # Numba reads the features when it makes the context of all compilations. Afterwards the
+    # settings are again the user's.
+    users = numba.config.CPU_FEATURES
     numba.config.CPU_FEATURES = features.flatten() + ",-prefer-256-bit"
+    cpu_target.target_context  # noqa: B018
+    numba.config.CPU_FEATURES = users
 
 # Daemon threads end with the process. During a compilation that crashes it, so we wait.
 atexit.register(global_compiler_lock.acquire)

@@ -19,19 +19,21 @@ def progress_bar(progress, what):
     or a notebook, so that logs stay clean. Without a bar there is no function, but None.
     """
     if progress is None:
-        progress = sys.stderr.isatty() or "ipykernel" in sys.modules
+        terminal = sys.stderr is not None and sys.stderr.isatty()
+        progress = terminal or "ipykernel" in sys.modules
     elif not isinstance(progress, bool):
         raise InputError(f"progress must be True, False or None, not {quote(progress)}")
     if not progress:
         yield None
         return
-    import warnings
+    from importlib.util import find_spec
     from time import monotonic
 
-    with warnings.catch_warnings():
-        # A notebook without widgets shows a line of text instead, which is enough.
-        warnings.simplefilter("ignore")
-        from tqdm.auto import tqdm
+    # A notebook without widgets shows a line of text, which is enough. tqdm.auto would warn of it.
+    if "ipykernel" in sys.modules and find_spec("ipywidgets"):
+        from tqdm.notebook import tqdm
+    else:
+        from tqdm import tqdm
 
     start = monotonic()
     with tqdm(desc=what, total=1, leave=False, delay=PATIENCE, bar_format=BAR) as bar:

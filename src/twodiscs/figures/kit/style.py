@@ -82,9 +82,6 @@ SETTINGS = {
     "svg.hashsalt": "twodiscs",
 }
 
-# The files of Computer Modern have dates that fontTools warns about, once for each file.
-logging.getLogger("fontTools").setLevel(logging.ERROR)
-
 
 def _have_fonts():
     """Add the fonts that come with matplotlib if its list of fonts in the user's home lacks them.
@@ -99,18 +96,25 @@ def _have_fonts():
             fontManager.addfont(path)
 
 
-#: matplotlib's settings belong to the process, so one thread at a time changes them.
+#: Settings of matplotlib and loggers belong to the process: one thread at a time changes them.
 _ONE_AT_A_TIME = threading.RLock()
 
 
 @contextmanager
 def context():
-    """Draw and save in the style of this package, and restore matplotlib's settings afterwards."""
+    """Draw and save in the style of this package, and restore the user's settings afterwards."""
     with _ONE_AT_A_TIME, matplotlib.rc_context():
         _have_fonts()
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(SETTINGS)
-        yield
+        # The files of Computer Modern have dates that fontTools warns about, once for each file.
+        logger = logging.getLogger("fontTools")
+        level = logger.level
+        logger.setLevel(logging.ERROR)
+        try:
+            yield
+        finally:
+            logger.setLevel(level)
 
 
 class StyledFigure(Figure):

@@ -1,0 +1,169 @@
+"""A user's process is the same before and after each public function, in threads too.
+
+This file is also a program: ``python tests/test_process.py THREADS`` prints what changed.
+"""
+
+import decimal
+import gc
+import json
+import locale
+import logging
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import warnings
+from pathlib import Path
+
+import matplotlib
+import numba
+import numpy as np
+import pytest
+import scipy.integrate  # noqa: F401 - SciPy adds filters of warnings when it is imported
+
+import twodiscs as td
+
+SCENE = {"width": 1.5, "height": 1.0, "radius": 0.2}
+
+EXPECTED = Path(__file__).parents[1] / "paper" / "expected"
+
+#: {public name: a call of it, or a use, with a scene}
+CALLS = {
+    "Box": lambda s: td.Box(1.5, 1.0),
+    "EFFECTS": lambda s: td.EFFECTS["field"],
+    "EVENTS": lambda s: td.EVENTS[0],
+    "InputError": lambda s: _refused(),
+    "Intervals": lambda s: td.intervals(s, "vertical_hop", 100).frame(),
+    "Measurement": lambda s: td.sample(s, 1)["volume"].u,
+    "Measurements": lambda s: td.sample(s, 1, progress=True).frame(),
+    "Observed": lambda s: td.observe(s, _speed, [0.1], 8).frame(),
+    "Scan": lambda s: td.scan(1.5, 1.0, [0.2], 0.5).frame(),
+    "Scene": lambda s: td.Scene(1.5, 1.0, 0.1, field=0.5),
+    "Trajectory": lambda s: td.trajectory(s, 2).positions([1.0]),
+    "Transmission": lambda s: td.transmission(s, "vertical_hop", 1).frame(),
+    "animate": lambda s: td.animate(td.trajectory(s, 2), _file("gif")),
+    "areas": lambda s: td.areas(s),
+    "diffusion": lambda s: td.diffusion(td.Scene(**SCENE, periodic="x"), [0.1], 8),
+    "exact": lambda s: td.exact(s),
+    "exact_table": lambda s: td.exact_table(1.5, 1.0, [0.2]),
+    "free_energy": lambda s: td.free_energy(s),
+    "intervals": lambda s: td.intervals(s, "vertical_hop", 100),
+    "load": lambda s: td.load(EXPECTED)["errata"],
+    "load_result": lambda s: td.load_result(_saved(td.sample(s, 1))).more(2),
+    "mean_times": lambda s: td.mean_times(s),
+    "observe": lambda s: td.observe(s, _speed, [0.1], 8),
+    "plot": lambda s: td.plot(td.trajectory(s, 2), _file("pdf")),
+    "pressure": lambda s: td.pressure(s),
+    "rate": lambda s: td.rate(s, "vertical_hop"),
+    "sample": lambda s: td.sample(s, 1, cores=2, progress=True),
+    "scan": lambda s: td.scan(1.5, 1.0, [0.2], 0.5, cores=2),
+    "simulate": lambda s: td.simulate(s, 0.5, progress=True),
+    "starts": lambda s: td.starts(s, 2),
+    "trajectory": lambda s: td.trajectory(s, 2),
+    "transmission": lambda s: td.transmission(s, "vertical_hop", 1),
+    "volume": lambda s: td.volume(s),
+}
+
+
+def _speed(before, after):
+    return after["u1"] ** 2
+
+
+def _refused():
+    with pytest.raises(td.InputError):
+        td.load("no such folder")
+
+
+def _file(kind):
+    return tempfile.mkstemp(suffix=f".{kind}")[1]
+
+
+def _saved(result):
+    path = _file("json")
+    result.save(path)
+    return path
+
+
+def _active(handlers):
+    """Return the handlers that do anything: many packages add a ``NullHandler`` of their own."""
+    return [handler for handler in handlers if not isinstance(handler, logging.NullHandler)]
+
+
+def look():
+    """Return {setting of this process: its value}."""
+    names = [None, *logging.root.manager.loggerDict]
+    loggers = {str(name): logging.getLogger(name) for name in names}
+    return {
+        "garbage collector": (gc.isenabled(), gc.get_threshold(), gc.get_freeze_count()),
+        "environment": dict(os.environ),
+        "rcParams": dict(matplotlib.rcParams),
+        "warnings": ([*warnings.filters], warnings.showwarning),
+        "loggers": {
+            name: (one.level, one.propagate, one.disabled, _active(one.handlers), [*one.filters])
+            for name, one in loggers.items()
+        },
+        "signals": {s: signal.getsignal(s) for s in signal.valid_signals()},
+        "random": random.getstate(),
+        "numpy": repr(np.random.get_state(legacy=False)),
+        "numpy errors": np.geterr(),
+        "numba": {n: getattr(numba.config, n) for n in dir(numba.config) if n.isupper()},
+        "path": [*sys.path],
+        "folder": os.getcwd(),
+        "locale": locale.setlocale(locale.LC_ALL),
+        "decimal": repr(decimal.getcontext()),
+        "hooks": (sys.excepthook, sys.displayhook, threading.excepthook),
+        "streams": (sys.stdout, sys.stderr),
+        "limits": (sys.getrecursionlimit(), sys.getswitchinterval(), sys.gettrace()),
+        "print": np.get_printoptions(),
+    }
+
+
+def changes(before, after):
+    """Return what differs between two looks. A logger that is new must have no settings."""
+    new = {name: (0, True, False, [], []) for name in after["loggers"]}
+    before = before | {"loggers": new | before["loggers"]}
+    found = []
+    for name, old in before.items():
+        if isinstance(old, dict):
+            for key in {**old, **after[name]}:
+                if (one := old.get(key)) != (other := after[name].get(key)):
+                    found.append(f"{name}, {key}: {one!r} → {other!r}")
+        elif old != after[name]:
+            found.append(f"{name}: {old!r} → {after[name]!r}")
+    return found
+
+
+def main(threads):
+    """Print {name: changes} of all ``CALLS``, each in the main thread or in several threads."""
+    scene, found = td.Scene(**SCENE), {}
+    for name, call in CALLS.items():
+        before, failed = look(), []
+        if threads == 1:
+            call(scene)
+        else:
+            several = [threading.Thread(target=call, args=(scene,)) for _ in range(threads)]
+            usual, threading.excepthook = threading.excepthook, failed.append
+            for one in several:
+                one.start()
+            for one in several:
+                one.join()
+            threading.excepthook = usual
+        found[name] = [*changes(before, look()), *map(repr, failed)]
+    print(json.dumps(found, default=repr))
+
+
+@pytest.mark.parametrize("threads", [1, 4])
+def test_a_process_is_left_as_it_was(threads):
+    words = [sys.executable, str(Path(__file__)), str(threads)]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert {*found} == {*td.__all__}
+    assert {name: changed for name, changed in found.items() if changed} == {}
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]))
