@@ -4,9 +4,11 @@ import argparse
 import json
 import os
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from commands import command
@@ -65,6 +67,7 @@ def test_the_table_holds_every_digit(monkeypatch, capsys):
         ([*BOX, "--radius", "x"], "argument --radius: must be a number, not 'x'"),
         ([*BOX, "--radius", "0,2"], "not '0,2'; decimals follow a point, 0.2"),
         ([*BOX], "the following arguments are required: --radius"),
+        ([*BOX, "--radious", "0.1"], "unrecognized arguments: --radious; did you mean --radius?"),
         ([*BOX, "--radius", "0.1", "--rad", "2"], "unrecognized arguments: --rad 2"),
         ([*BOX, "--radius", "0.1", "--mass_ratio=2"], "=2; did you mean --mass-ratio?"),
         (["--width", "1", "--height", "1e99", "--radius", "0.1"], "height must lie between"),
@@ -111,6 +114,53 @@ def test_the_installed_command():
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith("error: radius 1.0 does not fit")
     assert done.stderr.count("\n") == 1
+
+
+# Standard output ---------------------------------------------------------------------------------
+
+EXACT = ("exact", *BOX, "--radius", "0.2")
+
+
+def installed(*words, redirected="", **environment):
+    """Return the completed process of ``twodiscs`` in a shell, with streams ``redirected``."""
+    line = shlex.join([sys.executable, "-m", "twodiscs", *words])
+    return subprocess.run(
+        f"{line} {redirected}", shell=True, capture_output=True, check=False,
+        env={**os.environ, **environment},
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("words", [EXACT, ("exact", "--help")])
+@pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp1252", "utf-8"])
+def test_no_encoding_loses_a_result(encoding, words):
+    done = installed(*words, PYTHONIOENCODING=encoding)
+    expected = installed(*words, PYTHONIOENCODING="utf-8").stdout.decode("utf-8")
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert done.stdout == expected.encode(encoding, "backslashreplace")
+
+
+def test_a_closed_output_is_refused_before_the_work():
+    done = installed("simulate", *BOX, "--radius", "0.2", "--error", "1e-9", redirected=">&-")
+    assert (done.returncode, done.stderr) == (2, b"error: standard output is closed\n")
+
+
+def test_a_closed_standard_error_changes_nothing():
+    assert installed(*EXACT, redirected="2>&-").stdout == installed(*EXACT).stdout
+    words = "simulate", *BOX, "--radius", "0.2", "--budget", "1"
+    done = installed(*words, redirected="2>&-")
+    assert (done.returncode, done.stdout) == (0, installed(*words).stdout)
+    done = installed("exact", *BOX, redirected="2>&-")
+    assert (done.returncode, done.stdout) == (2, b"")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="only Linux has a device that is full")
+@pytest.mark.parametrize("form", [(), ("--json",), ("--csv",)])
+def test_a_result_that_finds_no_space_is_printed_on_standard_error(form):
+    done = installed(*EXACT, *form, redirected="> /dev/full")
+    *result, error = done.stderr.decode().splitlines()
+    assert done.returncode == 2
+    assert error == "error: standard output: No space left on device"
+    assert result == installed(*EXACT, *form).stdout.decode().splitlines()
 
 
 # Arguments --------------------------------------------------------------------------------------
@@ -181,6 +231,7 @@ def test_a_new_configuration_needs_no_package_of_the_workflow(tmp_path):
 
 def test_a_run_is_a_line_of_snakemake(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("SNAKEMAKE_PROFILE", raising=False)
     words = build.command("my.yaml", ["volume", "results/check.passed"], Path("/a/Snakefile"))
     assert words == [
         *("snakemake", "--snakefile", "/a/Snakefile"),
@@ -197,6 +248,14 @@ def test_a_run_is_a_line_of_snakemake(tmp_path, monkeypatch):
         build.command("my.yaml", [], Path("Snakefile"), 0)
     with pytest.raises(InputError, match="not 'volme'; did you mean 'volume'"):
         build.command("my.yaml", ["volme"], Path("Snakefile"))
+
+
+def test_a_profile_of_the_environment_chooses_the_cores(monkeypatch):
+    monkeypatch.setenv("SNAKEMAKE_PROFILE", "cluster")
+    words = build.command("my.yaml", [], Path("Snakefile"))
+    assert "--cores" not in words
+    words = build.command("my.yaml", [], Path("Snakefile"), 2)
+    assert words[words.index("--cores") + 1] == "2"
 
 
 @pytest.mark.parametrize(
@@ -238,14 +297,20 @@ def test_targets_are_those_of_the_page():
     assert [n for n in fixed if not re.search(f"rule {n}:|rule \\w+ as {n} with:", rules)] == []
 
 
-def test_a_build_ends_with_verdict_and_report(tmp_path):
-    assert build.closing(tmp_path) == ""
+def test_a_build_ends_with_its_own_verdict_and_report(tmp_path):
+    """Those of another build may be in the folder: they are not of this configuration."""
     (tmp_path / "check.passed").write_text("a: 3 comparisons passed\n")
     (tmp_path / "report.html").touch()
-    passed, verdict, report = build.closing(tmp_path).splitlines()
+    check, report = (
+        SimpleNamespace(output=[str(tmp_path / name)]) for name in ("check.passed", "report.html")
+    )
+    figure = SimpleNamespace(output=["a.pdf", "a.png"])
+    assert build.closing(tmp_path, [figure]) == ""
+    assert "report" not in build.closing(tmp_path, [check, figure])
+    passed, verdict, path = build.closing(tmp_path, [check, figure, report]).splitlines()
     assert passed.startswith(f"{tmp_path / 'check.passed'}, of 2")
     assert verdict == "  a: 3 comparisons passed"
-    assert report == f"The report is {tmp_path / 'report.html'}"
+    assert path == f"The report is {tmp_path / 'report.html'}"
 
 
 def test_a_build_ends_with_the_files_of_its_targets():

@@ -6,7 +6,7 @@ import signal
 import sys
 
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, decimal_hint, format_number
+from twodiscs.model.checks import InputError, decimal_hint, did_you_mean, format_number
 from twodiscs.model.effects import EFFECTS
 
 
@@ -15,9 +15,27 @@ class Parser(argparse.ArgumentParser):
 
     def __init__(self, **options):
         super().__init__(allow_abbrev=False, **options)
+        self.words = []
+
+    def parse_known_args(self, args=None, namespace=None):
+        self.words = sys.argv[1:] if args is None else [*args]
+        return super().parse_known_args(args, namespace)
 
     def error(self, message):
+        # argparse first looks for missing arguments. The user may have misspelt one of them.
+        if "are required" in message:
+            names = (word.partition("=")[0] for word in self.words if word.startswith("--"))
+            unknown = [name for name in names if name not in self._option_string_actions]
+            if unknown:
+                message = unrecognized(unknown, [action.dest for action in self._actions])
         fail(message)
+
+
+def unrecognized(words, names):
+    """Return the message about unknown ``words``, with the nearest option of ``names``."""
+    hint = did_you_mean(words[0].strip("-").partition("=")[0], names)
+    hint = hint.replace("mean ", "mean --").replace("_", "-")
+    return f"unrecognized arguments: {' '.join(words)}{hint}"
 
 
 def number(text):
@@ -81,6 +99,30 @@ def fail(message):
     raise SystemExit(2)
 
 
+def write(text):
+    """Print a result. If standard output has no space, it goes to standard error.
+
+    Raises ``OSError`` in this case.
+    """
+    try:
+        print(text, flush=True)
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        print(text, file=sys.stderr)
+        raise OSError(error.errno, error.strerror, "standard output") from None
+
+
+def _prepare_streams():
+    """Make standard output and error take every character; refuse a closed output before work."""
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w")  # noqa: SIM115
+    if sys.stdout is None:
+        fail("standard output is closed")
+    for stream in (sys.stdout, sys.stderr):
+        stream.reconfigure(errors="backslashreplace")
+
+
 def run(main):
     """Call ``main()`` and exit with the status that it returns (None means 0).
 
@@ -89,6 +131,7 @@ def run(main):
     process without delay, because Python's handler does not interrupt a running kernel. If the
     reader of the output stops, like ``head``, the rest is discarded without a message.
     """
+    _prepare_streams()
     usual = signal.signal(signal.SIGINT, signal.SIG_DFL)
     try:
         status = main()

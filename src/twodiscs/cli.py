@@ -5,12 +5,22 @@ import csv
 import json
 import sys
 from contextlib import suppress
+from io import StringIO
 
 import argcomplete
 
 import twodiscs
-from twodiscs.arguments import Parser, add_scene, number, run, scene_of, whole_number
-from twodiscs.model.checks import PRESETS, InputError, decimal_hint, did_you_mean
+from twodiscs.arguments import (
+    Parser,
+    add_scene,
+    number,
+    run,
+    scene_of,
+    unrecognized,
+    whole_number,
+    write,
+)
+from twodiscs.model.checks import PRESETS, InputError, decimal_hint
 from twodiscs.model.events import EVENTS
 from twodiscs.model.plugins import plugin
 
@@ -30,9 +40,7 @@ def _main():
     if options.command == "run" and not any(word.startswith("-") for word in rest):
         options.targets += rest  # argparse does not find targets behind an option
     elif rest:
-        hint = did_you_mean(rest[0].strip("-").partition("=")[0], vars(options))
-        hint = hint.replace("mean ", "mean --").replace("_", "-")
-        parser.error(f"unrecognized arguments: {' '.join(rest)}{hint}")
+        parser.error(unrecognized(rest, vars(options)))
     if options.command is None:
         parser.print_help()
         return
@@ -92,7 +100,7 @@ def _parser():
     some.add_argument("--start", type=number, nargs="+", metavar="X", help="x1 y1 x2 y2 u1 v1 …")
     _seed(some)
 
-    text = "build a configuration with Snakemake, or some of it, on all cores"
+    text = "build a configuration with Snakemake, or some of it"
     some = commands.add_parser("run", help=text, description=f"{text[0].upper()}{text[1:]}.")
     if sys.argv[1:2] == ["run"]:
         with suppress(InputError):  # the workflow is not installed
@@ -107,7 +115,8 @@ def _parser():
         help="a name or a file of results (report)",
     )
     targets.completer = _targets
-    some.add_argument("--cores", type=whole_number, help="to work on (all)")
+    cores = "to work on (all, or those of SNAKEMAKE_PROFILE)"
+    some.add_argument("--cores", type=whole_number, help=cores)
     text = "print a table of the jobs, but run nothing"
     some.add_argument("-n", "--dry-run", action="store_true", help=text)
     some.set_defaults(work=_run)
@@ -177,7 +186,7 @@ def _exact(scene, options):
     elif options.json:
         _print_json(numbers)
     else:
-        print(_table(scene, numbers))
+        write(_table(scene, numbers))
 
 
 def _simulate(scene, options):
@@ -217,7 +226,7 @@ def _print_measured(result, options):
     elif options.json:
         _print_json({row.get("event") or row["quantity"]: row for row in result.rows})
     else:
-        print(result)
+        write(result)
 
 
 def _trajectory(scene, options):
@@ -225,21 +234,23 @@ def _trajectory(scene, options):
         scene, options.duration, seed=options.seed, start=options.start, name=options.name
     )
     if options.csv:
-        path.to_csv(sys.stdout, index=False)
+        write(path.to_csv(index=False).rstrip("\n"))
     elif options.json:
         _print_json(path.to_dict("records"))
     else:
-        print(f"{scene}; times in time, positions in length\n\n{path.to_string(index=False)}")
+        write(f"{scene}; times in time, positions in length\n\n{path.to_string(index=False)}")
 
 
 def _print_json(value):
-    print(json.dumps(value, indent=2, allow_nan=False))
+    write(json.dumps(value, indent=2, allow_nan=False))
 
 
 def _print_csv(rows):
-    table = csv.DictWriter(sys.stdout, list(rows[0]), lineterminator="\n")
+    text = StringIO()
+    table = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
     table.writeheader()
     table.writerows(rows)
+    write(text.getvalue().rstrip("\n"))
 
 
 def _known(value):
