@@ -67,3 +67,31 @@ def test_files_of_another_project_in_the_folder_are_not_read(place):
     run(place, "results/configuration.json")
     written = json.loads((place.path / "results/configuration.json").read_text())
     assert written == read(place.path / "my.yaml")
+
+
+def test_a_read_only_home_a_notebook_and_a_profile_are_no_obstacles(place, monkeypatch):
+    """A container has no home, a notebook's children its backend, which we may not have."""
+    (place.path / "file").touch()
+    (place.path / "profile").mkdir()
+    (place.path / "profile" / "config.yaml").write_text("cores: 1\n")
+    monkeypatch.setenv("HOME", str(place.path / "file" / "home"))
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    monkeypatch.setenv("MPLBACKEND", "module://a_backend.that_is_not_installed")
+    monkeypatch.setenv("SNAKEMAKE_PROFILE", str(place.path / "profile"))
+    done = run(place, "model")
+    assert "Provided cores: 1 " in done.stderr
+    assert (place.path / "results/mine/figures/model.pdf").exists()
+    assert (place.path / ".snakemake/cache").exists()
+
+
+def test_the_verdict_of_another_configuration_is_not_printed(place):
+    (place.path / "results").mkdir()
+    (place.path / "results/check.passed").write_text("old: 3 comparisons passed\n")
+    (place.path / "results/report.html").touch()
+    for done in (
+        run(place, "results/mine/grid.csv"),
+        place.snakemake("--cores", "1", "--configfile", "my.yaml", "--forceall", "--", "model"),
+    ):
+        assert "(100%) done" in done.stderr
+        assert "old" not in done.stdout
+        assert "report" not in done.stdout

@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
+from twodiscs_paper.pipeline.job import start  # isort: split
+
 from twodiscs_paper.pipeline.documents.explorer import explorer
-from twodiscs_paper.pipeline.job import start
 
 start(snakemake.log[0])
 page = explorer(

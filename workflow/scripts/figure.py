@@ -1,5 +1,7 @@
 """A figure, or the animation, from its tables."""
 
+from twodiscs_paper.pipeline.job import start  # isort: split
+
 from twodiscs.figures import draw
 from twodiscs.figures.kit import style
 from twodiscs.figures.motion import animation
@@ -7,7 +9,6 @@ from twodiscs.model.box import Box
 from twodiscs.points.digests import digest
 from twodiscs_paper.catalogue import read_table
 from twodiscs_paper.drawings import DRAW
-from twodiscs_paper.pipeline.job import start
 
 start(snakemake.log[0])
 params, wildcards, files = snakemake.params, snakemake.wildcards, snakemake.input

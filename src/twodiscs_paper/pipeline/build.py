@@ -3,9 +3,11 @@
 The Snakefile imports this, so it must be quick.
 """
 
+import os
 import shlex
 import signal
 import sys
+import tempfile
 from datetime import datetime
 from difflib import get_close_matches
 from importlib import metadata
@@ -49,12 +51,16 @@ def command(path, targets, snakefile, cores=None, dry_run=False):
     """Return the words of the command that builds ``targets`` of the configuration at ``path``.
 
     It prints the progress, but not each job. Without ``targets`` it builds the report. It uses
-    ``cores`` cores, or all. With ``dry_run`` it counts the jobs and does nothing.
+    ``cores`` cores. If they are None, the user's profile of Snakemake chooses; without a profile it
+    uses all. With ``dry_run`` it counts the jobs and does nothing.
 
     Raises ``InputError`` for a target that is neither a name nor a path, and for ``cores`` that are
     no integer ≥ 1.
     """
-    cores = "all" if cores is None else check_integer("cores", cores, 1)
+    if cores is not None:
+        cores = check_integer("cores", cores, 1)
+    elif not os.environ.get("SNAKEMAKE_PROFILE"):
+        cores = "all"
     for target in targets:
         if target not in TARGETS and "/" not in target:
             near = get_close_matches(target, TARGETS, n=1)
@@ -68,7 +74,8 @@ def command(path, targets, snakefile, cores=None, dry_run=False):
         # Snakemake would first look for a profile in this folder.
         profile = snakefile.with_name("profiles") / "default"
         found = ["--snakefile", str(snakefile), "--workflow-profile", str(profile)]
-    words = ["snakemake", *found, "--cores", str(cores), "--no-hooks", "--quiet", "rules"]
+    words = ["snakemake", *found, *(["--cores", str(cores)] if cores is not None else [])]
+    words += ["--no-hooks", "--quiet", "rules"]
     words += [*(["--dry-run"] if dry_run else []), "--configfile", str(path)]
     return [*words, "--", *(targets or [DEFAULT])]
 
@@ -92,7 +99,7 @@ def check_targets(path, targets, configuration):
 
 def build(path, targets, cores=None, dry_run=False):
     """Run ``command`` with these arguments in Snakemake; return its exit status."""
-    from snakemake.cli import main as snakemake
+    from snakemake import cli, workflow
 
     try:
         configuration = load(read(path))
@@ -108,15 +115,15 @@ def build(path, targets, cores=None, dry_run=False):
     # Snakemake runs in this process. Its profile reads sys.argv, and it cleans up after Ctrl-C.
     sys.argv = words
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    _find_a_cache()
     try:
-        snakemake()
+        cli.main()
     except SystemExit as end:
         status = end.code
     if status == 0 and not dry_run:
-        made = dict(files(configuration, targets))
-        if not targets or {*targets} - {*made, "benchmark"}:
-            print(closing(configuration.results), end="")
-        for name, paths in made.items():
+        # Snakemake keeps the last workflow of a process among the names of a Snakefile.
+        print(closing(configuration.results, workflow.workflow.dag.jobs), end="")
+        for name, paths in files(configuration, targets):
             print(f"{name}: {', '.join(paths)}")
     return status
 
@@ -134,13 +141,29 @@ def files(configuration, targets):
             yield name, [figures[name][0] for figures in drawn if name in figures]
 
 
-def closing(results):
-    """Return the verdict of the check in a folder of ``results``, and the path of the report."""
+def _find_a_cache():
+    """Give Snakemake and its jobs a folder for caches here, if the one in the home is read-only."""
+    from snakemake.common import get_appdirs
+
+    try:
+        folder = get_appdirs().user_cache_dir
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError:
+        os.environ["XDG_CACHE_HOME"] = str(Path(".snakemake/cache").resolve())
+
+
+def closing(results, jobs):
+    """Return the verdict of the check in a folder of ``results``, and the path of the report.
+
+    Only files of the ``jobs`` of this build are named: others may be of another configuration.
+    """
+    made = {str(path) for job in jobs for path in job.output}
     lines, passed, report = [], Path(results, "check.passed"), Path(results, "report.html")
-    if passed.exists():
+    if str(passed) in made:
         when = datetime.fromtimestamp(passed.stat().st_mtime)
         lines += [f"{passed}, of {when:%Y-%m-%d %H:%M}:"]
         lines += [f"  {line}" for line in passed.read_text(encoding="utf-8").splitlines()]
-    if report.exists():
+    if str(report) in made:
         lines += [f"The report is {report.resolve()}"]
     return "".join(f"{line}\n" for line in lines)

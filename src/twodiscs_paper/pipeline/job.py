@@ -9,6 +9,10 @@ import time
 #: The seconds after which a job notices that Snakemake has ended.
 PERIOD = 0.5
 
+# matplotlib reads this when it is imported, so scripts that draw import this module first. A
+# notebook sets it to its own backend, for its child processes too, and jobs may not have that.
+os.environ["MPLBACKEND"] = "agg"
+
 
 def start(log):
     """Write what this process prints to the file ``log``, and end it with Snakemake.
