@@ -1,6 +1,7 @@
 """A whole build: all is there, the same bytes come out again, and a wrong formula is found."""
 
 import csv
+import json
 import subprocess
 
 import pytest
@@ -121,6 +122,31 @@ def test_an_edited_point_is_refused(built):
     assert run.returncode != 0
     log = (built.path / "results/logs/six/mean_times.log").read_text()
     assert log.endswith("0.2.json is not what its job wrote; delete it, and it is made again\n")
+
+
+def test_verify_builds_nothing_and_names_what_differs(built):
+    built.snakemake("--cores", "1", "renew")
+    (built.path / "results/six/theory.csv").unlink()
+    path = built.path / "results/six/points/dynamics/0.2.json"
+    content = json.loads(path.read_text())
+    (blocks, (counts, _)), *_ = content["parts"]["all"]["sums"].items()
+    counts[0] += 1
+    path.write_text(json.dumps(content))
+    before = built.results()
+    run = built.snakemake("--cores", "1", "verify", passes=False)
+    assert run.returncode == 1
+    log = (built.path / "results/logs/verify.log").read_text().splitlines()
+    assert log[:-1] == [
+        "six/theory.csv: is missing",
+        f"six/points/dynamics/0.2.json: parts all sums {blocks} 0 0 is {counts[0]}, expected "
+        f"{counts[0] - 1}",
+    ]
+    assert log[-1].endswith("files, 2 differ")
+    assert log[0] in run.stdout + run.stderr
+    after = built.results()
+    assert {n: t for n, t in after.items() if "verify" not in n} == {
+        n: t for n, t in before.items() if "verify" not in n
+    }
 
 
 def test_what_only_looks_changes_nothing_and_lint_is_clean_and_every_rule_says_what_it_does(built):
