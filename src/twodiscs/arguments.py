@@ -4,6 +4,7 @@ import argparse
 import os
 import signal
 import sys
+from io import TextIOWrapper
 
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, decimal_hint, did_you_mean, format_number
@@ -120,7 +121,8 @@ def _prepare_streams():
     if sys.stdout is None:
         fail("standard output is closed")
     for stream in (sys.stdout, sys.stderr):
-        stream.reconfigure(errors="backslashreplace")
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def run(main):

@@ -194,7 +194,7 @@ def test_from_starts_next_to_it_it_does_not(rows, hop):
 def panels(rows):
     """The panels of both figures, {label: axes}."""
     with style.context():
-        figures = [m.draw(tables={"accuracy_cost": rows}) for m in (figure, figure_by_radius)]
+        figures = [m.draw(None, {"accuracy_cost": rows}) for m in (figure, figure_by_radius)]
     return {axes.get_label(): axes for drawn in figures for axes in drawn.axes}
 
 

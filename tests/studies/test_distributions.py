@@ -237,7 +237,7 @@ def test_without_any_rows_the_box_is_named(drawn):
     box = Box(1e6, 1.0)
     with style.context():
         found = drawn.draw(box, {"distributions": []})
-    assert any("10^{6}" in text.get_text() for text in found.axes[0].texts)
+    assert "10^{6}" in found.axes[0].get_title("left")
 
 
 # The table and the figure -------------------------------------------------------------------------

@@ -215,7 +215,7 @@ def drawn(rows):
             "effects_cost": costs(),
             "effects_curves": [*EffectsCurves.rows(BOXES)],
         }
-        return figure.draw(tables=tables)
+        return figure.draw(None, tables)
 
 
 def test_texts_of_the_figure_stand_clear(drawn):
@@ -225,6 +225,11 @@ def test_texts_of_the_figure_stand_clear(drawn):
     assert all(f"{name}: " in said for name in NAMES)
 
 
+def panel(figure, name):
+    """Return the axes of a ``figure`` with this label."""
+    return {axes.get_label(): axes for axes in figure.axes}[name]
+
+
 def of_colour(axes, colour):
     """Return the lines of ``axes`` in this colour."""
     return [line for line in axes.lines if to_rgba(line.get_color()) == to_rgba(colour)]
@@ -232,7 +237,7 @@ def of_colour(axes, colour):
 
 def test_curves_go_through_the_exact_ratios(drawn, rows):
     for i, event in enumerate(figure.SHOWN_EVENTS):
-        main = drawn.axes[2 * i]
+        main = panel(drawn, "abc"[i])
         for k, name in enumerate(NAMES):
             colour = figure._look(k)[0]
             own = [r for r in rows if r["scene"] == name and r["quantity"] == f"{event}_time"]
@@ -249,19 +254,21 @@ def test_curves_go_through_the_exact_ratios(drawn, rows):
 def test_a_curve_ends_where_its_event_does(drawn):
     ends = {"vertical_hop": 0.375, "disc_collision": PLAIN.largest_radius}
     for i, event in enumerate(ends):
-        for line in drawn.axes[2 * i].lines:
+        for line in panel(drawn, "abc"[i]).lines:
             x, y = line.get_data()
             if len(x) > 20 and np.isfinite(y).any():
                 last = x[np.isfinite(y)][-1]
                 assert ends[event] - 1e-3 < last < ends[event]
     colour = figure._look(NAMES.index("rough"))[0]
-    rough = next(line for line in of_colour(drawn.axes[0], colour) if len(line.get_xdata()) > 20)
+    rough = next(
+        line for line in of_colour(panel(drawn, "a"), colour) if len(line.get_xdata()) > 20
+    )
     y = rough.get_ydata()
     np.testing.assert_allclose(y[np.isfinite(y)], 1.25, rtol=1e-12)
 
 
 def test_costs_are_over_the_plain_scene(drawn):
-    axes = drawn.axes[-1]
+    axes = panel(drawn, "d")
     shown = [line.get_xdata()[0] for line in axes.lines if line.get_marker() not in ("None", "")]
     expected = [1 / row["ratio"] for row in costs() if row["variant"] != "plain"]
     assert shown == pytest.approx(expected)

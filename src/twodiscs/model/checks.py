@@ -43,7 +43,7 @@ class InputError(ValueError):
     Examples
     --------
     >>> try:
-    ...     td.Scene(1.5, 1.0, 0.2, gravity=1)
+    ...     td.Scene(1.5, 1.0, 0.2, feild=1)
     ... except td.InputError as error:
     ...     print(str(error).rpartition("; ")[2])
     did you mean field?

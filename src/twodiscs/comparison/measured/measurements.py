@@ -341,7 +341,7 @@ class Measurements(Result, Mapping[str, Measurement]):
     def _ipython_key_completions_(self) -> list[str]:
         return list(self)
 
-    def texts(self) -> pd.DataFrame:
+    def _texts(self) -> pd.DataFrame:
         """Return the texts of the printed table, one row for each quantity."""
         return table_of(self.values())
 
@@ -484,7 +484,7 @@ class Intervals(Result):
     def _again(self, settings, options):
         return run_intervals(self.scene, **settings, **options, kept=self.parts)
 
-    def texts(self) -> pd.DataFrame:
+    def _texts(self) -> pd.DataFrame:
         """Return the texts of the printed table: the mean and the density at 0."""
         return table_of([self.mean, self.at_zero])
 
@@ -559,9 +559,9 @@ def simulate(
     error: float | str | Mapping[Event, float | str] | None = None,
     *,
     duration: float | None = None,
-    seed: int = 1,
     budget: float = 2e9,
     events: Event | Iterable[Event] | None = None,
+    seed: int = 1,
     name: str | None = None,
     cores: int = 1,
     progress: bool | None = None,
@@ -707,9 +707,9 @@ def sample(
     scene: Scene,
     samples: float = 10**7,
     *,
-    seed: int = 1,
     quantities: Quantity | Iterable[Quantity] | None = None,
     shell: float = 0.02,
+    seed: int = 1,
     name: str | None = None,
     cores: int = 1,
     progress: bool | None = None,

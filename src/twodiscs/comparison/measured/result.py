@@ -134,12 +134,12 @@ class Result:
         with writing_to(path):
             write_json(path, self.to_dict())
 
-    def texts(self) -> pd.DataFrame:
+    def _texts(self) -> pd.DataFrame:
         """Return the texts of the printed table."""
         raise NotImplementedError
 
     def __str__(self) -> str:
-        parts = self.scene, self.texts().to_string(index=False), self.note
+        parts = self.scene, self._texts().to_string(index=False), self.note
         return "\n\n".join(str(part) for part in parts if part)
 
     def __repr__(self) -> str:
@@ -147,7 +147,7 @@ class Result:
 
     def _repr_html_(self) -> str:
         note = f"<p>{escape(self.note)}</p>" if self.note else ""
-        return f"<p>{escape(str(self.scene))}</p>{self.texts().to_html(index=False)}{note}"
+        return f"<p>{escape(str(self.scene))}</p>{self._texts().to_html(index=False)}{note}"
 
 
 def note_of_number(what, asked, done):

@@ -90,7 +90,18 @@ class Scan(Result, Sequence[Measurements]):
         return Scan([result._again(settings, options) for result in self], self.refused)
 
     def to_dict(self) -> dict[str, object]:
-        """Return the scan as ``save`` writes it, as ``Result.to_dict`` does."""
+        """Return the scan as ``save`` writes it.
+
+        Returns
+        -------
+        dict
+            Numbers, texts, lists and dicts.
+
+        Examples
+        --------
+        >>> td.scan(1.5, 1.0, [0.1], error=0.1).to_dict()["kind"]
+        'scan'
+        """
         return {
             "twodiscs": self.version,
             "kind": self.kind,

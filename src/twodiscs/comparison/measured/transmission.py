@@ -224,7 +224,7 @@ class Transmission(Result):
         rows = [(t, e.value, e.stderr) for t, e in zip(self.times, self.curve, strict=True)]
         return pd.DataFrame(rows, columns=["time", "kappa", "stderr"]).set_index("time")
 
-    def texts(self) -> pd.DataFrame:
+    def _texts(self) -> pd.DataFrame:
         """Return the texts of the printed table, one row for each quantity."""
         import pandas as pd
 

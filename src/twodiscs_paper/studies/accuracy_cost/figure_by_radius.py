@@ -16,7 +16,7 @@ CLOSEST = 1e-3
 def draw(box, tables):
     """Draw the rows of accuracy_cost.csv; ``box`` is not used, because the table has its own."""
     rows = tables["accuracy_cost"]
-    figure, (times, ratios) = panels.stacked(times=2.0, ratios=1.2)
+    figure, (times, ratios) = panels.stacked(**{"times by radius": 2.0, "ratios": 1.2})
     _times(times, ratios, [row for row in rows if row["part"] == "radius"])
     return figure
 
