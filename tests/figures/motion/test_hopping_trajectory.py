@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from figure_cases import tables_of, unclear
 
+import twodiscs as td
 from twodiscs.comparison.tables.trajectory import Trajectory
 from twodiscs.figures.kit import style
 from twodiscs.figures.motion import animation, hop_histogram, hopping_trajectory, many
@@ -147,3 +148,18 @@ def test_lines_of_many_discs_are_those_of_the_trajectory():
     assert len(times) > len(line.get_xdata())
     places = [row["x1"] for row in rows[: len(times)]]
     assert np.interp(times, *line.get_data()) == pytest.approx(places, abs=1e-12)
+
+
+def test_of_very_many_discs_some_lines_are_drawn():
+    """They are spread evenly; the panel beneath is closer also if the trajectory is short."""
+    scene = td.Scene(9, 5, 0.2, discs=50)
+    path = td.trajectory(scene, duration=10)
+    whole, close = td.plot(path).axes
+    assert close.get_title("right") == f"{many.LINES} of the discs"
+    assert close.get_xlim()[1] < whole.get_xlim()[1] / 2
+    starts = np.sort(path[[f"x{n}" for n in range(1, 51)]].iloc[0].to_numpy(float))
+    for axes in (whole, close):
+        drawn = np.sort([line.get_ydata()[0] for line in axes.lines])
+        assert len(drawn) == many.LINES
+        assert (drawn[0], drawn[-1]) == (starts[0], starts[-1])
+        assert np.diff(np.searchsorted(starts, drawn)).max() <= 3

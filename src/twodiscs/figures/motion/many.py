@@ -34,8 +34,8 @@ THIN, THICK = 0.5, 0.9
 #: Bends for each disc that either panel shows.
 MANY, CLOSE = 75, 15
 
-#: The most discs that the legend names.
-NAMED = 8
+#: The most discs that the legend names, and the most lines in a panel.
+NAMED, LINES = 8, 24
 
 
 def along(box):
@@ -54,10 +54,11 @@ def colours(box, first):
 
 
 def world_lines(box, rows, radius=None):
-    """Draw the positions of all discs of a ``Box`` along its longer side, against time.
+    """Draw the positions of the discs of a ``Box`` along its longer side, against time.
 
     ``rows`` are the rows of trajectory.csv; the first ones are shown, and discs move freely between
-    them. The ``radius``, if given, is written above.
+    them. Of more than ``LINES`` discs there are that number, at equal distances in their order at
+    the start. The ``radius``, if given, is written above.
     """
     axis, side = along(box), max(box.width, box.height)
     rows = [row for row in rows if row["event"] not in HOPS][: MANY * box.discs + 1]
@@ -66,15 +67,20 @@ def world_lines(box, rows, radius=None):
     whole, close = figure.subplots(2)
     shades = colours(box, rows[0])
     whole.set_xlim(times[0], times[-1])
-    close.set_xlim(times[0], times[min(CLOSE * box.discs, len(times) - 1)])
+    # A short trajectory has fewer rows than either panel could show.
+    close.set_xlim(times[0], times[min(CLOSE * box.discs, len(times) * CLOSE // MANY)])
     places = np.array([[row[f"{axis}{disc}"] for row in rows] for disc in range(1, box.discs + 1)])
+    shown_discs = np.arange(box.discs)
+    if box.discs > LINES:
+        ranks = np.linspace(0, box.discs - 1, LINES).round().astype(int)
+        shown_discs = np.argsort(places[:, 0], kind="stable")[ranks]
     for axes, width in ((whole, THIN), (close, THICK)):
         shown = places[:, times <= axes.get_xlim()[1]]
         goes_on = axis in box.effects.get("periodic", "")
         low, high = (shown.min(), shown.max()) if goes_on else (-side / 2, side / 2)
         axes.set(xlabel="time $t$", ylabel=f"${axis}$", ylim=(low, high))
-        for line, colour in zip(places, shades, strict=True):
-            axes.plot(times, line, color=colour, lw=width)
+        for disc in shown_discs:
+            axes.plot(times, places[disc], color=shades[disc], lw=width)
     if box.discs <= NAMED:
         names = ["disc 1", *map(str, range(2, box.discs + 1))]
         figure.legend(
@@ -82,4 +88,6 @@ def world_lines(box, rows, radius=None):
         )
     panels.title(whole, "a", box, panels.of_radius(radius))
     panels.title(close, "b")
+    if box.discs > LINES:
+        close.set_title(f"{LINES} of the discs", loc="right", pad=3)
     return figure
