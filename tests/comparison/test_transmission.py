@@ -188,6 +188,43 @@ def test_more_discs_have_a_coefficient_too(tmp_path):
     assert len(td.plot(other).axes[0].lines) == 2  # κ(t) and its plateau
 
 
+def test_an_error_needs_a_hundred_hops_of_either_kind():
+    """If all 64 hops are passages, the spread is 0, but the error is not known."""
+    flat = td.Scene(6.048206371874357, 0.36037073272920495, 0.09008933352658281)
+    found = td.transmission(flat, "horizontal_hop", 1, seed=1)
+    assert found.clusters == {1: 64}
+    assert found.coefficient.stderr is found.passage_time.stderr is None
+    assert found.coefficient.relative_stderr is found.coefficient.interval() is None
+    assert "1, too few events for an error" in str(found)
+    assert "± 0" not in str(found)
+    assert found.frame()["stderr"].isna().all()
+    td.plot(found)
+
+
+@pytest.mark.parametrize(
+    ("sizes", "has_error"),
+    [
+        ([0, 900, 100, 0, 0], True),
+        ([0, 900, 99, 0, 0], False),
+        ([0, 0, 900, 100, 0], True),
+        ([0, 0, 900, 99, 0], False),
+        ([0, 100, 0, 0, 900], True),
+        ([0, 100, 0, 99, 0], False),
+    ],
+)
+def test_which_clusters_have_an_error(sizes, has_error):
+    found = transmission.clusters_with_error(np.array(sizes))
+    assert (found.stderr is not None) == has_error
+    assert found.value == transmission.by_clusters(np.array(sizes)).value
+
+
+def test_which_times_have_an_error():
+    """Of 1000 replicas 100 have a hop back, 99, 901, 900, and on a ring as many as go on."""
+    sums = np.array([[-100, -99, -901, -900, 0], [100, 99, 901, 900, 5000]])
+    found = transmission.times_with_errors(sums, 1000)
+    assert [one.stderr is not None for one in found] == [True, False, False, True, True]
+
+
 def test_frequent_hops_have_a_curve_only():
     found = td.transmission(td.Scene(1.5, 1.0, 0.2), "vertical_hop", hops=1000)
     assert found.coefficient is None

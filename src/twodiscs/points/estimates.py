@@ -56,25 +56,31 @@ def moments_of(total, squares, replicas):
 class Estimate:
     """A value, its standard error, and the number of independent samples.
 
-    Raises ``InputError`` unless the value is finite, the error finite and not negative, and n ≥ 1.
+    The error is None if too few events are known for one. Raises ``InputError`` unless the value is
+    finite, the error finite and not negative, and n ≥ 1.
     """
 
     value: float
-    stderr: float
+    stderr: float | None
     n: int
 
     def __post_init__(self):
         object.__setattr__(self, "value", check_real("value", self.value, low=-math.inf))
-        object.__setattr__(self, "stderr", check_real("stderr", self.stderr, ends=True))
+        if self.stderr is not None:
+            object.__setattr__(self, "stderr", check_real("stderr", self.stderr, ends=True))
         object.__setattr__(self, "n", check_integer("n", self.n, 1))
 
     @property
-    def relative_stderr(self) -> float:
+    def relative_stderr(self) -> float | None:
         """The standard error over the size of the value; infinite if the value is zero."""
+        if self.stderr is None:
+            return None
         return self.stderr / abs(self.value) if self.value else math.inf
 
-    def interval(self, confidence: float = 0.95) -> tuple[float, float]:
-        """Return the normal confidence interval (low, high)."""
+    def interval(self, confidence: float = 0.95) -> tuple[float, float] | None:
+        """Return the normal confidence interval (low, high), None without an error."""
+        if self.stderr is None:
+            return None
         half = normal_quantile(confidence) * self.stderr
         return self.value - half, self.value + half
 

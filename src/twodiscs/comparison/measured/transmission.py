@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -25,7 +25,7 @@ from twodiscs.model.events import AXIS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import check_scene
 from twodiscs.points.base import reached
-from twodiscs.points.estimates import Estimate
+from twodiscs.points.estimates import MIN_EVENTS, Estimate
 from twodiscs.sampling.blocks.rounds import all_in_rounds, fixed
 from twodiscs.theory import exact
 
@@ -73,6 +73,28 @@ def by_clusters(sizes):
     mean = float((sizes[odd] / n[odd]).sum()) / hops
     square = float((sizes[odd] / n[odd] ** 2).sum()) / hops
     return Estimate(mean, math.sqrt((square - mean * mean) / hops), hops)
+
+
+def with_error(estimate, *numbers):
+    """Return an ``Estimate``, without its error unless each of the ``numbers`` is large enough.
+
+    The numbers are those of independent hops with each of the results whose mix is the estimate. If
+    all of them had the same result, their spread would be 0 although another result is possible.
+    """
+    return estimate if min(numbers) >= MIN_EVENTS else replace(estimate, stderr=None)
+
+
+def clusters_with_error(sizes):
+    """Return the estimate of ``by_clusters``; its error needs passages and hops in clusters."""
+    odd = int(sizes[1:-1:2].sum())
+    return with_error(by_clusters(sizes), odd, int(sizes.sum() - sizes[1]))
+
+
+def times_with_errors(sums, replicas):
+    """Return the estimates of ``by_total``; an error needs hops that are undone, and others."""
+    undone, stayed = sums[1], replicas - np.abs(sums[0])
+    estimates = by_total(sums, replicas)
+    return [with_error(*of) for of in zip(estimates, undone, stayed, strict=True)]
 
 
 def by_time(sums):
@@ -132,7 +154,9 @@ def plateau(estimate, time, mean, law):
         value = estimate.value / law(value * time / mean)[0]
     x = value * time / mean
     factor, derivative = law(x)
-    return Estimate(value, estimate.stderr / (factor + x * derivative), estimate.n)
+    error = estimate.stderr
+    error = None if error is None else error / (factor + x * derivative)
+    return Estimate(value, error, estimate.n)
 
 
 def seed_of(scene, hop, name, seed, what):
@@ -151,7 +175,9 @@ class Transmission(Result):
     hop : str
         "vertical_hop" or "horizontal_hop".
     coefficient : Estimate or None
-        The fraction κ with its error, None if hops are so frequent that κ(t) has no plateau.
+        The fraction κ with its error, None if hops are so frequent that κ(t) has no plateau. The
+        error is None unless at least 100 hops are passages and at least 100 are in clusters of two
+        or more.
     gap : float
         The time without a hop that ends a cluster.
     clusters : dict
@@ -164,7 +190,8 @@ class Transmission(Result):
     times : tuple of float
         The times of the curve.
     curve : list of Estimate
-        The fractions κ(t) at these times.
+        The fractions κ(t) at these times; an error needs 100 hops that are undone by then and 100
+        others.
     settings : dict, optional
         {argument: value} beside the scene.
     parts : dict, optional
@@ -203,7 +230,8 @@ class Transmission(Result):
         if self.coefficient is None or self.exact_mean is None:
             return None
         value, error, n = (getattr(self.coefficient, k) for k in ("value", "stderr", "n"))
-        return Estimate(self.exact_mean / value, self.exact_mean * error / value**2, n)
+        error = None if error is None else self.exact_mean * error / value**2
+        return Estimate(self.exact_mean / value, error, n)
 
     def frame(self) -> pd.DataFrame:
         """Return κ(t) as a table.
@@ -211,7 +239,7 @@ class Transmission(Result):
         Returns
         -------
         DataFrame
-            One row per time, with the columns kappa and stderr.
+            One row per time, with the columns kappa and stderr, NaN if there is no error.
 
         Examples
         --------
@@ -222,7 +250,9 @@ class Transmission(Result):
         import pandas as pd
 
         rows = [(t, e.value, e.stderr) for t, e in zip(self.times, self.curve, strict=True)]
-        return pd.DataFrame(rows, columns=["time", "kappa", "stderr"]).set_index("time")
+        return pd.DataFrame(rows, columns=["time", "kappa", "stderr"], dtype=float).set_index(
+            "time"
+        )
 
     def _texts(self) -> pd.DataFrame:
         """Return the texts of the printed table, one row for each quantity."""
@@ -243,6 +273,8 @@ class Transmission(Result):
 
 
 def _with_error(estimate):
+    if estimate.stderr is None:
+        return f"{estimate.value:.6g}, too few events for an error"
     return f"{estimate.value:.6g} ± {estimate.stderr:.2g}"
 
 
@@ -353,8 +385,8 @@ def run_transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=
         (sizes,), _ = reached(found["clusters"])
         clusters = {n: int(number) for n, number in enumerate(sizes) if number}
         law = partial(of_clusters, others=others)
-        kappa = plateau(by_clusters(sizes), gap, neighbour_mean, law)
-    curve = by_total(sums, blocks * HOPS_OF_BLOCK)
+        kappa = plateau(clusters_with_error(sizes), gap, neighbour_mean, law)
+    curve = times_with_errors(sums, blocks * HOPS_OF_BLOCK)
     note = note_of_number("hops", settings["hops"], blocks * HOPS_OF_BLOCK)
     return Transmission(
         scene, hop, kappa, gap, clusters, mean, neighbour_mean, times, curve, settings, parts, note

@@ -60,7 +60,7 @@ def transmission(result):
     scene, hop = result.scene, result.hop
     figure, axes = _panel(scene, f",  {name_of(hop)}")
     values, errors = zip(*((e.value, e.stderr) for e in result.curve), strict=True)
-    _points(axes, result.times, values, errors, LOOKS[hop])
+    _points(axes, result.times, values, np.array(errors, float), LOOKS[hop])
     if scene.is_plain:
         early = np.geomspace(result.times[0], 0.3 * box_time(scene, hop), 20)
         start = 1 - 2 * tails.density_at_zero(scene, hop) * early
