@@ -14,7 +14,7 @@ import numpy as np
 from twodiscs.dynamics.ensemble import RETURNS, nearest_power_of_two
 from twodiscs.model.checks import InputError, check_choice, check_integer
 from twodiscs.model.events import HOPS
-from twodiscs.model.scene import Scene, check_scene
+from twodiscs.model.scene import Scene, check_scene, why_absent
 from twodiscs.points.intervals import BINS, GRAIN, IntervalsPoint, wide_edges
 from twodiscs.sampling.blocks.rounds import all_in_rounds, fixed
 from twodiscs.sampling.starts import require_room
@@ -87,9 +87,8 @@ class IntervalRun:
         scene = check_scene(self.scene)
         check_choice("event", self.event, HOPS)
         if not scene.is_possible(self.event):
-            raise InputError(
-                f"event {self.event!r} is blocked at radius {scene.radius!r}: it has no intervals"
-            )
+            why = why_absent(scene, self.event) or f" is blocked at radius {scene.radius!r}"
+            raise InputError(f"event {self.event!r} has no intervals{why}")
         check_integer("seed", self.seed, 0)
         check_integer("budget", self.budget)
         check_integer("intervals", self.intervals)

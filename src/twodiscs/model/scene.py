@@ -524,6 +524,22 @@ def check_scene(value):
     return value
 
 
+def why_absent(scene, name):
+    """Return ": " and why a ``Scene`` has no event along a periodic axis, else "".
+
+    ``name`` is that of an event or of its quantity.
+    """
+    event = str(name).removesuffix("_area").removesuffix("_time")
+    axis = AXIS.get(event)
+    if axis is None or axis not in scene.periodic:
+        return ""
+    if event not in HOPS:
+        return f": the periodic axis {axis} has no walls"
+    if scene.discs == 2:
+        return f": along the periodic axis {axis} two discs have no order that a hop could change"
+    return f": hops along the periodic axis {axis} are those of neighbours, see transmission"
+
+
 def check_two(scene, what):
     """Return a ``Scene`` of two discs; raise ``InputError`` for more, which ``what`` is not for."""
     if check_scene(scene).discs > 2:
