@@ -10,6 +10,7 @@ from inspect import signature
 from types import FunctionType, ModuleType
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import twodiscs as td
@@ -363,11 +364,85 @@ def test_a_selection_of_events_has_no_states_in_between(tmp_path):
         lambda: td.animate(collisions, tmp_path / "a.gif"),
         lambda: path[::-1].states_at(between),
     ):
-        with pytest.raises(td.InputError, match=r"must have all rows .* but row \d+ is missing$"):
+        with pytest.raises(td.InputError, match=r"must have all rows .* rows are missing, in"):
             use()
-    missing = path.drop(index=7)
-    with pytest.raises(td.InputError, match="but row 7 is missing"):
-        td.plot(missing)
+    assert not (tmp_path / "a.gif").exists()
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        SCENE,
+        td.Scene(1.5, 1.0, 0.2, field=0.3),
+        td.Scene(1.5, 1.0, 0.2, depth=1.2, periodic="z"),
+        td.Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5, friction=1.0),
+        td.Scene(6, 1.0, 0.2, discs=5, periodic="x"),
+    ],
+    ids=str,
+)
+def test_states_show_that_rows_are_missing(scene, tmp_path):
+    """New labels hide a selection; only rows of hops can be left out, which change no state."""
+    path = td.trajectory(scene, duration=30, seed=1)
+    middle = path["time"].iloc[-1] / 2
+    whole = path.states_at([middle])
+    hops = path.event.str.endswith("_hop")
+    for right in (path.reset_index(drop=True), path.set_index("time", drop=False)):
+        assert right.states_at([middle]) == whole
+    without, places = path[~hops].positions([middle]), path.positions([middle])
+    np.testing.assert_allclose(without, places, rtol=0, atol=1e-14)
+    k = len(path) // 3
+    for wrong in (
+        path[path.event == "disc_collision"].reset_index(drop=True),
+        path.iloc[::2].reset_index(drop=True),
+        pd.concat([path.iloc[:k], path.iloc[2 * k :]], ignore_index=True),
+        pd.concat([path, path], ignore_index=True),
+        path.set_index("time", drop=False).iloc[::3],
+        path.assign(u1=-path["u1"]),
+    ):
+        for use in (
+            lambda wrong=wrong: wrong.positions([middle]),
+            lambda wrong=wrong: wrong.to_xyz(tmp_path / "a.xyz", [middle]),
+            lambda wrong=wrong: td.plot(wrong),
+            lambda wrong=wrong: td.animate(wrong, tmp_path / "a.gif"),
+        ):
+            with pytest.raises(td.InputError, match="must have all rows from its first to its"):
+                use()
+    assert not [*tmp_path.iterdir()]
+
+
+def test_tables_have_plain_values_beside_them(tmp_path):
+    """Parquet and other formats write ``attrs`` as JSON; a table that comes back can be drawn."""
+    scene = td.Scene(1.5, 1.0, 0.2, field=0.1)
+    path = td.trajectory(scene, duration=30)
+    table = td.exact_table(1.5, 1.0, [0.1, 0.2], field=0.1, periodic="x")
+    for frame in (path, table):
+        assert json.loads(json.dumps(frame.attrs)) == frame.attrs
+    assert path.scene == scene
+    back = pd.DataFrame(path.to_dict("list"))
+    back.attrs = json.loads(json.dumps(path.attrs))
+    td.animate(back, tmp_path / "a.gif")
+    assert td.plot(back).axes[0].get_xlim()[1] == 30
+    back.attrs = {"scene": "a scene"}
+    with pytest.raises(td.InputError, match="result must be a scene, a trajectory"):
+        td.plot(back)
+
+
+def test_hops_along_a_ring_are_no_events():
+    """The sentence says why; ``transmission`` follows the hops of neighbours."""
+    pair, ring = td.Scene(1.5, 1, 0.2, periodic="x"), td.Scene(6, 1, 0.2, discs=4, periodic="x")
+    for scene, why in (
+        (pair, "along the periodic axis x two discs have no order that a hop could change"),
+        (ring, "hops along the periodic axis x are those of neighbours, see transmission"),
+    ):
+        for use in (
+            lambda scene=scene: td.simulate(scene, events="horizontal_hop"),
+            lambda scene=scene: td.sample(scene, 1, quantities="horizontal_hop_area"),
+            lambda scene=scene: td.intervals(scene, "horizontal_hop"),
+        ):
+            with pytest.raises(td.InputError, match=f": {why}$"):
+                use()
+    with pytest.raises(td.InputError, match=r"'right_wall': the periodic axis x has no walls$"):
+        td.simulate(pair, events="right_wall")
 
 
 @pytest.mark.parametrize(

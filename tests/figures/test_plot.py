@@ -2,9 +2,11 @@
 
 import copy
 import pickle
+import warnings
 from concurrent.futures import ThreadPoolExecutor
 
 import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from figure_cases import bars, covered, points
@@ -193,3 +195,28 @@ def test_discs_are_where_the_trajectory_has_them_on_a_periodic_axis():
     for disc in (1, 2):
         due = np.column_stack([states[f"x{disc}"], states[f"y{disc}"]])
         np.testing.assert_allclose(stage.places(disc, times), due, atol=1e-12)
+
+
+def test_exact_values_alone_are_curves():
+    """Lines without symbols and residuals; all quantities of the table can be chosen."""
+    table = td.exact_table(1.5, 1.0, [0.1, 0.2, 0.6])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # nothing was measured, so nothing is left out
+        main, *others = td.plot(table).axes
+        (volume,) = td.plot(table, figure="volume").axes
+        hops = td.plot(table, figure="mean_hop_time").axes
+    assert not others
+    assert [axes.get_label() for axes in hops] == ["main", "beneath"]
+    curves = [line for line in main.lines if len(line.get_xdata()) > 2]
+    assert len(curves) == 6
+    assert {line.get_marker() for line in curves} == {"None"}
+    assert [text.get_text() for text in volume.get_legend().get_texts()] == ["exact"]
+    (curve,) = (line for line in volume.lines if len(line.get_xdata()) > 2)
+    radii, values = curve.get_data()
+    known = np.isfinite(radii)
+    found = np.interp([0.1, 0.2], radii[known], values[known])
+    np.testing.assert_allclose(found, table["volume"].iloc[:2], rtol=1e-3)
+    figure, own = plt.subplots()
+    td.plot(table, ax=own, figure="volume")
+    assert own.lines
+    plt.close(figure)

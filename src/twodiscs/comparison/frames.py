@@ -35,7 +35,7 @@ def load(folder: str | PathLike[str]) -> dict[str, pd.DataFrame]:
     -------
     dict
         {name: ``DataFrame``}. ``attrs`` of a table has its units, the meanings of its columns, and
-        its origin: path, sha256 and the configuration.
+        its origin: path, sha256 and the configuration, all as plain values.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def read(path, table):
         "configuration": configuration,
     }
     if (box := _box(configuration)) is not None:
-        frame.attrs["box"] = box
+        frame.attrs["box"] = box.parameters()
     return frame
 
 

@@ -9,7 +9,12 @@ from typing import TYPE_CHECKING
 
 from matplotlib.axes import Axes
 
-from twodiscs.comparison.measured.measurements import Intervals, Measurements, the_scene
+from twodiscs.comparison.measured.measurements import (
+    Intervals,
+    Measurements,
+    the_box,
+    the_scene,
+)
 from twodiscs.comparison.measured.observe import Observed
 from twodiscs.comparison.measured.scan import Scan
 from twodiscs.comparison.measured.transmission import Transmission
@@ -36,7 +41,7 @@ if TYPE_CHECKING:
 #: The results that can be drawn.
 DRAWN = (
     "a scene, a trajectory, results of simulate, scan, sample, intervals, transmission or observe, "
-    "or a loaded table"
+    "a table of exact_table, or a loaded table"
 )
 
 
@@ -60,7 +65,8 @@ def plot(
         A trajectory, a ``Scan``, a result of ``simulate``, ``sample``, ``intervals``,
         ``transmission``, ``observe`` or ``diffusion``, or a table of a scene from ``load``. A list
         of results of ``simulate``, ``sample`` or ``intervals`` at several radii of one box is drawn
-        beside the exact curves. A scene or box of two plain discs has drawings of its geometry.
+        beside the exact curves. A table of ``exact_table`` gives the exact curves alone, over all
+        radii of its box. A scene or box of two plain discs has drawings of its geometry.
     path : path-like, optional
         A file that ends in .pdf, .png or .svg.
     figure : str, optional
@@ -146,7 +152,8 @@ def _chosen(figure, fitting, rows):
         return check_choice("figure", figure, fitting)
     if fitting[0] in OVER_RADIUS:
         shown = OVER_RADIUS[fitting[0]].names
-        others = dict.fromkeys(q for q in map(quantity_of, rows) if q not in shown)
+        measured = [quantity_of(row) for row in rows if "estimate" in row]
+        others = dict.fromkeys(q for q in measured if q not in shown)
         if others:
             warnings.warn(
                 f"the figure {fitting[0]} does not show {', '.join(others)}; "
@@ -203,19 +210,32 @@ def _what(result):
             rows = [row for item in results for row in item.rows]
             (box,) = boxes
             return box, rows, _figures_of(rows, box), None
-    attributes = getattr(result, "attrs", {})
-    if isinstance(attributes, dict) and isinstance(attributes.get("box"), Box):
-        # A loaded table: rows have None for an empty cell.
-        rows = result.astype(object).where(result.notna(), None).to_dict("records")
-        table = attributes.get("table")
+    if (box := the_box(result)) is not None:
+        table = result.attrs.get("table")
+        # None stands for an empty cell.
+        rows = result.astype(object).where(result.notna(), None)
+        rows = _exact_rows(rows) if table is None else rows.to_dict("records")
         fitting = [name for name, entry in FIGURES.items() if entry.tables == (table,)]
         if rows and table in ("volume", "areas", "mean_times"):
-            fitting = _figures_of(rows, attributes["box"])
+            fitting = _figures_of(rows, box)
+        if rows and table in ("theory", None):
+            fitting = [name for name in _figures_of(rows, box) if name in OVER_RADIUS]
         if rows and fitting:
-            return attributes["box"], rows, fitting, None
+            return box, rows, fitting, None
     if scene is not None and hasattr(result, "iterrows"):
         return Box.of(scene), rows_of(result), ["hopping_trajectory"], scene.radius
     return None, [], [], None
+
+
+def _exact_rows(table):
+    """Return rows of theory.csv from a ``table`` of ``exact_table``, whose index is the radius."""
+    quantities = [name for name in table if name == "volume" or name.endswith(("_area", "_time"))]
+    return [
+        {"radius": radius, "quantity": quantity, "exact": exact}
+        for quantity in quantities
+        for radius, exact in table[quantity].items()
+        if exact is not None
+    ]
 
 
 def _figures_of(rows, box):
@@ -238,18 +258,14 @@ def _figures_of(rows, box):
 
 def rows_of(trajectory):
     """Return the rows of a trajectory, at least two; ``the_scene`` must find its scene."""
-    places = (
-        f"{axis}{disc}" for disc in range(1, the_scene(trajectory).discs + 1) for axis in "xy"
-    )
-    missing = [n for n in ("time", *places, "event") if n not in trajectory]
-    if missing or len(trajectory) < 2:
-        raise InputError(
-            "trajectory must have at least two rows and all of its columns, but has "
-            f"{len(trajectory)} rows and lacks {', '.join(missing) or 'no column'}"
-        )
-    from twodiscs.comparison.measured.trajectory import require_consecutive
+    from twodiscs.comparison.measured.trajectory import require_all_rows
 
-    require_consecutive(trajectory)
+    if "event" not in trajectory or len(trajectory) < 2:
+        raise InputError(
+            "trajectory must have at least two rows and the column event, but has "
+            f"{len(trajectory)} rows and the columns {', '.join(map(str, trajectory))}"
+        )
+    require_all_rows(trajectory, the_scene(trajectory))
     return trajectory.to_dict("records")
 
 

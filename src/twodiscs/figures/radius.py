@@ -148,7 +148,7 @@ def add(axes, box, rows, names):
     series, ends = [*found.values()], axes.get_ylim()
     panels.draw_series(axes, None, radii, series)
     for part in series:
-        axes.plot([], [], label=part.name, **panels.open_symbol(*part.look))
+        axes.plot([], [], label=part.name, **panels.look_of(part, *part.look))
     panels.logarithmic(axes, radii, series)
     if before:
         low, high = zip(ends, axes.get_ylim(), strict=True)
@@ -159,13 +159,17 @@ def add(axes, box, rows, names):
 
 
 def series_of(box, rows, names, looks):
-    """Return (radii of the curves, {quantity: ``Series``}) of the quantities in ``rows``."""
+    """Return (radii of the curves, {quantity: ``Series``}) of the quantities in ``rows``.
+
+    Rows of exact values alone have a curve, but no symbol.
+    """
     radii, exact = curves.exact_curves(box)
     found = {}
     for quantity, name in names.items():
-        shown = [row for row in rows if quantity_of(row) == quantity]
-        if shown:
-            found[quantity] = panels.Series(name, shown, exact[quantity], looks.get(quantity))
+        own = [row for row in rows if quantity_of(row) == quantity]
+        if own:
+            measured = [row for row in own if "estimate" in row]
+            found[quantity] = panels.Series(name, measured, exact[quantity], looks.get(quantity))
     return radii, found
 
 

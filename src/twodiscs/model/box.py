@@ -327,3 +327,14 @@ class Box:
         """
         limits = {self.threshold(hop) for hop in HOPS if hop in self.tiny.events}
         return tuple(sorted(radius for radius in limits if radius < self.last_radius))
+
+
+def parameters_of(scene):
+    """Return the parameters of a ``Scene`` as plain values, from which ``scene_of`` makes it."""
+    return Box.of(scene).parameters() | {"radius": scene.radius}
+
+
+def scene_of(parameters):
+    """Return the ``Scene`` of its ``parameters``."""
+    box = {name: value for name, value in parameters.items() if name != "radius"}
+    return Box(**box).scene(parameters["radius"])

@@ -20,7 +20,7 @@ from twodiscs.comparison.tables.hop_histogram import HopHistogram
 from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.comparison.tables.theory import Theory
-from twodiscs.model.box import Box
+from twodiscs.model.box import Box, scene_of
 from twodiscs.model.checks import (
     LARGEST_INTEGER,
     InputError,
@@ -35,7 +35,7 @@ from twodiscs.model.checks import (
 )
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import key, stream_seed
-from twodiscs.model.scene import Scene, check_scene
+from twodiscs.model.scene import Scene, check_scene, why_absent
 from twodiscs.points.estimates import MIN_EVENTS, normal_quantile
 from twodiscs.points.monte_carlo import WALL_AREAS
 from twodiscs.theory import tails
@@ -77,8 +77,9 @@ class Measurement:
     z : float or None
         The standard normal deviate of the estimate from the exact value or, for an area, from the
         exact ``expectation`` of its shell. If events are few, or come in few clusters, there is no
-        normal law. z then comes from an upper bound on the probability of such a deviation and is
-        often 0; the column ``test`` of ``frame()`` marks these rows.
+        normal law. z then comes from an upper bound on the probability of such a deviation; the
+        column ``test`` of ``frame()`` marks these rows. If the bound is 1, nothing is known about
+        the deviation: z is None, prints as "–", and is 0 in the table.
     count : int
         The number of events, or hits.
     status : str
@@ -216,12 +217,12 @@ class Measurement:
             exact = "–" if self.status == "impossible" else "not known"
         else:
             exact = _with_error(self.exact, self.stderr)[0]
-        z = "" if self.z is None else f"{self.z:+.2f}"
+        z = "–" if self.z is None else f"{self.z:+.2f}"
         return self.quantity, value, error, exact, self.unit, z, str(self.count), self.status
 
     def __str__(self) -> str:
         _, value, error, exact, unit, z, number, status = self.cells()
-        compared = f", exact {exact}" + (f", z = {z}" if z else "")
+        compared = f", exact {exact}" + (f", z = {z}" if self.z is not None else "")
         error, unit = f" ± {error}" if error else "", f" {unit}" if unit else ""
         return f"{self.quantity} = {value}{error}{unit}{compared}, {number} counted, {status}"
 
@@ -366,9 +367,11 @@ class Measurements(Result, Mapping[str, Measurement]):
 def measurement(scene, row, source=None):
     """Return the ``Measurement`` of a row of a table, which a result ``source`` has."""
     quantity = quantity_of(row)
+    # A bound of 1 on the probability has z = 0 in the tables, as a perfect match would have.
+    z = row["z"] if row["z"] or row.get("test") == "normal" else None
     return Measurement(
         quantity,
-        row["estimate"], row["stderr"], row["exact"], row["z"],
+        row["estimate"], row["stderr"], row["exact"], z,
         row["count"] if "count" in row else row["hits"], row["status"], scene.unit(quantity),
         row.get("expectation"), row.get("bound"), source,
     )  # fmt: skip
@@ -537,7 +540,7 @@ def seed_of(scene, method, seed, name):
     return stream_seed(seed, repr(box) if name is None else name, method, key(scene.radius))
 
 
-def _named(key, what, names, allowed):
+def _named(key, what, names, allowed, scene):
     """Return the ``names`` in the order of ``allowed``, or all that are allowed for None."""
     if names is None:
         return list(allowed)
@@ -548,6 +551,7 @@ def _named(key, what, names, allowed):
         raise InputError(f"{key} must be some of {', '.join(allowed)}, not {quote(names)}")
     for name in names:
         hint = did_you_mean(name, allowed) if isinstance(name, str) and name else ""
+        hint = why_absent(scene, name) or hint
         if not isinstance(name, str) or name not in allowed:
             raise InputError(f"{what} must be one of {', '.join(allowed)}, not {quote(name)}{hint}")
     return [name for name in allowed if name in names]
@@ -641,7 +645,7 @@ def run_simulation(
         errors, events = error, [*error]
     else:
         errors = error
-    tracked = _named("events", "event", events, possible)
+    tracked = _named("events", "event", events, possible, scene)
     if missing := [event for event in tracked if event not in errors]:
         raise InputError(f"error must have a value for every event, but has none for {missing[0]}")
     target = {event: check_error("error", errors[event]) for event in tracked}
@@ -680,7 +684,7 @@ def _timed(scene, error, duration, seed, budget, events, name, cores, progress, 
     """Return the ``Measurements`` of mean times from trajectories of a ``duration`` in all."""
     if error is not None:
         raise InputError("error and duration must not both be given: leave out one of them")
-    tracked = _named("events", "event", events, scene.events)
+    tracked = _named("events", "event", events, scene.events, scene)
     budget, stream = check_count("budget", budget), seed_of(scene, "dynamics", seed, name)
     duration = check_length("duration", duration)
     settings = {
@@ -756,7 +760,7 @@ def sample(
 def run_sampling(scene, samples, seed, quantities, shell, name, cores=1, progress=None, kept=None):
     """Return the ``Measurements`` of ``sample``; the parts ``kept`` are not done again."""
     allowed = ("volume", *(f"{event}_area" for event in check_scene(scene).events))
-    quantities = _named("quantities", "quantity", quantities, allowed)
+    quantities = _named("quantities", "quantity", quantities, allowed, scene)
     samples = check_count("samples", samples)
     shell, stream = check_fraction("shell", shell), seed_of(scene, "monte_carlo", seed, name)
     settings = {
@@ -958,7 +962,7 @@ def exact_table(
     times = [f"{event}_time" for event in EVENTS]
     known = ["volume", *(f"{event}_area" for event in EVENTS), *times]
     frame[known] = frame[known].astype(float)
-    frame.attrs["box"] = box
+    frame.attrs["box"] = box.parameters()
     return frame
 
 
@@ -993,7 +997,18 @@ def scenes_of(box, radii):
 
 def the_scene(result):
     """Return the ``Scene`` of a result or a trajectory; None for anything else."""
-    attributes = getattr(result, "attrs", None)
+    if isinstance(attributes := getattr(result, "attrs", None), dict):
+        try:
+            return scene_of(attributes["scene"])
+        except (AttributeError, InputError, KeyError, TypeError):
+            return None
     scene = result if isinstance(result, Scene) else getattr(result, "scene", None)
-    scene = attributes.get("scene") if isinstance(attributes, dict) else scene
     return scene if isinstance(scene, Scene) else None
+
+
+def the_box(table):
+    """Return the ``Box`` of a table of exact values or of a loaded one; None for anything else."""
+    try:
+        return Box(**table.attrs["box"])
+    except (AttributeError, InputError, KeyError, TypeError):
+        return None

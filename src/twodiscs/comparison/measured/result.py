@@ -6,7 +6,7 @@ from html import escape
 from typing import TYPE_CHECKING, ClassVar, Self
 
 import twodiscs
-from twodiscs.model.box import Box
+from twodiscs.model.box import parameters_of
 from twodiscs.model.checks import InputError, writing_to
 from twodiscs.points.base import content_of
 from twodiscs.points.digests import write_json
@@ -108,8 +108,7 @@ class Result:
         >>> content["kind"], content["settings"]["seed"]
         ('simulate', 7)
         """
-        scene = Box.of(self.scene).parameters() | {"radius": self.scene.radius}
-        return content_of(self.kind, scene, self.settings, self.parts)
+        return content_of(self.kind, parameters_of(self.scene), self.settings, self.parts)
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write the result to a JSON file that ``load_result`` reads.

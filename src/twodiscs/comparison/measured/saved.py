@@ -14,7 +14,7 @@ from twodiscs.comparison.measured.measurements import (
 )
 from twodiscs.comparison.measured.scan import Scan
 from twodiscs.comparison.measured.transmission import Transmission, run_transmission
-from twodiscs.model.box import Box
+from twodiscs.model.box import scene_of
 from twodiscs.model.checks import InputError, answering, quote
 from twodiscs.points.base import with_arrays
 from twodiscs.points.digests import read_json
@@ -32,10 +32,8 @@ def from_dict(content):
     """Return the result that ``to_dict`` describes, made again from its sums."""
     if content["kind"] == "scan":
         return Scan(map(from_dict, content["results"]), dict(content["refused"]))
-    scene = dict(content["scene"])
-    radius = scene.pop("radius")
     parts, settings = with_arrays(content["parts"]), content["settings"]
-    return MAKERS[content["kind"]](Box(**scene).scene(radius), **settings, kept=parts)
+    return MAKERS[content["kind"]](scene_of(content["scene"]), **settings, kept=parts)
 
 
 @answering

@@ -12,6 +12,7 @@ from twodiscs.comparison.measured.measurements import seed_of
 from twodiscs.comparison.measured.progress import progress_bar
 from twodiscs.comparison.measured.states import VELOCITIES, component, with_aliases
 from twodiscs.dynamics.trajectory import DISCS, columns, followed
+from twodiscs.model.box import parameters_of, scene_of
 from twodiscs.model.checks import (
     InputError,
     answering,
@@ -47,7 +48,8 @@ class Trajectory(pd.DataFrame):
     Attributes
     ----------
     scene : Scene
-        The scene, which ``attrs`` holds.
+        The scene. ``attrs["scene"]`` has its parameters as plain values, so that every format of
+        pandas can write the table.
 
     Examples
     --------
@@ -64,8 +66,13 @@ class Trajectory(pd.DataFrame):
 
     @property
     def scene(self) -> Scene:
-        """The scene, which ``attrs`` holds."""
-        return self.attrs["scene"]
+        """The scene, whose parameters ``attrs`` holds."""
+        if "scene" not in self.attrs:
+            raise InputError(
+                "trajectory must have a scene in its attrs, but has none; two trajectories "
+                "together keep it only if it is the same"
+            )
+        return scene_of(self.attrs["scene"])
 
     def __getitem__(self, key):
         if isinstance(key, str) and key not in self.columns and component(key) in self.columns:
@@ -94,8 +101,8 @@ class Trajectory(pd.DataFrame):
         Raises
         ------
         InputError
-            For other times, and if columns of the trajectory are missing, or rows in between, as in
-            a selection of events.
+            For other times, and if columns of the trajectory are missing. Also if the discs do not
+            move freely from each row to the next one, as in a selection of events.
 
         Examples
         --------
@@ -103,14 +110,9 @@ class Trajectory(pd.DataFrame):
         >>> states["x1"].round(4)
         array([-0.1522, -0.1876])
         """
-        names = components(self.scene)
-        missing = [name for name in ("time", *names) if name not in self]
-        if missing or self.empty:
-            raise InputError(
-                "trajectory must have all of its columns and at least one row for the states at a "
-                f"time, but has {len(self)} rows and lacks {', '.join(missing) or 'no column'}"
-            )
-        require_consecutive(self)
+        scene = self.scene
+        names = components(scene)
+        require_all_rows(self, scene)
         known, times = self["time"].to_numpy(), as_list(times)
         try:
             at = np.atleast_1d(np.asarray(times, float))
@@ -121,16 +123,10 @@ class Trajectory(pd.DataFrame):
                 f"times must be numbers from {known[0]!s} to {known[-1]!s}, not {quote(times)}"
             )
         row = np.searchsorted(known, at, side="right") - 1
-        since, field = at - known[row], self.scene.field
         states = np.empty(at.size, [(name, float) for name in names])
         for name in names:
             states[name] = self[name].to_numpy()[row]
-        for place in names:
-            if place[0] in VELOCITIES:
-                velocity = VELOCITIES[place[0]] + place[1:]
-                falling = field if place[0] == "y" else 0.0
-                states[place] += (states[velocity] - falling * since / 2) * since
-                states[velocity] -= falling * since
+        _fly(scene, states, at - known[row])
         return with_aliases(states)
 
     def positions(self, times: float | Iterable[float] | None = None) -> np.ndarray:
@@ -205,7 +201,9 @@ class Trajectory(pd.DataFrame):
     def to_xyz(
         self, path: str | PathLike[str], times: float | Iterable[float] | None = None
     ) -> None:
-        """Write the trajectory as an extended XYZ file, which ASE, MDAnalysis and OVITO read.
+        """Write the trajectory as an extended XYZ file, which ASE and OVITO read.
+
+        MDAnalysis reads the centres only: give it the box, ``universe.dimensions``.
 
         A frame has the time, the box as its lattice and, for each disc, the species X, its centre,
         mass, momentum, radius and number. Coordinates begin at a corner of the box. Discs in the
@@ -258,13 +256,50 @@ class Trajectory(pd.DataFrame):
                     file.write(f"X {' '.join(texts)} {disc + 1}\n")
 
 
-def require_consecutive(trajectory):
-    """Raise ``InputError`` if rows of a trajectory are missing; their index shows it."""
-    index = trajectory.index
-    if pd.api.types.is_integer_dtype(index) and (gaps := np.diff(index) != 1).any():
+#: The largest distance of a row from the end of the free flight that begins at the row before it,
+#: over the lengths whose rounding causes it. They agree within 2e-15 in every kind of scene.
+ROUNDING = 1e-10
+
+
+def _fly(scene, states, since):
+    """Let the discs in ``states``, arrays by component, move freely for the times ``since``."""
+    for axis in scene.axes:
+        falling = scene.field if axis == "y" else 0.0
+        for disc in range(1, scene.discs + 1):
+            place, velocity = f"{axis}{disc}", f"{VELOCITIES[axis]}{disc}"
+            states[place] = states[place] + (states[velocity] - falling * since / 2) * since
+            states[velocity] = states[velocity] - falling * since
+
+
+def require_all_rows(trajectory, scene):
+    """Raise ``InputError`` unless the discs move freely from each row to the next one.
+
+    Labels of rows do not show that a row is missing, because they may have been renewed. The states
+    show it. Rows of hops may be missing, because a hop changes no state.
+    """
+    names = ["time", *components(scene)]
+    missing = [name for name in names if name not in trajectory]
+    if missing or trajectory.empty:
+        raise InputError(
+            "trajectory must have all of its columns and at least one row, but has "
+            f"{len(trajectory)} rows and lacks {', '.join(missing) or 'no column'}"
+        )
+    rows = {name: trajectory[name].to_numpy(float) for name in names}
+    time, flown = rows["time"], {name: values[:-1] for name, values in rows.items()}
+    free = np.diff(time) >= 0
+    _fly(scene, flown, np.diff(time))
+    for axis in scene.axes:
+        for disc in range(1, scene.discs + 1):
+            place, velocity = f"{axis}{disc}", f"{VELOCITIES[axis]}{disc}"
+            speeds = np.abs(rows[velocity][:-1]) + np.abs(flown[velocity])
+            scale = scene.side(axis) + np.abs(rows[place][1:]) + speeds * time[1:]
+            free &= np.abs(flown[place] - rows[place][1:]) <= ROUNDING * scale
+    if not free.all():
+        first = int(free.argmin())
         raise InputError(
             "trajectory must have all rows from its first to its last, because the discs move "
-            f"freely between them, but row {index[gaps.argmax()] + 1} is missing"
+            f"freely between them, but do not from the time {time[first]!s} to "
+            f"{time[first + 1]!s}: rows are missing, in another order or rounded"
         )
 
 
@@ -332,7 +367,7 @@ def trajectory(
             for name in [*names, *(n for n in _by_disc(scene, known) if n not in names)]
         }
     )
-    frame.attrs["scene"] = scene
+    frame.attrs["scene"] = parameters_of(scene)
     return frame
 
 

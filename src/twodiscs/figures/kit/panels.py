@@ -269,6 +269,11 @@ def open_symbol(colour, marker, scale=1):
     return {"color": colour, "marker": marker, "markersize": size, "markerfacecolor": "white"}
 
 
+def look_of(series, colour, marker):
+    """Return the settings of a ``Series`` in a legend: a symbol only if it has estimates."""
+    return open_symbol(colour, marker) if series.rows else {"color": colour}
+
+
 def is_judged(row):
     """Return whether the residual of a ``row`` is drawn: there is one, and it may differ from 0."""
     return row.get("z") is not None and row.get("test") != "certain"
@@ -300,8 +305,11 @@ def legend(axes, series, single=None, more=()):
     """
     handles, names = [], []
     for (colour, marker), part in with_looks(series):
-        style = open_symbol(colour, marker)
-        if single and not np.any(np.isfinite(part.exact)):
+        style = look_of(part, colour, marker)
+        if single and not part.rows:
+            handles += axes.plot([], [], color=BLACK)
+            names.append("exact")
+        elif single and not np.any(np.isfinite(part.exact)):
             handles += axes.plot([], [], ls="", **style)
             names.append(single)
         elif single:
