@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 import twodiscs as td
 from twodiscs import cli
-from twodiscs.comparison.measured.measurements import Measurement
+from twodiscs.comparison.measured.measurements import Measurement, measurement
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.dynamics.trajectory import state_of
 from twodiscs.figures.kit import style
@@ -192,6 +192,26 @@ def test_nothing_is_compared_without_an_exact_value_or_an_estimate():
         assert (found.value, found.z) == (None, None)
         assert "z = " not in str(found)
     assert "0.00" not in f"{blocked}{tiny}"
+
+
+@pytest.mark.parametrize(
+    ("z", "test", "known", "text"),
+    [
+        (0.0, "cluster-bound", None, "–"),
+        (0.0, "exact-tail", None, "–"),
+        (0.0, "normal", 0.0, "+0.00"),
+        (-1.5, "cluster-bound", -1.5, "-1.50"),
+    ],
+)
+def test_a_bound_that_says_nothing_is_no_perfect_match(z, test, known, text):
+    row = {
+        "quantity": "any_wall_time", "estimate": 1.0, "stderr": None, "exact": 2.0, "z": z,
+        "test": test, "count": 3, "status": "too-few",
+    }  # fmt: skip
+    found = measurement(td.Scene(1.5, 1.0, 0.2), row)
+    assert found.z == known
+    assert found.cells()[5] == text
+    assert ("z = " in str(found)) == (known is not None)
 
 
 @pytest.mark.parametrize("radius", [1e-9, td.Box(1.5, 1.0).largest_radius * (1 - 1e-6)])
