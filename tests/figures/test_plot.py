@@ -105,11 +105,15 @@ def test_the_figures_of_a_result_are_those_of_its_events(name):
 
 def test_what_a_transmission_leaves_falls_at_twice_its_rate():
     """The points with their errors, and the curve κ exp(−2κt/τ) of the coefficient."""
-    found = td.transmission(td.Scene(1.5, 1.0, 0.249), "horizontal_hop", 1)
+    found = td.transmission(td.Scene(1.5, 1.0, 0.249), "horizontal_hop", 2**12)
     (axes,) = td.plot(found).axes
-    frame = found.frame()
-    due = np.column_stack([found.times, frame["kappa"], frame["stderr"]])
+    frame = found.frame().reset_index()
+    known = frame["stderr"].notna()
+    assert 0 < known.sum() < len(frame)
+    due = frame.loc[known, ["time", "kappa", "stderr"]]
     np.testing.assert_allclose(bars(axes, *LOOKS["horizontal_hop"]), due, rtol=1e-9)
+    (crosses,) = (line.get_xydata() for line in axes.lines if line.get_marker() == "x")
+    np.testing.assert_allclose(crosses, frame.loc[~known, ["time", "kappa"]], rtol=1e-12)
     (times, values), *_ = (line.get_data() for line in axes.lines if "clusters" in line.get_label())
     kappa = found.coefficient.value
     expected = kappa * np.exp(-2 * kappa * times / found.exact_mean)

@@ -54,13 +54,16 @@ def observed(result):
 def transmission(result):
     """Draw κ(t) of a ``Transmission`` with errors, its exact start and its plateau from clusters.
 
-    The start is known in plain scenes, the plateau if hops are rare enough for a coefficient.
-    With more than two discs τ is the mean time between hops of two neighbours.
+    Crosses have too few hops for an error. The start is known in plain scenes, the plateau if hops
+    are rare enough for a coefficient. With more than two discs τ is the mean time between hops of
+    two neighbours.
     """
     scene, hop = result.scene, result.hop
     figure, axes = _panel(scene, f",  {name_of(hop)}")
-    values, errors = zip(*((e.value, e.stderr) for e in result.curve), strict=True)
-    _points(axes, result.times, values, np.array(errors, float), LOOKS[hop])
+    times, values, errors = result.frame().reset_index().to_numpy().T
+    known = np.isfinite(errors)
+    _points(axes, times[known], values[known], errors[known], LOOKS[hop])
+    axes.plot(times[~known], values[~known], "x", color=LOOKS[hop][0], zorder=3)
     if scene.is_plain:
         early = np.geomspace(result.times[0], 0.3 * box_time(scene, hop), 20)
         start = 1 - 2 * tails.density_at_zero(scene, hop) * early
