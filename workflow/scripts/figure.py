@@ -7,8 +7,7 @@ from twodiscs.figures.kit import style
 from twodiscs.figures.motion import animation
 from twodiscs.model.box import Box
 from twodiscs.points.digests import digest
-from twodiscs_paper.catalogue import read_table
-from twodiscs_paper.drawings import DRAW
+from twodiscs_paper.catalogue import STUDY_FIGURES, read_table
 
 start(snakemake.log[0])
 params, wildcards, files = snakemake.params, snakemake.wildcards, snakemake.input
@@ -20,7 +19,9 @@ with style.context():
     if name == "animation":
         animation.animate(box, radius, tables["trajectory"], list(snakemake.output))
     else:
-        if name in DRAW:
+        if name in STUDY_FIGURES:
+            from twodiscs_paper.drawings import DRAW  # which imports what studies measure with
+
             figure = DRAW[name](box, tables)
         else:
             figure = draw.draw(name, box, *tables.values(), radius=radius)
