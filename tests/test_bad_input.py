@@ -118,6 +118,7 @@ WRONG = (
 #: Right values that are wrong elsewhere: any finite value, any text for the name of a scene.
 RIGHT = {
     (estimates.Estimate, "value"): [-1.0, 0.0, 1e-61, 1e61],
+    (estimates.Estimate, "stderr"): [None],
     (laws.small_radius_time, "radius"): [0.0],
     (radii.stream_seed, "scene"): ["scene"],
 }

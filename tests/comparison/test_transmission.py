@@ -162,7 +162,7 @@ def test_calls_add_up_to_separate_blocks(monkeypatch):
     sizes, _ = cluster_sizes(*given, found.gap, blocks, seeds[0])
     assert found.clusters == {n: hops for n, hops in enumerate(sizes.tolist()) if hops}
     sums, _ = hop_sums(*given, found.times, blocks, seeds[1])
-    assert found.curve == transmission.by_time(sums)
+    assert found.curve == transmission.times_with_errors(sums.sum(axis=0), hops)
 
 
 def test_more_discs_have_a_coefficient_too(tmp_path):
