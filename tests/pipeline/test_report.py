@@ -117,7 +117,8 @@ def test_long_names_are_not_wider_than_the_window(report, width, tmp_path):
     with browser(tmp_path) as chromium:
         chromium.open((tmp_path / "report.html").as_uri(), width=width)
         assert chromium.look("document.documentElement.scrollWidth") <= width
-        of = "...[...document.querySelectorAll('main *')].map"
+        # A wide table scrolls in its own place.
+        of = "...[...document.querySelectorAll('main *:not(.wide *)')].map"
         assert chromium.look(f"Math.max({of}(e => e.getBoundingClientRect().right))") <= width
         assert chromium.look("document.querySelectorAll('.numbers tr').length") == 3 * 8
         colours = []
