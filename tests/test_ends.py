@@ -47,7 +47,7 @@ SCENES = {
     "1024, long ring": (1000.0, 1.0, 1024, 1e-9, {"periodic": "x"}),
 }
 
-#: What little is asked for. Ten events or kicks are due in a trajectory and in an average.
+#: Small requests. Ten events or kicks are due in a trajectory and in an average.
 CALLS = {
     "starts": "td.starts(scene, 1)",
     "simulate": "td.simulate(scene, budget=1)",

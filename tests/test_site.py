@@ -75,7 +75,7 @@ def test_every_table_and_every_figure_has_a_place(site):
 
 @pytest.mark.slow
 def test_pages_are_complete(site):
-    """Where a browser begins, the margin, the tutorial with its figures, the explorer."""
+    """The first page, the margin, the tutorial with its figures, the explorer."""
     assert (site / "index.html").read_bytes() == (site / "README.html").read_bytes()
     assert 'href="docs/recipes.html"' in (site / "index.html").read_text(encoding="utf-8")
     assert (site / "docs/python.html").read_text(encoding="utf-8").count("../tutorial-") > 1

@@ -1,4 +1,4 @@
-"""What all ensembles share."""
+"""Sizes of ensembles, and errors of counts."""
 
 import pytest
 

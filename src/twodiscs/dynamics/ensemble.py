@@ -1,4 +1,4 @@
-"""What all ensembles share, of two discs and of more: their sizes, and the errors of counts.
+"""Sizes of ensembles and errors of counts, for two discs and for more.
 
 An ensemble is many independent trajectories. They start from streams of random numbers keyed by
 block, and their sums are integers, or taken in the order of the initial states. A result therefore

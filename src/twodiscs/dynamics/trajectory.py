@@ -1,13 +1,11 @@
 """One trajectory, event by event.
 
 Every scene has the same columns: time, the centres of all discs, the event, the centres along z,
-and the discs of the event. Along periodic axes centres go on beyond the cell of the box;
-``cell_of`` returns the number of their cell. ``two.path`` follows two discs, ``many.path`` more.
+and the discs of the event. Along periodic axes centres go on beyond the box. ``two.path`` follows
+two discs, ``many.path`` more.
 """
 
 from itertools import islice, repeat
-
-import numpy as np
 
 from twodiscs.model.checks import (
     InputError,
@@ -35,11 +33,6 @@ def columns(discs=2):
     numbers = range(1, discs + 1)
     centres = (f"{axis}{disc}" for disc in numbers for axis in "xy")
     return ("time", *centres, "event", *(f"z{disc}" for disc in numbers), *DISCS)
-
-
-def cell_of(side, centre):
-    """Return the number of the periodic cell of length ``side`` that a ``centre`` lies in."""
-    return np.round(np.asarray(centre) / side).astype(int)
 
 
 def path_of(scene):

@@ -126,7 +126,7 @@ class Locator(caching.UserProvidedCacheLocator):
 
 
 class KernelCacheImpl(caching.CompileResultCacheImpl):
-    """What numba keeps of a compilation, in the folder that ``Locator`` names."""
+    """The compiled code that numba keeps, in the folder that ``Locator`` names."""
 
     _locator_classes = [Locator]
 

@@ -1,4 +1,4 @@
-"""What follows from the block of a scene and its box: default radii, the events it has, its jobs.
+"""Default radii, events and jobs of a scene: they follow from its block and its box.
 
 A mistake raises ``InputError`` with the key in the block of the scene.
 """
