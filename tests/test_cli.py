@@ -12,6 +12,7 @@ from types import SimpleNamespace
 
 import pytest
 from commands import command
+from snakemake.jobs import Reason
 
 from twodiscs import arguments, cli
 from twodiscs.figures.catalogue import FIGURES
@@ -236,14 +237,14 @@ def test_a_run_is_a_line_of_snakemake(tmp_path, monkeypatch):
     assert words == [
         *("snakemake", "--snakefile", "/a/Snakefile"),
         *("--workflow-profile", "/a/profiles/default", "--cores", "all", "--no-hooks"),
-        *("--quiet", "rules"),
+        *("--quiet", "rules", "host"),
         *("--configfile", "my.yaml", "--", "volume", "results/check.passed"),
     ]
     monkeypatch.chdir(build.snakefile().parent)
     assert "--snakefile" not in build.command("my.yaml", [], build.snakefile())
     words = build.command("my.yaml", [], build.snakefile(), 3, True)
-    options = ["--cores", "3", "--no-hooks", "--quiet", "rules", "--dry-run"]
-    assert words[1:] == [*options, "--configfile", "my.yaml", "--", "report"]
+    options = ["--cores", "3", "--no-hooks", "--quiet", "rules", "host", "progress", "reason"]
+    assert words[1:] == [*options, "--dry-run", "--configfile", "my.yaml", "--", "report"]
     with pytest.raises(InputError, match="cores must be"):
         build.command("my.yaml", [], Path("Snakefile"), 0)
     with pytest.raises(InputError, match="not 'volme'; did you mean 'volume'"):
@@ -297,30 +298,64 @@ def test_targets_are_those_of_the_page():
     assert [n for n in fixed if not re.search(f"rule {n}:|rule \\w+ as {n} with:", rules)] == []
 
 
-def test_a_build_ends_with_its_own_verdict_and_report(tmp_path):
-    """Those of another build may be in the folder: they are not of this configuration."""
-    (tmp_path / "check.passed").write_text("a: 3 comparisons passed\n")
-    (tmp_path / "report.html").touch()
-    check, report = (
-        SimpleNamespace(output=[str(tmp_path / name)]) for name in ("check.passed", "report.html")
+def _dag(targets, made):
+    """Return what ``closing`` asks of Snakemake: jobs that are targets, and all jobs."""
+    jobs = [SimpleNamespace(output=list(map(str, paths))) for paths in made]
+    return SimpleNamespace(
+        targetjobs=[
+            SimpleNamespace(rule=SimpleNamespace(name=name), output=output, input=files)
+            for name, output, files in targets
+        ],
+        jobs=jobs,
     )
-    figure = SimpleNamespace(output=["a.pdf", "a.png"])
-    assert build.closing(tmp_path, [figure]) == ""
-    assert "report" not in build.closing(tmp_path, [check, figure])
-    passed, verdict, path = build.closing(tmp_path, [check, figure, report]).splitlines()
-    assert passed.startswith(f"{tmp_path / 'check.passed'}, of 2")
-    assert verdict == "  a: 3 comparisons passed"
-    assert path == f"The report is {tmp_path / 'report.html'}"
 
 
-def test_a_build_ends_with_the_files_of_its_targets():
-    scene = {"name": "a", "box": {"width": 1.5, "height": 1}, "watch": {"mean_times": True}}
-    asked = load({"results": "r", "scenes": [scene, scene | {"name": "b"}]})
-    assert dict(build.files(asked, ["check", "pressure", "tails", "explorer"])) == {
-        "pressure": ["r/a/figures/pressure.pdf", "r/b/figures/pressure.pdf"],
-        "tails": ["r/tails.csv", "r/figures/tails.pdf"],
-        "explorer": ["r/explorer.html"],
-    }
+def test_a_build_ends_with_its_own_verdict_and_report(tmp_path):
+    """Those of another build may be in the folder. They say so if the configuration is newer."""
+    passed, report, mine = (tmp_path / n for n in ("check.passed", "report.html", "my.yaml"))
+    passed.write_text("a: 3 comparisons passed\n")
+    report.touch()
+    mine.touch()
+    os.utime(mine, (0, 0))
+    assert build.closing(tmp_path, _dag([], [["a.png"]]), [mine]) == ""
+    assert "report" not in build.closing(tmp_path, _dag([], [[passed], ["a.png"]]), [mine])
+    lines = build.closing(tmp_path, _dag([], [[passed], [report]]), [mine]).splitlines()
+    assert lines[0].startswith(f"{passed}, of 2")
+    assert lines[1:] == ["  a: 3 comparisons passed", f"The report is {report}"]
+    os.utime(passed, (1, 1))
+    os.utime(mine, (2, 2))
+    old = f"{passed} is older than the configuration; the target check renews it\n"
+    assert build.closing(tmp_path, _dag([], []), [mine]) == old
+    assert old not in build.closing(tmp_path, _dag([], [[passed]]), [mine])
+
+
+def test_a_dry_run_counts_the_jobs_of_a_scene_and_names_a_reason():
+    edited, missing = Reason(), Reason()
+    edited.updated_input.update(["b.py", "a.py"])
+    missing.missing_output.add("c.json")
+    named = [("dynamics", "long", missing)] * 2 + [("table", "long", edited)]
+    jobs = [
+        SimpleNamespace(rule=SimpleNamespace(name=rule), wildcards={"scene": scene}, why=why)
+        for rule, scene, why in named
+    ]
+    jobs.append(SimpleNamespace(rule=SimpleNamespace(name="code"), wildcards={}, why=missing))
+    dag = SimpleNamespace(needrun_jobs=lambda exclude_finished: jobs, reason=lambda job: job.why)
+    rows = [line.split(maxsplit=3) for line in build.planned(dag).splitlines()[2:]]
+    generated = "output files have to be generated"
+    assert rows == [
+        ["code", "1", *generated.split(maxsplit=1)],
+        ["long", "dynamics", "2", generated],
+        ["long", "table", "1", "updated input files: a.py"],
+    ]
+    jobs.clear()
+    assert build.planned(dag) == "All files are up to date.\n"
+
+
+def test_a_build_ends_with_the_files_of_its_targets(tmp_path):
+    targets = [("pressure", [], ["a.pdf", "a.png"]), ("explorer", ["e.html"], ["e.js"])]
+    targets += [("report", ["r.html"], []), ("all", [], ["r.html"]), ("check", ["c"], [])]
+    lines = build.closing(tmp_path, _dag(targets, []), [])
+    assert lines == "pressure: a.pdf, a.png\nexplorer: e.html\n"
 
 
 @pytest.mark.parametrize(

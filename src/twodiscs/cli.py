@@ -4,7 +4,6 @@ import argparse
 import csv
 import json
 import sys
-from contextlib import suppress
 from io import StringIO
 
 import argcomplete
@@ -103,8 +102,10 @@ def _parser():
     text = "build a configuration with Snakemake, or some of it"
     some = commands.add_parser("run", help=text, description=f"{text[0].upper()}{text[1:]}.")
     if sys.argv[1:2] == ["run"]:
-        with suppress(InputError):  # the workflow is not installed
+        try:
             some.epilog = f"Targets: {', '.join(_targets())}."
+        except InputError as missing:  # the workflow is not installed
+            some.epilog = f"{missing}."
     file = some.add_argument("configuration", help="a YAML file; twodiscs new writes one")
     file.completer = argcomplete.FilesCompleter(("yaml", "yml"))
     targets = some.add_argument(

@@ -8,6 +8,7 @@ import shlex
 import signal
 import sys
 import tempfile
+from collections import Counter
 from datetime import datetime
 from difflib import get_close_matches
 from importlib import metadata
@@ -52,7 +53,7 @@ def command(path, targets, snakefile, cores=None, dry_run=False):
 
     It prints the progress, but not each job. Without ``targets`` it builds the report. It uses
     ``cores`` cores. If they are None, the user's profile of Snakemake chooses; without a profile it
-    uses all. With ``dry_run`` it counts the jobs and does nothing.
+    uses all. With ``dry_run`` it prints and does nothing.
 
     Raises ``InputError`` for a target that is neither a name nor a path, and for ``cores`` that are
     no integer ≥ 1.
@@ -75,7 +76,8 @@ def command(path, targets, snakefile, cores=None, dry_run=False):
         profile = snakefile.with_name("profiles") / "default"
         found = ["--snakefile", str(snakefile), "--workflow-profile", str(profile)]
     words = ["snakemake", *found, *(["--cores", str(cores)] if cores is not None else [])]
-    words += ["--no-hooks", "--quiet", "rules"]
+    words += ["--no-hooks", "--quiet", "rules", "host"]
+    words += ["progress", "reason"] if dry_run else []  # ``planned`` prints them by scene
     words += [*(["--dry-run"] if dry_run else []), "--configfile", str(path)]
     return [*words, "--", *(targets or [DEFAULT])]
 
@@ -120,25 +122,37 @@ def build(path, targets, cores=None, dry_run=False):
         cli.main()
     except SystemExit as end:
         status = end.code
-    if status == 0 and not dry_run:
+    if status == 0:
         # Snakemake keeps the last workflow of a process among the names of a Snakefile.
-        print(closing(configuration.results, workflow.workflow.dag.jobs), end="")
-        for name, paths in files(configuration, targets):
-            print(f"{name}: {', '.join(paths)}")
+        dag = workflow.workflow.dag
+        print(planned(dag) if dry_run else closing(configuration.results, dag, [path]), end="")
     return status
 
 
-def files(configuration, targets):
-    """Yield (target, paths) of the figures, studies and the explorer among ``targets``."""
-    for name in targets:
-        if name == "explorer":
-            yield name, [f"{configuration.results}/explorer.html"]
-        elif name in STUDIES:
-            made = configuration.study(name)
-            yield name, [path if isinstance(path, str) else path[0] for path in made]
-        elif name in FIGURES:
-            drawn = (configuration.figures(scene.name) for scene in configuration.scenes)
-            yield name, [figures[name][0] for figures in drawn if name in figures]
+def planned(dag):
+    """Return a table of the jobs that Snakemake would run: scene, rule, their number, a reason.
+
+    A row has the most frequent reason of its jobs.
+    """
+    from tabulate import tabulate
+
+    reasons = {}
+    for job in dag.needrun_jobs(exclude_finished=False):
+        row = job.wildcards.get("scene", ""), job.rule.name
+        reasons.setdefault(row, []).append(_reason(dag.reason(job)))
+    rows = [
+        (*row, len(of_row), Counter(of_row).most_common(1)[0][0])
+        for row, of_row in sorted(reasons.items())
+    ]
+    table = tabulate(rows, headers=["scene", "rule", "jobs", "reason"])
+    return f"{table}\n" if rows else "All files are up to date.\n"
+
+
+def _reason(reason):
+    """Return why a job runs, with an input that was edited if that is why."""
+    name = next(reason.get_names(), "")
+    edited = sorted(reason.updated_input - reason.updated_input_run)
+    return f"{name}: {edited[0]}" if edited and "updated" in name else name
 
 
 def _find_a_cache():
@@ -153,17 +167,28 @@ def _find_a_cache():
         os.environ["XDG_CACHE_HOME"] = str(Path(".snakemake/cache").resolve())
 
 
-def closing(results, jobs):
-    """Return the verdict of the check in a folder of ``results``, and the path of the report.
+def closing(results, dag, configured):
+    """Return the last lines of a build.
 
-    Only files of the ``jobs`` of this build are named: others may be of another configuration.
+    They are the files of its targets, the verdict of the check in the folder of ``results``, and
+    the path of the report. If the check or the report were not built
+    and are older than a file of ``configured``, the paths of the configuration, a line says so.
     """
-    made = {str(path) for job in jobs for path in job.output}
-    lines, passed, report = [], Path(results, "check.passed"), Path(results, "report.html")
+    made = {str(path) for job in dag.jobs for path in job.output}
+    lines = [
+        f"{job.rule.name}: {', '.join(map(str, job.output or job.input))}"
+        for job in dag.targetjobs
+        if job.rule.name not in ("all", "check", "report")
+    ]
+    passed, report = Path(results, "check.passed"), Path(results, "report.html")
     if str(passed) in made:
         when = datetime.fromtimestamp(passed.stat().st_mtime)
         lines += [f"{passed}, of {when:%Y-%m-%d %H:%M}:"]
         lines += [f"  {line}" for line in passed.read_text(encoding="utf-8").splitlines()]
     if str(report) in made:
         lines += [f"The report is {report.resolve()}"]
+    last = max((Path(path).stat().st_mtime for path in configured), default=0.0)
+    for path in (passed, report):
+        if str(path) not in made and path.exists() and path.stat().st_mtime < last:
+            lines += [f"{path} is older than the configuration; the target {path.stem} renews it"]
     return "".join(f"{line}\n" for line in lines)
