@@ -7,6 +7,7 @@ from twodiscs_paper.studies.effects import figure as effects
 from twodiscs_paper.studies.more_discs import figure as more_discs
 from twodiscs_paper.studies.passages import figure as passages
 from twodiscs_paper.studies.passages import figure_diffusion as diffusion
+from twodiscs_paper.studies.passages import figure_files as files
 from twodiscs_paper.studies.passages import figure_friction as friction
 from twodiscs_paper.studies.passages import figure_transmission as transmission
 from twodiscs_paper.studies.stability import figure as stability
@@ -23,6 +24,7 @@ DRAW = {
     "more_discs": more_discs.draw,
     "passages": passages.draw,
     "diffusion": diffusion.draw,
+    "files": files.draw,
     "friction": friction.draw,
     "transmission": transmission.draw,
     "stability": stability.draw,

@@ -21,6 +21,7 @@ from twodiscs_paper.drawings import DRAW
 from twodiscs_paper.studies.effects import figure as effects
 from twodiscs_paper.studies.passages import figure as passages
 from twodiscs_paper.studies.passages import figure_diffusion as diffusion
+from twodiscs_paper.studies.passages import figure_files as files
 from twodiscs_paper.studies.passages import figure_friction as friction
 from twodiscs_paper.studies.passages import figure_transmission as transmission
 from twodiscs_paper.studies.tails import figure as tails
@@ -134,7 +135,7 @@ def _passages():
         )
     for discs, look in diffusion.FILES.items():
         own = of(rows, quantity="diffusion", discs=discs)
-        yield "diffusion", "ring", *look, _columns(own, "distance")
+        yield "diffusion", "files", *look, _columns(own, "distance")
     yield from _long_files(rows)
     for rate, look in friction.LOOKS.items():
         own = of(rows, friction=rate, quantity="coefficient")
@@ -147,12 +148,12 @@ def _passages():
 
 
 def _long_files(rows):
-    """Yield the symbols of long files in the figure of diffusion."""
+    """Yield the symbols of long files in the figures of diffusion and of files."""
     looks = {False: diffusion.SMOOTH_FILE, True: diffusion.KICKED_FILE}
     order = of(rows, quantity="diffusion", method="order")
     for is_kicked, look in looks.items():
         own = [row for row in order if bool(row["friction"]) == is_kicked]
-        yield "diffusion", "ring", *look, _columns(own, "distance")
+        yield "diffusion", "files", *look, _columns(own, "distance")
         # Blocked, and at the farthest distance where discs pass.
         moved = [
             row for row in of(rows, quantity="displacement")
@@ -163,14 +164,14 @@ def _long_files(rows):
             (row["time"] / math.sqrt(2 * row["discs"] - 1), row["estimate"], row["stderr"])
             for row in moved
         ]
-        yield "diffusion", "moved", *look, due
+        yield "files", "moved", *look, due
     due = [
         (row["time"] / math.sqrt(3 * row["discs"]), row["estimate"], row["stderr"])
         for row in of(rows, quantity="displacement", moment_of_inertia=0.5)
     ]
-    yield "diffusion", "moved", *diffusion.ROUGH_FILE, due
+    yield "files", "moved", *files.ROUGH_FILE, due
     kicked = [row for row in order if row["friction"]]
-    for look, row in zip(diffusion.OPEN, kicked, strict=True):
+    for look, row in zip(files.OPEN, kicked, strict=True):
         where = {"distance": row["distance"], "friction": row["friction"]}
         (single,) = of(rows, quantity="single_file", **where)
         (rate,) = of(rows, quantity="rate", method="insertion", distance=row["distance"])
@@ -182,7 +183,7 @@ def _long_files(rows):
             (r["time"] / time, r["estimate"] / unit, r["stderr"] / unit)
             for r in of(rows, quantity="displacement", **where)
         ]
-        yield "diffusion", "collapse", *look, due
+        yield "files", "collapse", *look, due
 
 
 def _scaled(row):

@@ -21,7 +21,13 @@ from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import Estimate, LinearFit, mean_of
 from twodiscs.sampling.starts import state_in
 from twodiscs.theory import exact
-from twodiscs_paper.studies.passages import figure, figure_diffusion, figure_transmission, measure
+from twodiscs_paper.studies.passages import (
+    figure,
+    figure_diffusion,
+    figure_files,
+    figure_transmission,
+    measure,
+)
 from twodiscs_paper.studies.passages.models import file
 from twodiscs_paper.studies.passages.study import Passages
 
@@ -388,7 +394,7 @@ def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small):
     assert events == {"vertical_hop", None}
     with style.context():
         limit = [row for row in rows if row["method"] == "limit"]
-        for module in (figure, figure_transmission, figure_diffusion):
+        for module in (figure, figure_transmission, figure_diffusion, figure_files):
             for some in (rows, limit, []):
                 assert module.draw(Box(1.0, 4.0), {"passages": some})
 

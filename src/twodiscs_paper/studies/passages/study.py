@@ -193,22 +193,32 @@ STUDY = Study(
             DYNAMICS,
             Caption(
                 """
-                Diffusion by hops. (a) Coefficient D of diffusion on a ring, divided by its value
-                for a random walk with ν hops of a disc per time in either direction, each by ℓ
-                (dashed), at distances δ = (r_c − r)/r_c from the radius r_c at which hops become
-                blocked. For two discs it is measured by correlations of hops (open symbols) and by
-                displacements (dots), for four and eight discs by displacements, and for long files
-                by the order of the discs. With friction, all velocities are drawn anew at random
-                times, at a rate γ. (b) Residuals z in standard errors, from the exact rate, between
-                two estimators, or of F from theory. (c) Mean square displacement of a tagged disc
-                in a long file on a ring, blocked (r = 0.28 h, full symbols) and open (δ = 1/8).
-                Units are ℓ² and the thermal speed. Black lines are theory of the blocked files at
-                long times, without a free parameter: sound, until it has gone around half of the
-                ring, and damped sound. Rough discs (I = 1/2, blocked) lose their momentum to the
-                walls, too, but have no such line. Grey lines add what hops do to the file of
-                places, as the order of the discs has it. (d) Files with friction: displacements in
+                Coefficient D of diffusion on a ring, divided by its value for a random walk with ν
+                hops of a disc per time in either direction, each by ℓ (dashed), at distances δ =
+                (r_c − r)/r_c from the radius r_c at which hops become blocked. (a) Two discs, by
+                correlations of hops (open symbols) and by displacements (full symbols). (b) Files
+                of four and eight discs by displacements (full symbols), and long files by the order
+                of the discs (open symbols). With friction, all velocities are drawn anew at random
+                times. (c) Residuals z in standard errors, from the exact rate, between two
+                estimators, or of F in ⟨x²⟩ = F√t from theory. Error bars are one standard error.
+                """
+            ),
+            tables=("passages",),
+        ),
+        "files": Entry(
+            "Displacements in files",
+            DYNAMICS,
+            Caption(
+                """
+                Mean square displacement of a tagged disc in a long file on a ring. (a) Files that
+                are blocked (r = 0.28 h, full symbols) and open (δ = 1/8, open symbols), in units of
+                ℓ², the height h and the thermal speed. Black lines are theory of the blocked files
+                at long times, without a free parameter: sound, until it has gone around half of the
+                ring, and damped sound. Rough discs (I = 1/2) lose their momentum to the walls, and
+                have no such line. Grey lines add what hops do to the motion of the places, as the
+                order of the discs has it. (b) Files with friction that are open: displacements in
                 units of F√t×, at times over t× = (F/2D)², where single file and hops contribute
-                equally. The line is √u + u with u = t/t×. Error bars are one standard error.
+                equally. Error bars are one standard error.
                 """
             ),
             tables=("passages",),

@@ -1,0 +1,123 @@
+"""How discs move in long files that are blocked, and in files where they can pass each other."""
+
+import math
+
+import numpy as np
+
+from twodiscs.figures.kit import drawing, panels
+from twodiscs.figures.kit.style import BLACK, BLUE, GREY, PURPLE, VERMILLION
+from twodiscs.model.scene import Scene
+from twodiscs_paper.studies.passages.figure import columns, is_empty, points, select
+from twodiscs_paper.studies.passages.figure_diffusion import KICKED_FILE, SMOOTH_FILE
+from twodiscs_paper.studies.passages.models import file
+
+#: Rough discs in a long file.
+ROUGH_FILE = (VERMILLION, "s")
+
+#: Looks of distances in a collapse.
+OPEN = ((BLUE, "o"), (VERMILLION, "s"), (PURPLE, "D"))
+
+#: Quantities of long files over the time.
+LONG = ("displacement", "file", "order")
+
+#: The times that are shown, in units of h over the thermal speed: names stand behind the last.
+SHOWN = (0.4, 400)
+
+
+def draw(box, tables):
+    """Draw the rows of passages.csv on long files: displacements, and their collapse."""
+    rows = tables["passages"]
+    figure, (moved, collapse) = panels.stacked(moved=2.7, collapse=2.0)
+    if is_empty(figure, moved, rows, box):
+        return figure
+    _moved(moved, [row for row in rows if row["quantity"] in LONG])
+    _collapse(collapse, rows)
+    return figure
+
+
+def _scene(row):
+    """Return the ``Scene`` of a ``row`` of a long file, without its friction."""
+    return Scene(
+        row["width"], row["height"], row["radius"], discs=row["discs"], periodic="x",
+        moment_of_inertia=row["moment_of_inertia"],
+    )  # fmt: skip
+
+
+def _thermal(row):
+    """Return the thermal speed over h of the discs of a ``row`` on a ring."""
+    return file.thermal_speed(_scene(row)) / row["height"]
+
+
+def _of(rows, quantity, **wanted):
+    """Return (times in units of h over the thermal speed, values, errors) of a ``quantity``."""
+    own = select(rows, quantity=quantity, **wanted)
+    time, value, error = columns(own, "time", "estimate", "stderr")
+    return time * _thermal(own[0]), value, error
+
+
+def _moved(axes, rows):
+    """Draw displacements in long files, blocked and at the farthest open distance."""
+    shown = [
+        distance for some in ((r for r in rows if (r["distance"] > 0) == sign) for sign in (0, 1))
+        for distance in [max((r["distance"] for r in some), default=None)] if distance is not None
+    ]  # fmt: skip
+    for distance in shown:
+        here = select(rows, distance=distance)
+        blocked = distance < 0
+        kinds = dict.fromkeys((row["friction"], row["moment_of_inertia"]) for row in here)
+        for friction, inertia in kinds:
+            own = select(here, friction=friction, moment_of_inertia=inertia)
+            look, kind = (SMOOTH_FILE, "smooth") if friction is None else (KICKED_FILE, "friction")
+            if inertia is not None:
+                look, kind = ROUGH_FILE, "rough"
+            x, y, error = _of(own, "displacement")
+            points(axes, x, y, error, look, None, blocked)
+            name = f"{kind}, {'blocked' if blocked else 'open'}"
+            drawing.label(axes, name, (x[-1], y[-1]), (5, 0), ha="left", color=look[0])
+            if blocked and inertia is None:
+                scene = _scene(own[0])
+                time = np.geomspace(x[0], x[-1], 120)
+                due = np.array([file.law(scene, friction, t / _thermal(own[0])) for t in time])
+                # Sound that has gone around half of the ring brings the discs back.
+                rises = np.append(np.diff(due) > 0, True).cumprod() > 0
+                axes.plot(time[rises], due[rises], color=BLACK, lw=0.8, zorder=5)
+            elif not blocked:
+                _, place, _ = _of(own, "file")
+                _, walk, _ = _of(own, "order")
+                axes.plot(x, place + walk, color=GREY, lw=0.8, zorder=2)
+    for name, line in (
+        ("theory of blocked files", {"color": BLACK}),
+        ("motion of places, plus hops", {"color": GREY}),
+    ):
+        axes.plot([], [], lw=0.8, label=name, **line)
+    axes.set(xscale="log", yscale="log", xlim=SHOWN)
+    axes.set(
+        xlabel=r"time $t\,\sqrt{kT/m}\,/h$", ylabel=r"displacement $\langle x^2\rangle/\ell^2$"
+    )
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.legend(loc="upper left")
+
+
+def _collapse(axes, rows):
+    """Draw displacements with friction over F √t×, against t/t×."""
+    looks = iter(OPEN)
+    for row in select(rows, quantity="diffusion", method="order"):
+        if row["friction"] is None:
+            continue
+        own = {name: row[name] for name in ("scene", "distance", "friction")}
+        (single,) = select(rows, quantity="single_file", **own)
+        (rate,) = select(rows, quantity="rate", method="insertion", distance=row["distance"])
+        d, f = row["estimate"] * rate["estimate"] / 2, single["estimate"]
+        crossover = (f / (2 * d)) ** 2
+        moved = select(rows, quantity="displacement", **own)
+        time, value, error = columns(moved, "time", "estimate", "stderr")
+        unit = f * math.sqrt(crossover)
+        name = rf"$\delta=1/{round(1 / row['distance'])}$"
+        points(axes, time / crossover, value / unit, error / unit, next(looks), name)
+    s = np.geomspace(1e-3, 10, 60)
+    axes.plot(
+        s, np.sqrt(s) + s, color=BLACK, lw=0.8, zorder=5, label=r"$\sqrt{u}+u$,  $u=t/t_\times$"
+    )
+    axes.set(xscale="log", yscale="log", xlabel=r"time $t/t_\times$")
+    axes.set_ylabel(r"$\langle x^2\rangle/F\sqrt{t_\times}$")
+    axes.legend(loc="upper left")
