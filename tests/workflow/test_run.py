@@ -45,7 +45,9 @@ def test_a_new_configuration_is_the_report_on_mean_times(place):
 
 def test_a_dry_run_counts_the_jobs(place):
     counted = run(place, "--dry-run")
-    assert {*re.findall(r"^total +(\d+)$", counted.stdout, re.MULTILINE)} == {"19"}
+    jobs = re.findall(r"^(?:mine +|      +)(\w+) +(\d+)  output", counted.stdout, re.MULTILINE)
+    assert sum(int(number) for _, number in jobs) == 19
+    assert dict(jobs)["figure"] == "4"
     assert "rule dynamics:" not in counted.stdout + counted.stderr
     assert not (place.path / "results").exists()
 
