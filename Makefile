@@ -2,6 +2,7 @@
 # make test       the same set-up, then what decides whether a change is good
 # make test-all   that, and what takes long and seldom fails: coverage of intervals, other processors, Slurm
 # make docs       the same set-up, then the site, in build/site
+# make archive    the same as make, then one file to deposit, in build: the sources, the lock and the results
 #
 # CONFIG=my.yaml builds that configuration instead. CORES=n says on how many cores (2), PYTHON=path with which Python (the first that is new enough).
 
@@ -17,7 +18,7 @@ IN_VENV = PATH="$(CURDIR)/.venv/bin:$$PATH"
 # hundred processes would compile our own sources anew.
 export PYTHONDONTWRITEBYTECODE =
 
-.PHONY: all test test-all docs
+.PHONY: all test test-all docs archive
 
 all: .venv/ready $(CONFIG)
 	$(IN_VENV) $(if $(CONFIG),twodiscs run --cores $(CORES) $(CONFIG),snakemake --cores $(CORES))
@@ -36,6 +37,12 @@ docs: .venv/ready
 	@# A warning, as of a dead link, is an error.
 	$(IN_VENV) sphinx-build --conf-dir docs/make --doctree-dir build/doctrees --fresh-env \
 	  --fail-on-warning --keep-going --quiet . build/site
+
+# Files that git tracks, as they are now, and results/, which holds its manifest and its provenance.
+archive: all
+	mkdir -p build
+	git ls-files -z -- ':!results' | tar --create --gzip --file build/twodiscs.tar.gz \
+	  --transform 's,^,twodiscs/,S' --owner 0 --group 0 --null --files-from - results
 
 # The exact packages of requirements.lock, then this one; again whenever either list changes. uv puts them
 # there: the one that is installed, or that of the lock, which pip brings. Where uv cannot, pip does it all.

@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tarfile
 import tomllib
 from pathlib import Path
 from zipfile import ZipFile
@@ -18,6 +19,7 @@ PROJECT = tomllib.loads((REPOSITORY / "pyproject.toml").read_text(encoding="utf-
 #: An import of a module of the extras fails, as if they were not installed.
 BLOCKED = """
 import sys
+import tarfile
 
 class Absent:
     def find_spec(self, name, path=None, target=None):
@@ -116,3 +118,23 @@ def test_the_lock_has_everything():
     asked = {re.match(r"[\w-]+", one)[0] for one in PROJECT["dependencies"]}
     assert asked | {*EXTRAS} <= locked
     assert "://" not in lock
+
+
+def test_an_archive_holds_what_git_tracks_and_the_results(tmp_path):
+    """``make archive``, with other results than those of a build, which it would wait for."""
+    checkout, results = tmp_path / "checkout", tmp_path / "checkout/results"
+    git = ["git", "clone", "--quiet", "--depth", "1", f"file://{REPOSITORY}", checkout]
+    subprocess.run(git, check=True, capture_output=True)
+    (results / "a.csv").write_text("1\n")
+    sums = subprocess.check_output(["sha256sum", "a.csv"], cwd=results)
+    (results / "manifest.sha256").write_bytes(sums)
+    (checkout / "left-over").touch()
+    subprocess.run(["make", "--old-file", "all", "archive"], cwd=checkout, check=True)
+    with tarfile.open(checkout / "build/twodiscs.tar.gz") as archive:
+        names = {name.removeprefix("twodiscs/") for name in archive.getnames()}
+        archive.extractall(tmp_path, filter="data")
+    tracked = subprocess.check_output(["git", "ls-files"], cwd=checkout, text=True).split("\n")
+    assert {*filter(None, tracked), "results/a.csv"} <= names
+    assert "left-over" not in names
+    check = ["sha256sum", "--check", "--quiet", "manifest.sha256"]
+    subprocess.run(check, cwd=tmp_path / "twodiscs/results", check=True)
