@@ -306,26 +306,22 @@ def test_scenes_are_understood():
     assert [scene.name for scene in load.load(with_examples()).scenes][-len(names) :] == (names)
 
 
-@pytest.mark.parametrize("scene", ["double", "corridor"])
-def test_a_new_box_runs_the_jobs_and_makes_the_tables_that_the_page_says(scene, dry):
-    rules, files = Counter(), set()
+def test_a_new_box_runs_the_jobs_that_the_page_says(dry):
+    rules = Counter()
     for job in re.split(r"^(?:local)?rule ", dry[()], flags=re.MULTILINE)[1:]:
-        if re.search(rf"^    wildcards: scene={scene}\b", job, re.MULTILINE):
+        if re.search(r"^    wildcards: scene=corridor\b", job, re.MULTILINE):
             rules[job.partition(":")[0]] += 1
-            files |= set(re.findall(rf"results/{scene}/\w+\.csv", re.search("output: .+", job)[0]))
     said = Counter()
-    text = page("docs/add-a-box.md")
-    (rows,) = re.findall(rf"\| jobs in `{scene}` \|.*\n\|---.*\n((?:\|.*\n)+)", text)
-    watched = load.load(with_examples()).folders[scene].quantities.names
+    (rows,) = re.findall(
+        r"\| jobs in `corridor` \|.*\n\|---.*\n((?:\|.*\n)+)", page("docs/add-a-box.md")
+    )
+    watched = load.load(with_examples()).folders["corridor"].quantities.names
     called = sum(entry.is_called(watched) for entry in FIGURES.values())
     for row in rows.splitlines():
         names, number, _ = row.strip("|").split("|")
-        number = called if number.strip() == "one each" else int(number.split()[0])
+        number = called if number.strip() == "one each" else int(number)
         said.update(dict.fromkeys(re.findall(r"`(\w+)`", names), number))
     assert said == rules
-    listed = re.findall(rf"^results/{scene}/.+\.csv$", text, re.MULTILINE)
-    assert len(listed) == len(set(listed))
-    assert set(listed) == files
 
 
 # The check ----------------------------------------------------------------------------------------
