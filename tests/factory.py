@@ -6,11 +6,10 @@ from functools import cached_property
 
 import numpy as np
 
-from twodiscs.comparison.tables.theory import Theory
+from twodiscs.comparison.scene_tables import Theory
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
-from twodiscs.points.base import content_of, with_arrays
-from twodiscs.points.digests import write_json
+from twodiscs.points.base import content_of, with_arrays, write_json
 from twodiscs.points.dynamics import DynamicsPoint
 from twodiscs.points.intervals import IntervalsPoint, WideBins
 from twodiscs.points.monte_carlo import Hits, MonteCarloPoint

@@ -24,9 +24,9 @@ from twodiscs.model.checks import InputError
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
-from twodiscs.points.digests import read_json
+from twodiscs.points.base import read_json
 from twodiscs.sampling import montecarlo
-from twodiscs.theory import exact, laws, tails, virial
+from twodiscs.theory import exact, laws, virial
 from twodiscs_paper.configuration import load
 
 BOX = Box(1.5, 1.0)
@@ -53,8 +53,8 @@ CALLS = [
     (exact.shell_expectation, {"scene": PAPER, "event": "top_wall", "epsilon": 0.01}),
     (laws.small_radius_time, {"box": BOX, "event": "any_wall", "radius": 0.1}),
     (laws.leading_law, {"box": BOX, "event": "any_wall"}),
-    (tails.density_at_zero, {"scene": PAPER, "hop": "vertical_hop"}),
-    (tails.tail_constant, {"scene": PAPER, "event": "vertical_hop"}),
+    (laws.density_at_zero, {"scene": PAPER, "hop": "vertical_hop"}),
+    (laws.tail_constant, {"scene": PAPER, "event": "vertical_hop"}),
     (montecarlo.sample_point, POINT),
     (montecarlo.conditioned_point, POINT),
     (montecarlo.shell_thickness, {"scene": PAPER, "event": "top_wall", "fraction": 0.02}),

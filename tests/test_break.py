@@ -16,7 +16,7 @@ from scipy.stats import binomtest, chi2, norm
 import twodiscs as td
 from twodiscs.model.events import HOPS
 from twodiscs.theory.exact import events_per_interval
-from twodiscs.theory.many.methods import method
+from twodiscs.theory.n_discs import method
 
 #: Two-sided, at 5 sigma.
 ALARM = 2 * norm.sf(5)

@@ -18,12 +18,11 @@ from hypothesis import strategies as st
 
 import twodiscs as td
 from twodiscs import cli
-from twodiscs.comparison.measured.measurements import Measurement, measurement
+from twodiscs.comparison.measurements import Measurement, measurement
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.dynamics.trajectory import state_of
-from twodiscs.figures.kit import style
-from twodiscs.figures.kit.looks import LOOKS
-from twodiscs.figures.motion import animation
+from twodiscs.figures import animation, style
+from twodiscs.figures.style import LOOKS
 from twodiscs.model.box import Box
 from twodiscs.sampling.starts import components
 from twodiscs_paper.configuration import load
@@ -139,7 +138,7 @@ def test_results_are_those_of_the_pipeline(simulated, sampled, intervals, trajec
 
 def test_seeds_tell_methods_boxes_and_radii_apart():
     """A scan with one seed has independent errors, unless the scene has a name."""
-    from twodiscs.comparison.measured.measurements import seed_of
+    from twodiscs.comparison.result import seed_of
 
     scenes = [SCENE, SCENE.with_radius(0.1), td.Scene(1.5, 1.1, 0.2), *SCENES.values()]
     found = [seed_of(scene, m, 1, None) for scene in scenes for m in ("dynamics", "monte_carlo")]

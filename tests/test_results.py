@@ -14,12 +14,11 @@ import pandas as pd
 import pytest
 
 import twodiscs as td
-from twodiscs.comparison.measured import progress as progress_module
+from twodiscs.comparison import result as progress_module
 from twodiscs.dynamics import runs
 from twodiscs.model.checks import PRESETS
 from twodiscs.model.effects import EFFECTS
-from twodiscs.points.base import content_of, pieces_of, reached
-from twodiscs.points.digests import write_json
+from twodiscs.points.base import content_of, pieces_of, reached, write_json
 from twodiscs.sampling.blocks.rounds import all_at_once, joined
 
 SCENE = td.Scene(1.5, 1.0, 0.2)

@@ -9,8 +9,8 @@ import re
 import sys
 from pathlib import Path
 
+from twodiscs.figures import style
 from twodiscs.figures.draw import draw as draw_figure
-from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 from twodiscs_paper.catalogue import ENTRIES, TABLES
 from twodiscs_paper.drawings import DRAW

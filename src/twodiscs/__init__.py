@@ -33,24 +33,16 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import Literal, TypedDict
 
-    from twodiscs.comparison.frames import load
-    from twodiscs.comparison.measured.by_quantity import areas, exact, mean_times
-    from twodiscs.comparison.measured.measurements import (
-        Intervals,
-        Measurement,
-        Measurements,
-        exact_table,
-        intervals,
-        sample,
-        simulate,
-        starts,
-    )
-    from twodiscs.comparison.measured.observe import Observed, diffusion, observe
-    from twodiscs.comparison.measured.pressure import free_energy, pressure
-    from twodiscs.comparison.measured.saved import load_result
-    from twodiscs.comparison.measured.scan import Scan, scan
-    from twodiscs.comparison.measured.trajectory import Trajectory, trajectory
-    from twodiscs.comparison.measured.transmission import Transmission, transmission
+    from twodiscs.comparison.intervals import Intervals, intervals
+    from twodiscs.comparison.load import load, load_result
+    from twodiscs.comparison.measurements import Measurement, Measurements, sample, simulate
+    from twodiscs.comparison.observe import Observed, diffusion, observe
+    from twodiscs.comparison.pressure import free_energy, pressure
+    from twodiscs.comparison.quantities import areas, exact, exact_table, mean_times
+    from twodiscs.comparison.scan import Scan, scan
+    from twodiscs.comparison.states import starts
+    from twodiscs.comparison.trajectory import Trajectory, trajectory
+    from twodiscs.comparison.transmission import Transmission, transmission
     from twodiscs.figures.plot import animate, plot
     from twodiscs.model.box import Box
     from twodiscs.model.checks import InputError
@@ -101,17 +93,16 @@ __version__ = "0.2.0"
 
 #: {module: its names}; a module is imported at the first use of one of them (PEP 562).
 _NAMES = {
-    "comparison.frames": "load",
-    "comparison.measured.by_quantity": "areas exact mean_times",
-    "comparison.measured.measurements": (
-        "Intervals Measurement Measurements exact_table intervals sample simulate starts"
-    ),
-    "comparison.measured.observe": "Observed diffusion observe",
-    "comparison.measured.pressure": "free_energy pressure",
-    "comparison.measured.saved": "load_result",
-    "comparison.measured.scan": "Scan scan",
-    "comparison.measured.trajectory": "Trajectory trajectory",
-    "comparison.measured.transmission": "Transmission transmission",
+    "comparison.intervals": "Intervals intervals",
+    "comparison.load": "load load_result",
+    "comparison.measurements": "Measurement Measurements sample simulate",
+    "comparison.observe": "Observed diffusion observe",
+    "comparison.pressure": "free_energy pressure",
+    "comparison.quantities": "areas exact exact_table mean_times",
+    "comparison.scan": "Scan scan",
+    "comparison.states": "starts",
+    "comparison.trajectory": "Trajectory trajectory",
+    "comparison.transmission": "Transmission transmission",
     "figures.plot": "animate plot",
     "model.box": "Box",
     "model.checks": "InputError",

@@ -180,7 +180,7 @@ def _exact(scene, options):
 
     numbers = exact(scene)
     if options.csv:
-        from twodiscs.comparison.tables.theory import Theory
+        from twodiscs.comparison.scene_tables import Theory
         from twodiscs.model.box import Box
 
         _print_csv(Theory.rows(Box.of(scene), [scene.radius]))

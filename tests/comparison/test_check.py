@@ -8,13 +8,16 @@ import pytest
 from effect_scenes import SCENES
 from factory import BOX, RADII, Laws, rows_of, scenes, theory_rows
 
-from twodiscs.comparison import check, scores
-from twodiscs.comparison.tables import monte_carlo
-from twodiscs.comparison.tables.check import Check
-from twodiscs.comparison.tables.hop_histogram import HopHistogram
-from twodiscs.comparison.tables.mean_times import MeanTimes
-from twodiscs.comparison.tables.monte_carlo import Areas, Volume
-from twodiscs.comparison.tables.theory import ExactValues, Theory
+from twodiscs.comparison import check, scene_tables, scores
+from twodiscs.comparison.scene_tables import (
+    Areas,
+    Check,
+    ExactValues,
+    HopHistogram,
+    MeanTimes,
+    Theory,
+    Volume,
+)
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
@@ -126,7 +129,7 @@ def test_false_alarms_are_as_rare_as_stated(laws, theory, monkeypatch):
         probability, measure, _ = shells[scene.radius, event]
         return probability * measure
 
-    monkeypatch.setattr(monte_carlo, "shell_expectation", shell_expectation)
+    monkeypatch.setattr(scene_tables, "shell_expectation", shell_expectation)
     rng = np.random.default_rng(2)
     chosen = [law for law in laws if law.scene.radius in radii]
     alarms = 0
@@ -168,7 +171,7 @@ def test_an_area_off_by_one_percent_is_named(points, theory, event, monkeypatch)
     def shell_expectation(scene, name, epsilon):
         return exact.shell_expectation(scene, name, epsilon) * (1.01 if name == event else 1)
 
-    monkeypatch.setattr(monte_carlo, "shell_expectation", shell_expectation)
+    monkeypatch.setattr(scene_tables, "shell_expectation", shell_expectation)
     found = failed(table_of(points, theory))
     radii = possible_radii(event) if event in HOPS else set(RADII)
     assert {("area", f"{event}_area", radius) for radius in radii} <= found

@@ -10,15 +10,13 @@ import scalar_many
 from factory import POINTS, through_json
 
 import twodiscs as td
-from twodiscs.comparison.measured.measurements import Measurements
-from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.measurements import Measurements
+from twodiscs.comparison.scene_tables import SCENE_TABLES, Check, Theory
 from twodiscs.comparison.scores import FALSE_ALARM, bonferroni_bound
-from twodiscs.comparison.tables.check import Check
-from twodiscs.comparison.tables.theory import Theory
 from twodiscs.dynamics import counting, intervals
 from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
 from twodiscs.dynamics.many import lockstep as many
-from twodiscs.figures.motion.many import colours
+from twodiscs.figures.motion import colours
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import AXIS, EVENTS, SHELLS, WALLS

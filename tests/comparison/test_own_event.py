@@ -15,8 +15,7 @@ LAST = '        Event("any_wall", "walls"),\n'
 #: Scenes whose walls have different multiplicities, and more discs with and without exact values.
 MEASURED = """
 import sys
-from twodiscs.comparison.tables.check import Check
-from twodiscs.comparison.tables.theory import Theory
+from twodiscs.comparison.scene_tables import Check, Theory
 from twodiscs.dynamics import counting
 from twodiscs.model.box import Box
 from twodiscs.model.events import DECLARED

@@ -9,8 +9,7 @@ from factory import BOX, Laws, counts_point, rows_of, theory_rows
 from scipy.special import ndtri, stdtr
 
 import twodiscs as td
-from twodiscs.comparison.tables.hop_histogram import HopHistogram
-from twodiscs.comparison.tables.mean_times import MeanTimes
+from twodiscs.comparison.scene_tables import HopHistogram, MeanTimes
 from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene

@@ -19,12 +19,18 @@ from factory import (
     theory_rows,
 )
 
-from twodiscs.comparison.scene_tables import SCENE_TABLES
-from twodiscs.comparison.tables.cost import Cost
-from twodiscs.comparison.tables.hop_histogram import HopHistogram
-from twodiscs.comparison.tables.mean_times import MeanTimes, rows_without_strips
-from twodiscs.comparison.tables.monte_carlo import Areas, Volume, _row
-from twodiscs.comparison.tables.theory import Grid, Theory
+from twodiscs.comparison.scene_tables import (
+    SCENE_TABLES,
+    Areas,
+    Cost,
+    Grid,
+    HopHistogram,
+    MeanTimes,
+    Theory,
+    Volume,
+    _sampled_row,
+    rows_without_strips,
+)
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
@@ -146,7 +152,7 @@ def test_only_watched_areas_have_rows(theory, laws):
 
 def part_row(hits, samples, expectation=0.5, exact=0.5):
     point = hits_point(samples=samples, it=hits)
-    return _row(point, "it", point.sampled("it"), exact, expectation)
+    return _sampled_row(point, "it", point.sampled("it"), exact, expectation)
 
 
 @pytest.mark.parametrize(

@@ -3,21 +3,15 @@
 import math
 import subprocess
 import sys
-from importlib import import_module
 from inspect import isclass
-from pathlib import Path
 
 import numpy as np
 import pytest
 from made import described_table
 
-from twodiscs.comparison import frames
-from twodiscs.comparison.scene_tables import SCENE_TABLES
-from twodiscs.comparison.tables import base
-from twodiscs.comparison.tables.base import RADIUS, TEXT, TIME, Column, Table, Z
-from twodiscs.comparison.tables.check import Check
-from twodiscs.comparison.tables.cost import Cost
-from twodiscs.comparison.tables.theory import Theory
+from twodiscs.comparison import load, scene_tables
+from twodiscs.comparison.scene_tables import SCENE_TABLES, Check, Cost, Theory
+from twodiscs.comparison.table import RADIUS, TEXT, TIME, Column, Table, Z
 from twodiscs.model.plugins import plugin
 
 EVERY_TABLE = plugin("tables")
@@ -87,8 +81,7 @@ def test_every_column_is_described_on_a_line_of_its_own():
 def test_every_table_of_a_scene_is_known_and_makes_its_rows():
     declared = {
         table.name()
-        for path in Path(base.__file__).parent.glob("*.py")
-        for table in vars(import_module(f"{base.__package__}.{path.stem}")).values()
+        for table in vars(scene_tables).values()
         if isclass(table) and issubclass(table, Table)
     }
     assert declared - {"table"} == {*SCENE_TABLES}
@@ -216,7 +209,7 @@ def test_columns_that_the_table_does_not_know_are_left_out(tmp_path):
     assert Theory.read(tmp_path / "theory.csv") == [
         {"radius": 0.1, "quantity": "volume", "exact": 1.0}
     ]
-    assert list(frames.read(tmp_path / "theory.csv", Theory)) == ["radius", "quantity", "exact"]
+    assert list(load.read(tmp_path / "theory.csv", Theory)) == ["radius", "quantity", "exact"]
 
 
 def test_a_truth_value_is_spelled_in_one_way(tmp_path):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import twodiscs as td
-from twodiscs.comparison.measured import transmission
+from twodiscs.comparison import transmission
 from twodiscs.comparison.scores import student_deviate
 from twodiscs.dynamics.two.passages import HOPS_OF_BLOCK, LARGEST, SUMS, cluster_sizes, hop_sums
 from twodiscs.points.estimates import Estimate

@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from twodiscs.comparison.tables.mean_times import MeanTimes
-from twodiscs.comparison.tables.theory import Theory
+from twodiscs.comparison.scene_tables import MeanTimes, Theory
 from twodiscs.dynamics import counting
 from twodiscs.model.box import Box
 from twodiscs.model.events import SHELLS

@@ -19,9 +19,8 @@ from twodiscs.dynamics.many import kernels
 from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.events import SHELLS
 from twodiscs.model.scene import Scene
-from twodiscs.theory.flux import constant
-from twodiscs.theory.many import channel
-from twodiscs.theory.many.rates import rates
+from twodiscs.theory import channel
+from twodiscs.theory.virial import flux_constant, rates
 
 #: B_k/B_2^(k−1) for k = 1 … 10: Tonks (1936) and Rowlinson (1964) for 3 and 4, above them Clisby
 #: and McCoy, J. Stat. Phys. 122, 15 (2006), Table 1.
@@ -56,7 +55,7 @@ def forces(discs, width, height, events, seed, periodic="", replicas=64):
     mean = sums[walls] / replicas
     second = np.triu(products) + np.triu(products, 1).T
     covariance = (second[np.ix_(walls, walls)] / replicas - np.outer(mean, mean)) / (replicas - 1)
-    unit = duration * constant(scene.velocity_components) * size
+    unit = duration * flux_constant(scene.velocity_components) * size
     return mean / unit, covariance / unit**2
 
 

@@ -16,8 +16,8 @@ from twodiscs.points.intervals import GROWTH
 from twodiscs.sampling.blocks import rounds
 from twodiscs.sampling.many import initial, insertions
 from twodiscs.theory.exact import mean_times
-from twodiscs.theory.many.rates import rates
-from twodiscs.theory.tails import density_at_zero
+from twodiscs.theory.laws import density_at_zero
+from twodiscs.theory.virial import rates
 
 PAPER = Scene(1.5, 1.0, 0.2)
 

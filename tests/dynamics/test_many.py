@@ -16,8 +16,8 @@ from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.events import AXIS, EVENTS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial, insertions
-from twodiscs.theory.many import methods
-from twodiscs.theory.many.rates import rates, virial_sum, virial_weights
+from twodiscs.theory import n_discs
+from twodiscs.theory.virial import rates, virial_sum, virial_weights
 
 
 def counted(scene, blocks, seed=1, events=None):
@@ -62,7 +62,7 @@ SLOW = pytest.param("eight, rough, in a channel", marks=pytest.mark.slow)
 def test_rates_are_exact(name):
     scene = EXACT[name]
     found, errors, covariance = counted(scene, 6)
-    check(scene, found, errors, rates(scene, methods.known_derivatives(scene)))
+    check(scene, found, errors, rates(scene, n_discs.known_derivatives(scene)))
     weights = np.array([virial_weights(scene).get(event, 0.0) for event in SHELLS])
     error = math.sqrt(weights @ covariance @ weights)
     assert abs(virial_sum(scene, found) - 1) < 5 * error

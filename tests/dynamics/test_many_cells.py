@@ -15,8 +15,8 @@ from twodiscs.model.events import SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial
 from twodiscs.sampling.many.cells import grid_of
-from twodiscs.theory.many import methods
-from twodiscs.theory.many.rates import rates, virial_weights
+from twodiscs.theory import n_discs
+from twodiscs.theory.virial import rates, virial_weights
 
 
 def counts_of(scene, seed, replicas, events, epochs=7.3):
@@ -60,7 +60,7 @@ THREE = [
 def test_rates_are_exact(scene):
     """Five sigma on every class, with as few cells as there may be."""
     found, errors = means(*counts_of(scene, 1, 4096, 256), 4096)
-    for event, rate in rates(scene, methods.known_derivatives(scene)).items():
+    for event, rate in rates(scene, n_discs.known_derivatives(scene)).items():
         k = [*SHELLS].index(event)
         assert abs(found[k] - rate) <= 5 * errors[k], (event, found[k], rate, errors[k])
 

@@ -16,8 +16,8 @@ from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.events import SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial
-from twodiscs.theory.many import methods
-from twodiscs.theory.many.rates import rates
+from twodiscs.theory import n_discs
+from twodiscs.theory.virial import rates
 
 FEW = Scene(1.5, 1.0, 0.15, discs=3, friction=4.0)
 CHANNEL = Scene(8.75, 0.6, 0.18, discs=20, friction=4.0)
@@ -33,7 +33,7 @@ def test_no_mean_time_changes(scene):
     assert duration * scene.friction > 3
     sums, products = kernels.run_blocks(scene, 1, 0, 1, duration, replicas=replicas)
     found, relative = sums / replicas / duration, relative_errors(sums, products, replicas)
-    for event, rate in rates(scene, methods.known_derivatives(scene)).items():
+    for event, rate in rates(scene, n_discs.known_derivatives(scene)).items():
         k = [*SHELLS].index(event)
         error = 5 * found[k] * relative[k] if rate else 0.0
         assert abs(found[k] - rate) <= error, (event, found[k], rate, error)

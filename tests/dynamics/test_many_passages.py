@@ -11,11 +11,11 @@ import pytest
 from scalar_bonds import clusters, orders
 from scipy.stats import f
 
-from twodiscs.comparison.measured.transmission import by_clusters, by_time, of_clusters, plateau
+from twodiscs.comparison.transmission import by_clusters, by_time, of_clusters, plateau
 from twodiscs.dynamics.many import passages
 from twodiscs.dynamics.two import passages as of_two
 from twodiscs.model.scene import Scene
-from twodiscs.theory.many import methods
+from twodiscs.theory import n_discs
 
 HOP = "horizontal_hop"
 
@@ -142,8 +142,8 @@ def test_blocks_have_separate_kicks(module):
 def test_the_sampled_rate_of_hops_is_the_exact_one(monkeypatch):
     """Its error is that of 2¹⁴ accepted proposals, and the smaller one of the volume."""
     scene = Scene(2.25, 1.0, 0.2499, discs=3)
-    due = methods.event_rates(scene)[HOP]
-    monkeypatch.setattr(methods, "event_rates", lambda scene: {HOP: None})
+    due = n_discs.event_rates(scene)[HOP]
+    monkeypatch.setattr(n_discs, "event_rates", lambda scene: {HOP: None})
     passages.hop_rate.cache_clear()
     found = passages.hop_rate(scene, HOP)
     passages.hop_rate.cache_clear()

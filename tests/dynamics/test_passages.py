@@ -11,13 +11,7 @@ import numpy as np
 import pytest
 from scalar_passages import clusters, replicas
 
-from twodiscs.comparison.measured.transmission import (
-    by_clusters,
-    by_time,
-    of_clusters,
-    of_order,
-    plateau,
-)
+from twodiscs.comparison.transmission import by_clusters, by_time, of_clusters, of_order, plateau
 from twodiscs.dynamics.ensemble import LANES
 from twodiscs.dynamics.law import WRAP_X
 from twodiscs.dynamics.two import passages
@@ -27,7 +21,7 @@ from twodiscs.model.scene import Scene
 from twodiscs.sampling.prism import prism_of
 from twodiscs.sampling.starts import StartSampler
 from twodiscs.theory import exact
-from twodiscs.theory.flux import constant
+from twodiscs.theory.virial import flux_constant
 
 HOP = "horizontal_hop"
 TIMES = [0.2, 1.0, 5.0, 10.0]
@@ -224,7 +218,7 @@ def test_ratios_of_rates_are_those_of_the_constants():
             exact.passing_rate(Scene(1.5, 1.0, 0.2, periodic=periodic, moment_of_inertia=i), HOP)
             for i in (None, 0.5)
         )
-        due = constant(components) / constant(6)
+        due = flux_constant(components) / flux_constant(6)
         assert smooth / rough == pytest.approx(due, rel=1e-13)
     plain = Scene(1.5, 1.0, 0.2)
     assert exact.passing_rate(plain, HOP) == exact.rate(plain, HOP)

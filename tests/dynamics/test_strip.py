@@ -15,7 +15,7 @@ from twodiscs.dynamics.two import strip
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
-from twodiscs.points.strata import stratified_mean
+from twodiscs.points.estimates import stratified_mean
 from twodiscs.sampling.starts import COMPONENTS, draw_states, start_sampler, states
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact

@@ -5,8 +5,8 @@ from functools import cache
 import pytest
 from figure_cases import BOXES, PAPER, draw, tables_of, unclear
 
+from twodiscs.figures import style
 from twodiscs.figures.catalogue import FIGURES
-from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 
 #: Boxes where labels could meet, and of any size.

@@ -14,9 +14,8 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import twodiscs as td
-from twodiscs.figures.kit import curves, panels, style
-from twodiscs.figures.kit.looks import LOOKS, name_of
-from twodiscs.figures.motion import animation
+from twodiscs.figures import animation, curves, panels, style
+from twodiscs.figures.style import LOOKS, name_of
 from twodiscs.model.box import Box
 
 HOPS, COLLISIONS = "vertical_hop", "disc_collision"

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from figure_cases import BOXES, PAPER, bars, covered, draw, points, simulated, tables_of, unclear
 
-from twodiscs.figures import radius
+from twodiscs.figures import curves, radius, style
 from twodiscs.figures.catalogue import FIGURES
-from twodiscs.figures.kit import curves, style
 from twodiscs.model.box import Box
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import leading_law, small_radius_time
@@ -101,7 +100,7 @@ def test_the_legend_leaves_out_what_is_never_seen():
     with style.context():
         main = draw("mean_wall_time", box, {"mean_times": rows}).axes[0]
     legend = main.get_legend()
-    names = radius.WALLS["right_wall"], radius.WALLS["any_wall"]
+    names = radius.WALL_NAMES["right_wall"], radius.WALL_NAMES["any_wall"]
     assert tuple(text.get_text() for text in legend.get_texts()) == names
     shown = [(handle.get_color(), handle.get_marker()) for handle in legend.legend_handles]
     assert shown == [style.SERIES[0], style.SERIES[2]]

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from figure_cases import PAPER, bars, draw, points, tables_of
 
-from twodiscs.comparison.measured.transmission import box_time
 from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.transmission import box_time
+from twodiscs.figures import curves, style
 from twodiscs.figures.catalogue import FIGURES
-from twodiscs.figures.kit import curves, style
-from twodiscs.figures.kit.looks import LOOKS
+from twodiscs.figures.style import LOOKS
 from twodiscs.model.events import HOPS, SHELLS
 from twodiscs.theory import exact, laws, virial
 from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES

@@ -8,8 +8,8 @@ import pytest
 from typst import TypstError
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.figures import style
 from twodiscs.figures.catalogue import FIGURES
-from twodiscs.figures.kit import style
 from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES
 from twodiscs_paper.pipeline.documents import manuscript
 

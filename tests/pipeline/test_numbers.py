@@ -10,9 +10,7 @@ import numpy as np
 import pytest
 import typst
 
-from twodiscs.comparison.scene_tables import SCENE_TABLES
-from twodiscs.comparison.tables.mean_times import MeanTimes
-from twodiscs.comparison.tables.theory import Theory
+from twodiscs.comparison.scene_tables import SCENE_TABLES, MeanTimes, Theory
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.model.events import EVENTS
 from twodiscs.points.base import pieces_of, reached

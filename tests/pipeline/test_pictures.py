@@ -4,8 +4,8 @@ import pytest
 from figure_cases import PAPER, draw, tables_of, unclear
 from pictures import HEIGHT, PANELS, keep_panel
 
+from twodiscs.figures import style
 from twodiscs.figures.catalogue import FIGURES
-from twodiscs.figures.kit import style
 from twodiscs_paper.catalogue import STUDY_FIGURES
 
 

@@ -9,7 +9,7 @@ from browser import ABSENT, BROWSER, browser
 from checkout import REPOSITORY
 from PIL import Image, ImageDraw
 
-from twodiscs.comparison.tables.mean_times import MeanTimes
+from twodiscs.comparison.scene_tables import MeanTimes
 from twodiscs_paper.pipeline.documents.report import (
     KEY,
     KEY_OF_ALL,

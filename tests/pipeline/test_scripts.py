@@ -13,7 +13,7 @@ from snakemake.iocontainers import Namedlist
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.dynamics.runs import run_of
 from twodiscs.model.checks import InputError
-from twodiscs.points.digests import digest, read_json, write_json
+from twodiscs.points.base import digest, read_json, write_json
 from twodiscs_paper.pipeline import job
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "workflow" / "scripts"

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from twodiscs.model.checks import InputError
-from twodiscs.points.digests import KEY, read_json, write_json
+from twodiscs.points.base import KEY, read_json, write_json
 
 CONTENT = {"radius": 0.1, "counts": {"hop": 2**62 + 1}, "mean": 0.1 + 0.2, "sums": [[1, 2], [3]]}
 SENTENCE = "is not what its job wrote; delete it, and it is made again"

@@ -9,7 +9,7 @@ import pytest
 from factory import BOX, POINTS, Laws, bins_point, counts_point, hits_point
 
 import twodiscs as td
-from twodiscs.comparison.tables.base import by_radius
+from twodiscs.comparison.table import by_radius
 from twodiscs.model.checks import InputError
 from twodiscs.points.dynamics import StripCount
 from twodiscs.points.intervals import WideBins

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import betainc
 
-from twodiscs.points.strata import (
+from twodiscs.points.estimates import (
     LEAST_FRACTION,
     PARTS,
     fraction_below,

@@ -9,7 +9,7 @@ import pytest
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial
 from twodiscs.sampling.streams import open_stream
-from twodiscs.theory.many import methods
+from twodiscs.theory import n_discs
 
 GASES = {
     "rejection": Scene(1.5, 1.0, 0.16, discs=5),
@@ -122,7 +122,7 @@ def test_mean_room_in_a_channel():
         heights = np.take_along_axis(y, order, 0)
         taken = np.sqrt(scene.contact_distance**2 - np.diff(heights, axis=0) ** 2).sum(0)
         seen = 1 / (scene.range_x - taken)
-        true = methods.known_derivatives(scene, hops=False).per_width / scene.discs
+        true = n_discs.known_derivatives(scene, hops=False).per_width / scene.discs
         # The inverse has a finite variance for N ≥ 2.
         assert abs(seen.mean() - true) < 5 * seen.std() / math.sqrt(seen.size)
 

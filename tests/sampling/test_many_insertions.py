@@ -8,7 +8,7 @@ import pytest
 from twodiscs.model.checks import InputError
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import insertions
-from twodiscs.theory.many import methods
+from twodiscs.theory import n_discs
 
 GASES = [
     Scene(1.5, 1.0, 0.2, discs=2),
@@ -25,7 +25,7 @@ GASES = [
 def test_volume_and_areas_are_exact(scene):
     """Five sigma of each."""
     found, errors = insertions.sample(scene, 200_000, 2)
-    for value, error, true in zip(found, errors, methods.known_derivatives(scene), strict=True):
+    for value, error, true in zip(found, errors, n_discs.known_derivatives(scene), strict=True):
         assert abs(value - true) <= 5 * error
         assert error > 0 or true == 0
 
@@ -77,13 +77,13 @@ def test_where_a_draw_fits_once_in_a_million():
     """And the error is still a few per cent."""
     scene = Scene(1.5, 1.0, 0.28, discs=3)
     free = (
-        np.exp(methods.known_derivatives(scene).log_volume) / (scene.range_x * scene.range_y) ** 3
+        np.exp(n_discs.known_derivatives(scene).log_volume) / (scene.range_x * scene.range_y) ** 3
     )
     assert free < 1e-4
     found, errors = insertions.sample(scene, 2_000_000, 1)
     assert errors.log_volume < 0.05
     assert (
-        abs(found.log_volume - methods.known_derivatives(scene).log_volume) < 5 * errors.log_volume
+        abs(found.log_volume - n_discs.known_derivatives(scene).log_volume) < 5 * errors.log_volume
     )
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from figure_cases import bars, points
 
-from twodiscs.figures.kit import style
-from twodiscs.figures.kit.looks import LOOKS
+from twodiscs.figures import style
+from twodiscs.figures.style import LOOKS
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.scene import Scene

@@ -14,11 +14,11 @@ import pytest
 from factory import written
 
 from twodiscs.dynamics import intervals
-from twodiscs.figures.kit import style
+from twodiscs.figures import style
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
-from twodiscs.theory import tails
+from twodiscs.theory import laws
 from twodiscs_paper.studies.distributions import figure
 from twodiscs_paper.studies.distributions import measure as distributions
 from twodiscs_paper.studies.distributions.study import Distributions
@@ -180,11 +180,11 @@ def test_what_is_measured_meets_what_is_exact(box, radius, hop):
     room = min(box) - 4 * radius if hop == "horizontal_hop" and box[0] > box[1] else 1
     if room > 0.5:
         zero = by_name["density_at_zero", False]
-        assert zero["reference"] == tails.density_at_zero(scene, hop)
+        assert zero["reference"] == laws.density_at_zero(scene, hop)
         assert abs(zero["z"]) < 5
     passage, cut = by_name["first_passage", True], by_name["first_passage", False]
     assert cut["estimate"] <= passage["estimate"]
-    cubic = tails.tail_constant(scene, hop) > 0
+    cubic = laws.tail_constant(scene, hop) > 0
     assert (passage["z"] is None) == cubic
 
 

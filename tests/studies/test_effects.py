@@ -10,12 +10,11 @@ from factory import Laws, written
 from figure_cases import shown_texts, unclear
 from matplotlib.colors import to_rgba
 
-from twodiscs.comparison.tables.mean_times import MeanTimes
-from twodiscs.comparison.tables.theory import Theory
+from twodiscs.comparison.scene_tables import MeanTimes, Theory
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.trajectory import follow
-from twodiscs.figures.kit import curves, style
+from twodiscs.figures import curves, style
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, WALLS
 from twodiscs.model.radii import key, stream_seed
@@ -23,7 +22,7 @@ from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.sampling.starts import draw_states, start_sampler
 from twodiscs.sampling.streams import open_stream
-from twodiscs.theory import exact, tails
+from twodiscs.theory import exact, laws
 from twodiscs_paper import benchmark
 from twodiscs_paper.configuration.load import load, read
 from twodiscs_paper.studies.effects import cost, figure
@@ -184,7 +183,7 @@ def test_rows_of_shares(rows):
     assert rows[5]["estimate"] is None
     # P(none within t) is the integral of P(T > s)/τ beyond t, with P → C/s³.
     scene, s = PLAIN.scene(0.24), np.geomspace(100.0, 1e7, 4001)
-    tail = tails.tail_constant(scene, "disc_collision") / s**3
+    tail = laws.tail_constant(scene, "disc_collision") / s**3
     assert smooth["plain"] == pytest.approx(
         np.trapezoid(tail * s, np.log(s)) / exact.mean_times(scene)["disc_collision"], rel=1e-4
     )

@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from twodiscs.dynamics.two.passages import HOPS_OF_BLOCK
-from twodiscs.points.digests import read_json
+from twodiscs.points.base import read_json
 from twodiscs_paper.studies.passages import measure as passages
 from twodiscs_paper.studies.passages.study import Passages
 from twodiscs_paper.studies.tails import measure as tails

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from twodiscs.comparison.measured.transmission import by_clusters, of_clusters, plateau
+from twodiscs.comparison.transmission import by_clusters, of_clusters, plateau
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.two.passages import cluster_sizes, initial_states
 from twodiscs.dynamics.two.path import time_to_next
-from twodiscs.figures.kit import style
+from twodiscs.figures import style
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import Estimate, LinearFit, mean_of

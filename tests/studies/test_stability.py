@@ -9,9 +9,8 @@ from matplotlib.text import Text
 from mpmath import mpf
 
 from twodiscs.comparison import scores
-from twodiscs.comparison.tables.monte_carlo import Volume
-from twodiscs.comparison.tables.theory import Theory
-from twodiscs.figures.kit import style
+from twodiscs.comparison.scene_tables import Theory, Volume
+from twodiscs.figures import style
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, SHELLS
 from twodiscs.sampling import montecarlo

@@ -22,7 +22,7 @@ from twodiscs.sampling import starts
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
-from twodiscs.theory.tails import tail_constant
+from twodiscs.theory.laws import tail_constant
 from twodiscs_paper.studies.tails import measure as tails
 from twodiscs_paper.studies.tails.study import Tails
 

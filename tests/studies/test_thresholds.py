@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from factory import written
 
-from twodiscs.comparison.tables.mean_times import MeanTimes
-from twodiscs.figures.kit import style
+from twodiscs.comparison.scene_tables import MeanTimes
+from twodiscs.figures import style
 from twodiscs.model.box import Box
 from twodiscs.theory import exact, laws
 from twodiscs_paper.studies.distributions.study import Distributions

@@ -12,7 +12,7 @@ from theory.antiderivatives import DIGITS, Profile, lengths, reference, relative
 
 from twodiscs.model.events import AXIS, EVENTS, HOPS, WALLS
 from twodiscs.model.scene import Scene
-from twodiscs.theory import exact, flux, weighted
+from twodiscs.theory import exact, virial, weighted
 
 BOUND = 1e-13
 
@@ -108,7 +108,7 @@ def test_scenes_with_effects_are_handed_over_to_the_weighted_theory():
     assert exact.areas(scene) == weighted.areas(scene)
     assert list(exact.areas(scene)) == list(EVENTS)
     times = exact.exact(scene)["mean_times"]
-    per_area = flux.constant(4) / weighted.volume(scene)
+    per_area = virial.flux_constant(4) / weighted.volume(scene)
     for event, area in weighted.areas(scene).items():
         expected = area * per_area / (1 if event in HOPS else 2)
         assert exact.rate(scene, event) == pytest.approx(expected, rel=1e-15)

@@ -8,8 +8,8 @@ from theory.antiderivatives import TURNED
 
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
-from twodiscs.theory import exact, tails
-from twodiscs.theory.tails import density_at_zero, tail_constant
+from twodiscs.theory import exact, laws
+from twodiscs.theory.laws import density_at_zero, tail_constant
 
 BOUND = 1e-13
 PAPER = (1.5, 1.0)
@@ -92,7 +92,7 @@ def test_drifts_last_with_the_exact_probability(axis, radius):
     found = rows_apart(np.random.default_rng(3), height, scene.contact_distance, time, n)
     # Free along the axis, and none of these starts overlaps.
     share = (along * height) ** 2 / exact.volume(scene)
-    due = tails.drift_probability(scene, time, axis) / share
+    due = laws.drift_probability(scene, time, axis) / share
     assert abs(found / n - due) < 5 * math.sqrt(due * (1 - due) / n)
 
 
@@ -102,10 +102,10 @@ def test_the_law_of_drifts_begins_where_they_stay_in_their_square():
     height, sigma = scene.range_y, scene.contact_distance
     least = 2 * (scene.height - 4 * scene.radius)
     share = (scene.range_x * height) ** 2 / exact.volume(scene)
-    due = tails.drift_probability(scene, least) / share
-    assert tails.drift_probability(scene, 1.01 * least) < due * share
+    due = laws.drift_probability(scene, least) / share
+    assert laws.drift_probability(scene, 1.01 * least) < due * share
     with pytest.raises(ValueError, match="time must be at least"):
-        tails.drift_probability(scene, 0.999 * least)
+        laws.drift_probability(scene, 0.999 * least)
     found = rows_apart(np.random.default_rng(4), height, sigma, least, n) / n
     assert abs(found - due) < 5 * math.sqrt(due * (1 - due) / n)
     early = rows_apart(np.random.default_rng(5), height, sigma, least / 2, n) / n
@@ -114,10 +114,10 @@ def test_the_law_of_drifts_begins_where_they_stay_in_their_square():
 
 def test_drifts_make_the_bound_of_the_tail():
     scene, time = Scene(1.5, 1.0, 0.1), 50.0
-    both = sum(tails.drift_probability(scene, time, axis) for axis in "xy")
+    both = sum(laws.drift_probability(scene, time, axis) for axis in "xy")
     tau = exact.mean_times(scene)["disc_collision"]
     assert 2 * tau * both / time == pytest.approx(
-        tails.tail_constant(scene, "disc_collision") / time**3, rel=1e-13
+        laws.tail_constant(scene, "disc_collision") / time**3, rel=1e-13
     )
     with pytest.raises(ValueError, match="time must be at least"):
-        tails.drift_probability(scene, 0.1)
+        laws.drift_probability(scene, 0.1)

@@ -22,7 +22,7 @@ from theory.antiderivatives import TURNED, relative_error
 
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
-from twodiscs.theory import exact, flux, weighted
+from twodiscs.theory import exact, virial, weighted
 
 BOUND = 1e-13
 
@@ -242,10 +242,10 @@ def test_constant():
         power = mpf(components - 2)
         mean = mp.quad(lambda a, p=power: mp.cos(a) * mp.sin(a) ** p, [0, mp.pi / 2])
         mean /= mp.quad(lambda a, p=power: mp.sin(a) ** p, [0, mp.pi / 2])
-        assert relative_error(flux.constant(components), mean) < 1e-15
-    assert math.isclose(flux.constant(4) / 2, 2 / (3 * math.pi), rel_tol=1e-15)
+        assert relative_error(virial.flux_constant(components), mean) < 1e-15
+    assert math.isclose(virial.flux_constant(4) / 2, 2 / (3 * math.pi), rel_tol=1e-15)
     with pytest.raises(ValueError, match="components must be an integer"):
-        flux.constant(2.5)
+        virial.flux_constant(2.5)
 
 
 BOXES = [(1.5, 1.0), (1.0, 1.0), (1.0, 2.0), (3.0, 1.0), (1e6, 1.0)]
@@ -594,7 +594,7 @@ def test_flux(scene):
     """
     for number, event in enumerate(scene.events):
         found, error = flux_of_throws(scene, event, 0.02, 300_000, number)
-        expected = flux.constant(scene.velocity_components) / 2
+        expected = virial.flux_constant(scene.velocity_components) / 2
         expected *= weighted.shell_expectation(scene, event, 0.02) * (2 if event in HOPS else 1)
         assert (error > 0) or not scene.is_possible(event)
         assert abs(found - expected) <= 5 * error, event

@@ -8,7 +8,7 @@ import pytest
 from checkout import fresh
 
 from twodiscs.figures.catalogue import FIGURES
-from twodiscs.points.digests import read_json
+from twodiscs.points.base import read_json
 
 #: Files with wall-clock seconds, or the date.
 TIMED = (
@@ -80,7 +80,7 @@ def test_on_one_core_and_by_snakemakes_other_memory_the_bytes_are_the_same(
 
 def test_a_formula_off_by_one_percent_fails_the_check_and_is_named(built):
     wrong = '"exact": 1.01 * x if q == "disc_collision_time" else x}'
-    built.replace("src/twodiscs/comparison/tables/theory.py", '"exact": x}', wrong)
+    built.replace("src/twodiscs/comparison/scene_tables.py", '"exact": x}', wrong)
     # Points do not change: exact values are made again, and all comparisons with them.
     again = "--rerun-triggers", "mtime", "--forcerun", "exact"
     run = built.snakemake("--cores", "2", *again, "--", "check", passes=False)

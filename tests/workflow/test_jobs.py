@@ -100,7 +100,7 @@ def test_edit_of_the_script_of_points_makes_them_again(built):
 
 def test_edit_of_how_figures_look_redraws_all_of_them_and_computes_nothing(built):
     drawn = [job for job in built.results() if job.endswith(".png")]
-    built.edit("src/twodiscs/figures/kit/style.py", CODE)
+    built.edit("src/twodiscs/figures/style.py", CODE)
     jobs = built.jobs()
     assert {rule for rule, _ in jobs} == {
         *("figure", "shared_figure", "animate", "paper", "report", "manifest", "provenance"),
@@ -109,7 +109,7 @@ def test_edit_of_how_figures_look_redraws_all_of_them_and_computes_nothing(built
 
 
 def test_edit_of_columns_makes_tables_again_and_computes_nothing(built):
-    built.edit("src/twodiscs/comparison/tables/base.py", CODE)
+    built.edit("src/twodiscs/comparison/table.py", CODE)
     rules = {rule for rule, _ in built.jobs()}
     assert {"exact", "trajectory", "table", "check", "figure", "study_table", "paper"} <= rules
     assert not COUNTED & rules

@@ -6,7 +6,7 @@ import pytest
 import yaml
 from checkout import BELOW, Checkout, use
 
-from twodiscs.points.digests import read_json
+from twodiscs.points.base import read_json
 from twodiscs_paper.configuration.load import load
 
 TINY = {

@@ -18,7 +18,7 @@ import yaml
 from checkout import Checkout
 
 from twodiscs.model.checks import InputError
-from twodiscs.points.digests import read_json
+from twodiscs.points.base import read_json
 from twodiscs_paper.catalogue import is_reproducible
 
 BUILD = {

@@ -78,9 +78,9 @@ CODE = {
     "benchmark": modules("twodiscs_paper/benchmark.py"),
 }
 # Tables of studies have exact curves, too, which figures draw.
-CURVES = [f"twodiscs/figures/kit/{name}.py" for name in ("curves", "limits")]
+CURVES = "twodiscs/figures/curves.py"
 for name, study in STUDIES.items():
-    shared = "twodiscs_paper/study.py", "twodiscs_paper/reference.py", *CURVES
+    shared = "twodiscs_paper/study.py", "twodiscs_paper/reference.py", CURVES
     own = modules(*shared, f"{study_folder(study)}/**/*.py")
     CODE[name] = [path for path in own if path not in study_figures(study)]
 

@@ -2,11 +2,9 @@
 
 from twodiscs_paper.pipeline.job import start  # isort: split
 
-from twodiscs.figures import draw
-from twodiscs.figures.kit import style
-from twodiscs.figures.motion import animation
+from twodiscs.figures import animation, draw, style
 from twodiscs.model.box import Box
-from twodiscs.points.digests import digest
+from twodiscs.points.base import digest
 from twodiscs_paper.catalogue import STUDY_FIGURES, read_table
 
 start(snakemake.log[0])

@@ -5,8 +5,7 @@ import time
 import twodiscs.sampling.jit  # noqa: F401 - start saves collections of what is imported before it
 from twodiscs.dynamics.runs import KINDS, run_of
 from twodiscs.model.box import Box
-from twodiscs.points.base import content_of, pieces_of
-from twodiscs.points.digests import read_seconds, write_json
+from twodiscs.points.base import content_of, pieces_of, read_seconds, write_json
 from twodiscs.sampling.blocks.rounds import joined
 from twodiscs_paper.pipeline.job import start
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.model.box import Box
-from twodiscs.points.digests import read_seconds
+from twodiscs.points.base import read_seconds
 from twodiscs.points.dynamics import DynamicsPoint
 from twodiscs.points.intervals import IntervalsPoint
 from twodiscs.points.monte_carlo import MonteCarloPoint

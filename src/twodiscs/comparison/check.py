@@ -33,7 +33,7 @@ from twodiscs.model.events import DECLARED
 from twodiscs.points.estimates import MIN_EVENTS, Estimate
 from twodiscs.theory import virial
 from twodiscs.theory.exact import replicas_needed
-from twodiscs.theory.flux import constant
+from twodiscs.theory.virial import flux_constant
 
 SUM_RULE = ("disc_collision", "right_wall", "top_wall")
 
@@ -113,7 +113,7 @@ def flux_time(scene, event, point):
     ratio = point.ratio(weights)
     if ratio is None:
         return None
-    rate = DECLARED[event].ways / 2 * constant(scene.velocity_components) * ratio.value
+    rate = DECLARED[event].ways / 2 * flux_constant(scene.velocity_components) * ratio.value
     return Estimate(1 / rate, ratio.relative_stderr / rate, ratio.n)
 
 

@@ -1,15 +1,604 @@
-"""The tables of a scene, by name: each is declared in a module of ``tables``.
+"""The tables of a scene: the columns of each beside the function that makes its rows.
 
 The Snakefile reads this module, so NumPy and its users are imported only when rows are made.
 """
 
-from twodiscs.comparison.tables.check import Check
-from twodiscs.comparison.tables.cost import Cost
-from twodiscs.comparison.tables.hop_histogram import HopHistogram
-from twodiscs.comparison.tables.mean_times import MeanTimes
-from twodiscs.comparison.tables.monte_carlo import Areas, Volume
-from twodiscs.comparison.tables.theory import Grid, Theory
-from twodiscs.comparison.tables.trajectory import Trajectory
+from functools import partial
+
+from twodiscs.comparison.table import (
+    COUNT,
+    ERGODIC_COMPONENTS,
+    LENGTH,
+    NUMBER,
+    RADIUS,
+    RATE,
+    SECONDS,
+    TEST,
+    TEXT,
+    TIME,
+    TRUTH,
+    Column,
+    Table,
+    Z,
+    by_radius,
+)
+from twodiscs.model.checks import InputError
+from twodiscs.model.events import EVENTS
+from twodiscs.theory.exact import exact, shell_expectation
+
+
+class Grid(Table):
+    """One row per radius that the scene computes."""
+
+    columns = {
+        "radius": RADIUS,
+        "regime": TEXT("all-hops, vertical-hops, horizontal-hops or no-hops"),
+        "ergodic_components": COUNT(
+            "disjoint parts of configuration space; empty if not known, for more than two discs"
+        ),
+        "largest_radius": LENGTH(
+            "largest radius at which the discs fit, as far as an arrangement of them is known"
+        ),
+    }
+
+    @staticmethod
+    def rows(box, radii):
+        """Return the rows of a ``Box``, one for each radius."""
+        return [
+            {
+                "radius": scene.radius,
+                "regime": scene.regime,
+                "ergodic_components": scene.ergodic_components,
+                "largest_radius": scene.largest_radius,
+            }
+            for scene in map(box.scene, radii)
+        ]
+
+
+class Theory(Table):
+    """One row per radius and quantity: the exact values."""
+
+    columns = {
+        "radius": RADIUS,
+        "quantity": TEXT("volume, <event>_area or <event>_time"),
+        "exact": Column(
+            float,
+            "length⁴, length³ or time",
+            "exact value, empty if none is known; if the event is impossible, the area is 0 and "
+            "the time is empty",
+        ),
+    }
+
+    @staticmethod
+    def rows(box, radii):
+        """Return the rows of a ``Box``, radius by radius."""
+        rows = []
+        for radius in radii:
+            numbers = exact(box.scene(radius))
+            values = {"volume": numbers["volume"]}
+            values |= {f"{event}_area": area for event, area in numbers["areas"].items()}
+            values |= {f"{event}_time": time for event, time in numbers["mean_times"].items()}
+            rows += [{"radius": radius, "quantity": q, "exact": x} for q, x in values.items()]
+        return rows
+
+
+class ExactValues(dict):
+    """{(radius, quantity): exact value or None}, made of the rows of theory.csv."""
+
+    def __init__(self, theory):
+        super().__init__({(row["radius"], row["quantity"]): row["exact"] for row in theory})
+
+    def __missing__(self, wanted):
+        radius, quantity = wanted
+        raise InputError(f"theory.csv has no {quantity} at radius {radius!r}")
+
+
+# Monte Carlo --------------------------------------------------------------------------------------
+
+
+def _sampled_columns(unit):
+    """Return the columns of a sampled quantity of this ``unit``."""
+    as_quantity = partial(Column, float, unit)
+    return {
+        "radius": RADIUS,
+        "quantity": TEXT("volume, or <event>_area"),
+        "method": TEXT(
+            "monte_carlo: rejection from the prism; conditioned: draws from the part of the prism "
+            "in which the discs can fit, if fewer than one in 64 draws from the whole prism do; "
+            "both have areas by a thin shell. insertion: more than two discs, one by one, each "
+            "sample with a weight; areas without a shell"
+        ),
+        "exact": as_quantity("exact value"),
+        "estimate": as_quantity(
+            "measure × hits/samples, for insertions measure × mean weight; empty without a hit"
+        ),
+        "stderr": as_quantity(
+            "binomial standard error, for insertions from the weights; empty below 100 hits or "
+            "misses"
+        ),
+        "z": Z,
+        "samples": COUNT("configurations drawn from the prism, or proposed"),
+        "hits": COUNT(
+            "configurations that count; for insertions the effective number (Σw)²/Σw², rounded"
+        ),
+        "epsilon": LENGTH(
+            "thickness of the shell in configuration space (to either side, for a hop), × √mass "
+            "if masses differ; empty for the volume and, without effects, for any_wall_area = 4 "
+            "(right + top), which has two shells"
+        ),
+        "expectation": as_quantity("exact expectation of the estimate; z is against it"),
+        "bias": as_quantity("expectation − exact, the effect of the thickness of the shell"),
+        "status": TEXT(
+            "sampled; too-few: under 100 hits or misses, no error bar; none-seen: no hit; "
+            "impossible: blocked by geometry"
+        ),
+        "test": TEST,
+    }
+
+
+class Volume(Table):
+    """
+    One row per radius: the volume of configuration space, exact and by Monte Carlo. In a field the
+    invariant density weights it. For balls it is in length⁶, for N discs in length^2N.
+    """
+
+    columns = _sampled_columns("length⁴")
+
+    @staticmethod
+    def rows(theory, points):
+        """Return the rows of the Monte Carlo points that have the volume.
+
+        ``theory`` are the rows of theory.csv, ``points`` is {"monte_carlo": [point, …]}.
+        """
+        exact, rows = ExactValues(theory), []
+        for point in by_radius(points.get("monte_carlo", ())):
+            if sampled := point.sampled("volume"):
+                value = exact[point.radius, "volume"]
+                rows.append(_sampled_row(point, "volume", sampled, value, value))
+        return rows
+
+
+class Areas(Table):
+    """
+    One row per radius and event: the area of the event's surface, exact and by Monte Carlo. A shell
+    of finite thickness is not a surface, so its exact expectation has a column. In a field areas
+    have the weight of the flux. For balls they are in length⁵, for N discs in length^(2N − 1).
+    """
+
+    columns = _sampled_columns("length³")
+
+    @staticmethod
+    def rows(box, theory, points, areas=EVENTS):
+        """Return the rows of Monte Carlo points for the events ``areas``.
+
+        Arguments are as in ``Volume.rows``. With effects the area of all walls is sampled. Without,
+        it follows from the right and the top wall, so a point has these two even if only the area
+        of all walls is asked for.
+        """
+        exact, rows = ExactValues(theory), []
+        for point in by_radius(points.get("monte_carlo", ())):
+            scene = box.scene(point.radius)
+            for event in EVENTS:
+                if event in areas:
+                    rows += _area_rows(scene, point, event, exact)
+        return rows
+
+
+def _area_rows(scene, point, event, exact):
+    """Return a list with the row of an ``event``, empty if the point does not have its area."""
+    from twodiscs.comparison import scores  # which needs numpy and scipy
+
+    quantity = f"{event}_area"
+    sampled = point.sampled(quantity)
+    if sampled is None and event == "any_wall":
+        sampled = point.all_walls(scene)
+    if sampled is None:
+        return []
+    value = exact[scene.radius, quantity]
+    if point.method == "insertion":
+        return [_sampled_row(point, quantity, sampled, value, value)]
+    if sampled.epsilon is not None:
+        expectation = shell_expectation(scene, event, sampled.epsilon)
+        return [_sampled_row(point, quantity, sampled, value, expectation)]
+    # By symmetry, 4 times the sum over two shells, which overlap.
+    walls = {wall: point.quantities[f"{wall}_area"] for wall in ("right_wall", "top_wall")}
+    hits, measures = zip(*((part.hits, 4 * part.measure) for part in walls.values()), strict=True)
+    expectations = [4 * shell_expectation(scene, wall, walls[wall].epsilon) for wall in walls]
+    probabilities = [min(e / m, 1.0) for e, m in zip(expectations, measures, strict=True)]
+    score = scores.shells_z(hits, point.right_and_top, point.samples, measures, probabilities)
+    return [_sampled_row(point, quantity, sampled, value, sum(expectations), score)]
+
+
+def _sampled_score(point, quantity, sampled, expectation):
+    """Return (z, test) of a quantity of a point against its exact ``expectation``."""
+    from twodiscs.comparison import scores
+
+    estimate = sampled.estimate
+    if expectation is None:
+        return None, None
+    if point.method != "insertion":
+        probability = min(expectation / point.quantities[quantity].measure, 1.0)
+        return scores.binomial_z(sampled.hits, point.samples, probability)
+    if expectation == 0:
+        z, test = scores.impossible_z(0 if estimate is None else 1)
+        return abs(z), test
+    if estimate is None or sampled.enough < scores.NORMAL:
+        return None, None
+    t = (estimate.value - expectation) / estimate.stderr
+    return scores.student_deviate(t, estimate.n - 1), "normal"
+
+
+def _sampled_row(point, quantity, sampled, exact, expectation, score=None):
+    """Return the row of a quantity of a point, whose counts are ``sampled``."""
+    from twodiscs.points.estimates import MIN_EVENTS
+
+    estimate = sampled.estimate
+    z, test = score or _sampled_score(point, quantity, sampled, expectation)
+    if exact == 0:
+        status = "impossible"
+    elif estimate is None:
+        status = "none-seen"
+    else:
+        status = "too-few" if sampled.enough < MIN_EVENTS else "sampled"
+    return {
+        "radius": point.radius,
+        "quantity": quantity,
+        "method": point.method,
+        "exact": exact,
+        "estimate": estimate and estimate.value,
+        "stderr": estimate.stderr if status == "sampled" else None,
+        "z": z,
+        "samples": point.samples,
+        "hits": sampled.hits,
+        "epsilon": sampled.epsilon,
+        "expectation": expectation,
+        "bias": None if exact is None else expectation - exact,
+        "status": status,
+        "test": test,
+    }
+
+
+# Molecular dynamics -------------------------------------------------------------------------------
+
+
+class MeanTimes(Table):
+    """
+    One row per radius and event: the mean time between events, exact and by dynamics. If a hop is
+    measured in a strip, check.csv also compares the count from ordinary initial states.
+    """
+
+    columns = {
+        "radius": RADIUS,
+        "event": TEXT("the event"),
+        "exact": TIME(
+            "exact mean time; empty if the event is impossible or no exact value is known"
+        ),
+        "estimate": TIME(
+            "copies · T/(share · ⟨N⟩) with ⟨N⟩ = count/replicas, in a strip the mean over strata "
+            "of the initial states; empty without a count"
+        ),
+        "stderr": TIME(
+            "standard error from the spread between replicas, in a strip from the spread within "
+            "strata; empty if there are too few events for one"
+        ),
+        "z": NUMBER(
+            "standard normal deviate of the mean count, which is unbiased for every T; positive "
+            "if the time is too long"
+        ),
+        "count": COUNT(
+            "events counted in all replicas; for walls with all events that are equal by symmetry"
+        ),
+        "ergodic_components": ERGODIC_COMPONENTS,
+        "replicas": COUNT("independent trajectories"),
+        "duration": TIME("length T of a replica"),
+        "relative_stderr": NUMBER("stderr/estimate"),
+        "target": NUMBER("relative standard error that was asked for"),
+        "status": TEXT(
+            "reached: the target; budget: stopped by the event budget; too-few: no error bar, "
+            "because of under 100 replicas or 100 effective events (clusters count once), or too "
+            "few initial states to find the rare ones of rough discs with very many events; "
+            "none-seen: no event; impossible: blocked by geometry"
+        ),
+        "bound": TIME(
+            "without a count: lower bound on the mean time at 95 %, with an allowance for "
+            "clusters of four events"
+        ),
+        "test": TEST,
+        "starts": TEXT(
+            "initial states. invariant: in all of configuration space, so that dynamics alone "
+            "gives the time; strip: next to the surface of a rare hop, in an exactly known share "
+            "of configuration space, so that the share comes from theory and the test is about "
+            "the flux through the surface"
+        ),
+        "share": NUMBER("share of configuration space from which the initial states are drawn"),
+        "copies": COUNT(
+            "events that count as one, on average: for a wall, the pairs of a disc and a wall "
+            "that are equal by symmetry and that a trajectory can reach"
+        ),
+    }
+
+    @staticmethod
+    def rows(box, theory, points):
+        """Return the rows of dynamics points, for the events that they counted.
+
+        ``theory`` are the rows of theory.csv, ``points`` is {"dynamics": [point, …]}. A rare hop
+        has the row of its strip; ``rows_without_strips`` has its counts from all initial states.
+        """
+        return [
+            _mean_time_row(scene, event, point, exact, point.count(event))
+            for scene, event, point, exact in _counted(box, theory, points)
+        ]
+
+
+def rows_without_strips(box, theory, points):
+    """Return the rows that hops with a strip would have without it, as ``MeanTimes.rows`` does."""
+    return [
+        _mean_time_row(scene, event, point, exact, point.everywhere(event))
+        for scene, event, point, exact in _counted(box, theory, points)
+        if point.in_strip(event)
+    ]
+
+
+def _counted(box, theory, points):
+    """Yield (scene, event, point, exact mean time) for the events that dynamics points counted."""
+    exact = ExactValues(theory)
+    for point in by_radius(points.get("dynamics", ())):
+        scene = box.scene(point.radius)
+        for event in point.counted:
+            yield scene, event, point, exact[point.radius, f"{event}_time"]
+
+
+def _mean_time_row(scene, event, point, exact, count):
+    """Return the row of an event of a ``point`` from a ``Count`` of it."""
+    from twodiscs.comparison import scores  # which needs numpy and scipy
+    from twodiscs.points.estimates import has_error_bar
+    from twodiscs.theory.exact import replicas_needed
+
+    target, copies = point.target[event], scene.multiplicity(event)
+    estimate, bound = count.estimate(copies), None
+    if target is None or (count.share == 1 and point.in_strip(event)):
+        status = "counted"
+    else:
+        status = "reached" if estimate and estimate.relative_stderr <= target else "budget"
+    z, test = scores.mean_time_z(*count.sums, count.time(copies), exact, count.mean)
+    if not scene.is_possible(event):
+        z, test = scores.impossible_z(count.count)
+        estimate, status = None, "impossible"
+    elif estimate is None:
+        status, bound = "none-seen", count.bound()
+    elif not has_error_bar(*count.sums):
+        status = "too-few"
+    if count.share == 1 and scene.is_possible(event):
+        errors = [target or 1.0, estimate.relative_stderr if estimate else 1.0]
+        if count.replicas < replicas_needed(scene, event, min(errors)):
+            # The run may have missed the rare initial states with very many events, and its sample
+            # would not show that.
+            status, z, test, bound = "too-few" if estimate else status, None, None, None
+    with_error = estimate if status != "too-few" else None
+    return {
+        "radius": point.radius,
+        "event": event,
+        "exact": exact,
+        "estimate": estimate and estimate.value,
+        "stderr": with_error and with_error.stderr,
+        "z": z,
+        "count": count.count,
+        "ergodic_components": scene.ergodic_components,
+        "replicas": count.replicas,
+        "duration": count.duration,
+        "relative_stderr": with_error and with_error.relative_stderr,
+        "target": target,
+        "status": status,
+        "bound": bound,
+        "test": test,
+        "starts": "invariant" if count.share == 1 else "strip",
+        "share": count.share,
+        "copies": copies,
+    }
+
+
+class HopHistogram(Table):
+    """One row per radius and bin: intervals between hops, from one crossing to the next."""
+
+    columns = {
+        "radius": RADIUS,
+        "event": TEXT("the hop"),
+        "bins": TEXT(
+            "equal: bins about as wide as τ/16; wide: the same intervals in bins that widen with "
+            "time"
+        ),
+        "left": TIME("lower edge of the bin"),
+        "right": TIME("upper edge of the bin"),
+        "count": COUNT("intervals in the bin"),
+        "density": RATE("count/(intervals × width of the bin)"),
+        "stderr": RATE(
+            "its standard error from the spread between independent chains; a chain has 256 "
+            "successive intervals or, for more than two discs, all that begin within a window of "
+            "time; empty for an empty bin"
+        ),
+        "intervals": COUNT("number of all intervals, including those beyond the last bin"),
+        "exact_mean": TIME("exact mean interval, empty if none is known"),
+        "mean": TIME("mean of all intervals"),
+        "mean_stderr": TIME(
+            "its standard error from the spread between independent chains; empty below 100"
+        ),
+        "z": Z,
+    }
+
+    @staticmethod
+    def rows(theory, points):
+        """Return the rows of intervals points.
+
+        ``theory`` are the rows of theory.csv, ``points`` is {"intervals": [point, …]}. The mean is
+        tested by Student's t over the chains, if there are 100 of them and 1000 intervals.
+        """
+        exact, rows = ExactValues(theory), []
+        for point in by_radius(points.get("intervals", ())):
+            mean = _mean_interval(point, exact[point.radius, f"{point.event}_time"])
+            start = {"radius": point.radius, "event": point.event}
+            for one in point.bins():
+                found = one._asdict()
+                density = found.pop("density")
+                found |= {"density": density.value, "stderr": density.stderr or None}
+                rows.append(start | found | mean)
+        return rows
+
+
+def _mean_interval(point, exact):
+    """Return the columns about the mean of a point; the ``exact`` mean may be None."""
+    from twodiscs.comparison import scores  # which needs numpy and scipy
+    from twodiscs.points.estimates import MIN_EVENTS
+
+    z, mean = None, point.estimate("mean")
+    stderr = mean.stderr or None if mean.n >= MIN_EVENTS else None
+    if stderr and point.intervals >= scores.NORMAL and exact is not None:
+        z = scores.student_deviate((mean.value - exact) / stderr, mean.n - 1)
+    return {
+        "intervals": point.intervals,
+        "exact_mean": exact,
+        "mean": mean.value,
+        "mean_stderr": stderr,
+        "z": z,
+    }
+
+
+def _trajectory_columns(discs):
+    """Return the columns for a number of ``discs``."""
+    numbers = range(1, discs + 1)
+    return {
+        "time": TIME("time of the event"),
+        **{
+            f"{axis}{disc}": LENGTH(f"disc {disc}, from the centre of the box")
+            for disc in numbers
+            for axis in "xy"
+        },
+        "event": TEXT("name of the event; a wall hit has the axis of the wall and the disc"),
+        **{f"z{disc}": LENGTH(f"ball {disc}; empty in the plane") for disc in numbers},
+        "first": COUNT(
+            "the disc of the event, or the first of two; empty if the event has no disc"
+        ),
+        "second": COUNT("the second of the two discs of the event; empty if there is none"),
+    }
+
+
+class Trajectory(Table):
+    """
+    One row per event of one trajectory, in order: the centres of all discs at the event. Along
+    periodic axes centres go on beyond the cell.
+    """
+
+    columns = _trajectory_columns(2)
+
+    @classmethod
+    def columns_of(cls, names):
+        """Return the columns; their ``names`` say how many discs there are."""
+        discs = sum(name[0] == "x" and name[1:].isdigit() for name in names)
+        return _trajectory_columns(max(discs, 2))
+
+    @staticmethod
+    def rows(box, radius, seed):
+        """Return the events of one trajectory in a ``Box``, in order."""
+        from twodiscs.dynamics.trajectory import columns, trajectory  # which compiles
+
+        scene = box.scene(radius)
+        names = columns(scene.discs)
+        return [dict(zip(names, row, strict=True)) for row in trajectory(scene, seed)]
+
+
+# Checks and cost ----------------------------------------------------------------------------------
+
+
+#: A unit that depends on the row.
+SEE_QUANTITY = partial(Column, float, "see quantity")
+
+
+class Check(Table):
+    """One row per comparison with the exact theory."""
+
+    columns = {
+        "comparison": TEXT(
+            "volume, area, mean_time, hop_interval, sum_rule, and over all radii z_mean and "
+            "z_spread; if no exact mean time is known flux, the time of dynamics over the time of "
+            "Monte Carlo"
+        ),
+        "quantity": TEXT("the quantity that is compared"),
+        "radius": LENGTH("radius of the discs; empty for a statement on all radii"),
+        "method": TEXT(
+            "monte_carlo, conditioned, insertion, dynamics, strip (starts next to a rare hop) or "
+            "intervals"
+        ),
+        "exact": SEE_QUANTITY("exact value; for an area, the shell's expectation"),
+        "estimate": SEE_QUANTITY("estimate; empty where there is none"),
+        "stderr": SEE_QUANTITY("its standard error; empty where there is none"),
+        "z": Z,
+        "p": NUMBER("probability of a |z| as large, or larger, if all is right"),
+        "bound": NUMBER("largest |z| that passes"),
+        "passed": TRUTH("whether |z| ≤ bound; empty where nothing can be compared"),
+        "independent": TRUTH(
+            "whether the row is a test, which could fail and follows from no other row: false for "
+            "certain results, for counts that are sums of other counts (any_wall of right_wall "
+            "and top_wall), for values computed from other rows (any_wall_area of two shells, the "
+            "sum rule) and for z_mean and z_spread"
+        ),
+        "status": TEXT("status of the estimate in its own table"),
+        "test": TEST,
+    }
+
+    @staticmethod
+    def rows(box, theory, points, areas=EVENTS):
+        """Return the comparisons of all points of a scene, with verdicts (see ``check``).
+
+        ``theory`` are the rows of theory.csv, ``points`` is {stage: [point, …]}, and ``areas`` are
+        the events of which areas are asked for.
+        """
+        from twodiscs.comparison import check  # which needs numpy and scipy
+
+        compared = check.comparisons(
+            box,
+            Volume.rows(theory, points),
+            Areas.rows(box, theory, points, areas),
+            MeanTimes.rows(box, theory, points) + rows_without_strips(box, theory, points),
+            HopHistogram.rows(theory, points),
+            points.get("dynamics", ()),
+            points.get("monte_carlo", ()),
+        )
+        return check.check_rows(compared)
+
+
+#: The number of events in the points of a stage.
+WORK = {"monte_carlo": "samples", "dynamics": "events", "intervals": "intervals"}
+
+
+class Cost(Table):
+    """One row per job: its time and work. It is the only table of a scene that no run repeats."""
+
+    columns = {
+        "stage": TEXT("monte_carlo, dynamics or intervals"),
+        "radius": RADIUS,
+        "events": COUNT("events simulated, configurations or intervals drawn"),
+        "seconds": SECONDS("processor time of the job and of its shards; empty if it is not known"),
+    }
+
+    @staticmethod
+    def rows(points, seconds):
+        """Return the rows of the jobs by stage and radius.
+
+        ``points`` is {stage: [point, …]}; ``seconds`` is {(stage, radius): time}, as far as known.
+        """
+        return [
+            {
+                "stage": stage,
+                "radius": point.radius,
+                "events": getattr(point, WORK[stage]),
+                "seconds": seconds.get((stage, point.radius)),
+            }
+            for stage in sorted(points)
+            for point in by_radius(points[stage])
+        ]
+
+
+# All tables ---------------------------------------------------------------------------------------
+
 
 __all__ = ["SCENE_TABLES", "Check", "Cost", "Grid"]
 

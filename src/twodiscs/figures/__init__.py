@@ -1,1 +1,1 @@
-"""Figures of a scene, drawings of geometry, and the kit that both use."""
+"""Figures and animations of a scene, drawings of its geometry, and the panels that they use."""

@@ -2,30 +2,22 @@
 
 from functools import partial
 
-from twodiscs.figures import radius
-from twodiscs.figures.geometry import (
-    configuration_space,
-    integration_regimes,
-    largest_radius,
-    model,
-    surface_shell,
-)
-from twodiscs.figures.motion import hop_histogram, hopping_trajectory, pressure
+from twodiscs.figures import configuration_space, geometry, motion, radius
 
 #: {figure: function of a ``Box`` and of the rows of its table}
 FROM_ROWS = {name: partial(radius.draw, name) for name in radius.OVER_RADIUS} | {
-    "pressure": pressure.draw,
-    "hop_histogram": hop_histogram.draw,
-    "hopping_trajectory": hopping_trajectory.draw,
+    "pressure": radius.draw_pressure,
+    "hop_histogram": motion.draw_hop_histogram,
+    "hopping_trajectory": motion.draw_trajectory,
 }
 
 #: {drawing: function of a ``Box``}
 OF_A_BOX = {
-    "model": model.draw,
+    "model": geometry.draw_model,
     "configuration_space": configuration_space.draw,
-    "largest_radius": largest_radius.draw,
-    "integration_regimes": integration_regimes.draw,
-    "surface_shell": surface_shell.draw,
+    "largest_radius": geometry.draw_largest_radius,
+    "integration_regimes": geometry.draw_regimes,
+    "surface_shell": geometry.draw_shells,
 }
 
 

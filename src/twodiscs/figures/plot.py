@@ -7,36 +7,34 @@ import warnings
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
+import numpy as np
 from matplotlib.axes import Axes
 
-from twodiscs.comparison.measured.measurements import (
-    Intervals,
-    Measurements,
-    the_box,
-    the_scene,
-)
-from twodiscs.comparison.measured.observe import Observed
-from twodiscs.comparison.measured.scan import Scan
-from twodiscs.comparison.measured.transmission import Transmission
+from twodiscs.comparison.intervals import Intervals
+from twodiscs.comparison.measurements import Measurements
+from twodiscs.comparison.observe import Observed
+from twodiscs.comparison.scan import Scan
 from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.transmission import Transmission, box_time
+from twodiscs.figures import panels, style
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.draw import OF_A_BOX, draw
-from twodiscs.figures.kit import style
-from twodiscs.figures.motion import over_time
 from twodiscs.figures.radius import OVER_RADIUS, add, quantity_of
-from twodiscs.model.box import Box
+from twodiscs.figures.style import BLACK, LOOKS, SERIES, name_of, new_figure
+from twodiscs.model.box import Box, scene_of
 from twodiscs.model.checks import (
     InputError,
     answering,
     check_choice,
 )
+from twodiscs.model.scene import Scene
+from twodiscs.theory import laws
 
 if TYPE_CHECKING:
     from os import PathLike
 
     import pandas as pd
     from matplotlib.figure import Figure
-
 
 #: The results that can be drawn.
 DRAWN = (
@@ -119,10 +117,10 @@ def _draw(result, figure):
     """Return the drawn figure of a result; ``figure`` is its name, None for the first that fits."""
     if isinstance(result, Observed):
         check_choice("figure", figure or "observed", ["observed"])
-        return over_time.observed(result)
+        return _draw_observed(result)
     if isinstance(result, Transmission):
         check_choice("figure", figure or "transmission", ["transmission"])
-        return over_time.transmission(result)
+        return _draw_transmission(result)
     box, rows, fitting, radius = _what(result)
     if not fitting:
         table = getattr(result, "attrs", {}).get("table")
@@ -258,7 +256,7 @@ def _figures_of(rows, box):
 
 def rows_of(trajectory):
     """Return the rows of a trajectory, at least two; ``the_scene`` must find its scene."""
-    from twodiscs.comparison.measured.trajectory import require_all_rows
+    from twodiscs.comparison.trajectory import require_all_rows
 
     if "event" not in trajectory or len(trajectory) < 2:
         raise InputError(
@@ -294,10 +292,102 @@ def animate(trajectory: pd.DataFrame, path: str | PathLike[str]) -> None:
     --------
     >>> td.animate(td.trajectory(scene, 2, seed=1), "two.gif")
     """
-    from twodiscs.figures.motion import animation
+    from twodiscs.figures import animation
 
     scene = the_scene(trajectory)
     if scene is None or not hasattr(trajectory, "iterrows"):
         raise InputError(f"trajectory must be a result of trajectory(), not {trajectory!r:.80}")
     with style.context():
         animation.animate(Box.of(scene), scene.radius, rows_of(trajectory), [path])
+
+
+# Curves over time ---------------------------------------------------------------------------------
+
+
+#: Inches: the height of the figure.
+HEIGHT = 2.5
+
+
+def _panel(scene, more=""):
+    """Return (figure, axes); the heading has the box, the radius, ``more`` and effects."""
+    figure = new_figure(HEIGHT, layout="constrained")
+    axes = figure.subplots()
+    panels.title(axes, "", Box.of(scene), panels.of_radius(scene.radius) + more)
+    return figure, axes
+
+
+def _points(axes, times, values, errors, look, label=None, full=False):
+    style = panels.open_symbol(*look) | ({"markerfacecolor": look[0]} if full else {})
+    axes.errorbar(times, values, errors, lw=0.5, elinewidth=0.6, label=label, **style)
+
+
+def _draw_observed(result):
+    """Draw the averages of an ``Observed``, numbered as in its frame, with their errors.
+
+    Raises ``InputError`` for more averages than there are different symbols, open and full.
+    """
+    flat = (values.reshape(result.times.size, -1).T for values in (result.mean, result.stderr))
+    series, most = [*zip(*flat, strict=True)], 2 * len(SERIES)
+    if len(series) > most:
+        raise InputError(
+            f"result must have at most {most} averages at a time to be drawn, not {len(series)}; "
+            "frame() has all of them"
+        )
+    figure, axes = _panel(result.scene)
+    for k, (mean, error) in enumerate(series):
+        full, look = divmod(k, len(SERIES))
+        name = result.names[k].replace("_", " ") if result.names else f"mean {k}"
+        _points(axes, result.times, mean, error, SERIES[look], name, full)
+    if len(series) > 1:
+        axes.legend()
+    axes.set(xlabel="time $t$", ylabel="average")
+    axes.ticklabel_format(axis="y", scilimits=(-1, 3))  # short numbers leave space for the label
+    return figure
+
+
+def _draw_transmission(result):
+    """Draw κ(t) of a ``Transmission`` with errors, its exact start and its plateau from clusters.
+
+    Crosses have too few hops for an error. The start is known in plain scenes, the plateau if hops
+    are rare enough for a coefficient. With more than two discs τ is the mean time between hops of
+    two neighbours.
+    """
+    scene, hop = result.scene, result.hop
+    figure, axes = _panel(scene, f",  {name_of(hop)}")
+    times, values, errors = result.frame().reset_index().to_numpy().T
+    known = np.isfinite(errors)
+    _points(axes, times[known], values[known], errors[known], LOOKS[hop])
+    axes.plot(times[~known], values[~known], "x", color=LOOKS[hop][0], zorder=3)
+    if scene.is_plain:
+        early = np.geomspace(result.times[0], 0.3 * box_time(scene, hop), 20)
+        start = 1 - 2 * laws.density_at_zero(scene, hop) * early
+        axes.plot(early, start, color=BLACK, ls=(0, (3, 1.5)), zorder=5, label="exact slope at 0")
+    if result.coefficient is not None:
+        kappa, name = result.coefficient.value, r"$\kappa\,e^{-2\kappa t/\tau}$, by clusters"
+        late = np.geomspace(0.5 * box_time(scene, hop), result.times[-1], 30)
+        end = kappa * np.exp(-2 * kappa * late / result.neighbour_mean)
+        axes.plot(late, end, color=BLACK, zorder=5, label=name)
+    axes.set(xscale="log", xlabel="time $t$", ylabel=r"transmission $\kappa(t)$")
+    axes.xaxis.set_major_formatter("{x:g}")
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend()
+    return figure
+
+
+def the_scene(result):
+    """Return the ``Scene`` of a result or a trajectory; None for anything else."""
+    if isinstance(attributes := getattr(result, "attrs", None), dict):
+        try:
+            return scene_of(attributes["scene"])
+        except (AttributeError, InputError, KeyError, TypeError):
+            return None
+    scene = result if isinstance(result, Scene) else getattr(result, "scene", None)
+    return scene if isinstance(scene, Scene) else None
+
+
+def the_box(table):
+    """Return the ``Box`` of a table of exact values or of a loaded one; None for anything else."""
+    try:
+        return Box(**table.attrs["box"])
+    except (AttributeError, InputError, KeyError, TypeError):
+        return None

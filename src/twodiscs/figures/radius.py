@@ -1,16 +1,16 @@
-"""Figures over the radius: estimates of volume, areas and mean times against exact curves."""
+"""Figures over the radius: volume, areas, mean times and pressures against exact curves."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib.lines import Line2D
 
-from twodiscs.figures.kit import curves, panels
-from twodiscs.figures.kit.limits import hop_ends
-from twodiscs.figures.kit.looks import LOOKS, name_of
-from twodiscs.figures.kit.style import SERIES
+from twodiscs.figures import curves, panels
+from twodiscs.figures.curves import hop_ends
+from twodiscs.figures.style import BLACK, LOOKS, SERIES, name_of
 from twodiscs.model.checks import InputError
-from twodiscs.theory.exact import mean_times
+from twodiscs.theory import virial
+from twodiscs.theory.exact import mean_times, rate
 from twodiscs.theory.laws import small_radius_time, threshold_time
 
 #: The range of the limiting laws, over the largest radius: from r = 0 up, and from the end down.
@@ -19,7 +19,7 @@ SMALL, LAST = 0.4, 0.1
 #: The panel of an approach begins this close to the end, relatively; its law is drawn from LAW on.
 CLOSEST, LAW = 1e-5, 0.3
 
-WALLS = {
+WALL_NAMES = {
     "right_wall": "disc 1, right wall",
     "top_wall": "disc 1, top wall",
     "any_wall": "any disc, any wall",
@@ -76,7 +76,9 @@ OVER_RADIUS = {
     "collision_area": _one(
         "disc_collision_area", "disc collisions", r"collision area $S_{\mathrm{coll}}$"
     ),
-    "wall_area": Curves({f"{event}_area": name for event, name in WALLS.items()}, "wall area $S$"),
+    "wall_area": Curves(
+        {f"{event}_area": name for event, name in WALL_NAMES.items()}, "wall area $S$"
+    ),
     "mean_hop_time": Curves(
         {"vertical_hop_time": "vertical hops", "horizontal_hop_time": "horizontal hops"},
         r"mean time between hops $\tau$",
@@ -90,7 +92,7 @@ OVER_RADIUS = {
         laws=("small", "last"),
     ),
     "mean_wall_time": Curves(
-        {f"{event}_time": name for event, name in WALLS.items()},
+        {f"{event}_time": name for event, name in WALL_NAMES.items()},
         r"mean time between wall hits $\tau$",
         laws=("small", "last"),
     ),
@@ -248,3 +250,92 @@ def _approach(axes, box, by_quantity):
     if box.is_plain:
         handles.append(Line2D([], [], label=panels.LAW_NAME, **panels.LAW))
     axes.legend(handles=handles, loc="best")
+
+
+# Pressures ----------------------------------------------------------------------------------------
+
+
+WALLS = ("right_wall", "top_wall")
+
+#: The law below the largest radius is drawn up to this relative distance from it.
+LAST_PRESSURE = 0.12
+
+
+def draw_pressure(box, rows):
+    """Draw the pressures from the rows of mean_times.csv, and the terms of the virial."""
+    radii = np.concatenate([np.append(branch, np.nan) for branch in curves.branches(box)])
+    summed = virial.weights(box.tiny) is not None
+    events = [event for event in WALLS if any(row["event"] == event for row in rows)]
+    series = [
+        _pressure_series(
+            f"disc 1, {name_of(event)}", box, event, rows, radii, virial.pressure_factor
+        )
+        for event in events
+    ]
+    label = "pressure over that of an ideal gas"
+    judged = any(panels.is_judged(row) for part in series for row in part.rows)
+    figure, main, lower, beneath = panels.panels(box, label, judged, summed)
+    panels.draw_series(main, lower, radii, series)
+    ideal = {"color": BLACK, "lw": 0.7, "ls": (0, (1, 1.5))}
+    main.axhline(1, **ideal)
+    more = [("ideal gas", ideal)]
+    if box.is_plain:
+        more.append((panels.LAW_NAME, panels.LAW))
+        end = box.largest_radius
+        farthest = min(LAST_PRESSURE, 1 - max(box.thresholds, default=0) / end)
+        near = [box.scene(float(r)) for r in end * (1 - np.geomspace(0.99 * farthest, 1e-6))]
+        for event in events:
+            laws = [
+                virial.pressure_factor(scene, event) * scene.share(event) / time
+                for scene in near
+                for time in [threshold_time(scene, event)]
+            ]
+            main.plot([scene.radius for scene in near], laws, **panels.LAW)
+    panels.logarithmic(main, radii, series)
+    main.set_ylim(min(main.get_ylim()[0], 0.97), None)
+    panels.legend(main, series, more=more)
+    if summed:
+        _virials(beneath, box, rows, radii)
+    return figure
+
+
+def _pressure_series(name, box, event, rows, radii, factor):
+    """Return the ``Series`` of ``factor`` (scene, event) times the rate of an event."""
+    scenes = [None if np.isnan(radius) else box.scene(float(radius)) for radius in radii]
+    rates = [None if s is None else rate(s, event) for s in scenes]
+    exact = [
+        np.nan if n is None else factor(s, event) * n for s, n in zip(scenes, rates, strict=True)
+    ]
+    shown = []
+    for row in rows:
+        if row["event"] == event and row["stderr"] is not None:
+            scene, time = box.scene(row["radius"]), row["estimate"]
+            value = factor(scene, event) * scene.share(event) / time
+            # If the time is too long, the rate is too low.
+            measured = {"estimate": value, "stderr": value * row["stderr"] / time}
+            measured["z"] = None if row["z"] is None else -row["z"]
+            shown.append(row | measured)
+    return panels.Series(name, shown, np.array(exact))
+
+
+def _virials(axes, box, rows, radii):
+    """Draw the sizes of the terms of the virial over 2⟨K⟩, exact and measured."""
+    names = {
+        "right_wall": "right and left walls",
+        "top_wall": "top and bottom walls",
+        "disc_collision": "disc collisions, subtracted",
+    }
+    series = [
+        _pressure_series(
+            name, box, event, rows, radii, lambda scene, e: abs(virial.weights(scene)[e])
+        )
+        for event, name in names.items()
+    ]
+    for (colour, marker), part in zip(SERIES, series, strict=False):
+        axes.plot(radii, part.exact, color=colour, zorder=5)
+        panels.estimates(axes, part.rows, colour, marker)
+    axes.set(xlim=(0, 1.02 * box.last_radius), xlabel="radius $r$")
+    axes.set_ylabel(r"virial$\,/\,2\langle E_{\mathrm{k}}\rangle$")
+    panels.logarithmic(axes, radii, series)
+    axes.set_ylim(0.01, None)
+    panels.legend(axes, series)

@@ -11,7 +11,7 @@ from twodiscs.model.checks import check_choice
 from twodiscs.model.events import EVENTS
 from twodiscs.points import estimates
 from twodiscs.points.base import Point, reached, require_positive
-from twodiscs.points.strata import stratified_mean
+from twodiscs.points.estimates import stratified_mean
 
 COLLISIONS, ANY_WALLS = EVENTS.index("disc_collision"), EVENTS.index("any_wall")
 

@@ -50,7 +50,7 @@ def theory_of(scene):
     elif family == "effects":
         from twodiscs.theory import weighted as theory
     else:
-        from twodiscs.theory.many import methods as theory
+        from twodiscs.theory import n_discs as theory
     return theory
 
 

@@ -34,8 +34,8 @@ import numpy as np
 
 from twodiscs.model.events import AXIS, DECLARED, EVENTS
 from twodiscs.model.two import ENERGY
-from twodiscs.theory.flux import constant
 from twodiscs.theory.quadrature import double_exponential, gauss_legendre
+from twodiscs.theory.virial import flux_constant
 
 # Functions of arrays ------------------------------------------------------------------------------
 
@@ -492,14 +492,14 @@ KICK = 15
 
 def rate(scene, event):
     """Return the rate of ``event``."""
-    flux = DECLARED[event].ways / 2 * constant(scene.velocity_components) * areas(scene)[event]
+    flux = DECLARED[event].ways / 2 * flux_constant(scene.velocity_components) * areas(scene)[event]
     return flux / volume(scene)
 
 
 def passing_rate(scene, hop):
     """Return the rate at which the discs pass each other in a ``hop`` along a periodic axis."""
     area = passing_area(scene, hop)
-    return constant(scene.velocity_components) * area / volume(scene)
+    return flux_constant(scene.velocity_components) * area / volume(scene)
 
 
 def work_per_event(scene, event_rate):

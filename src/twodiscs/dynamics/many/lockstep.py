@@ -46,8 +46,8 @@ from twodiscs.sampling.many.initial import (
     states_of,
     velocity_memory,
 )
-from twodiscs.theory.many import methods
-from twodiscs.theory.many.rates import bulk_derivatives, rates
+from twodiscs.theory import n_discs
+from twodiscs.theory.virial import bulk_derivatives, rates
 
 #: Events of a replica, and of a replica whose initial state takes as long as ten thousand events.
 REPLICA_EVENTS, EVENTS_OF_CHAIN = 256, 8192
@@ -609,7 +609,7 @@ def expected_rates(scene):
     ``LARGE`` numbers of discs rates follow from an equation of state, within some ten per cent. It
     ends where discs are ``DENSEST``; there the guess, if it is more, takes its place.
     """
-    known = methods.known_derivatives(scene)
+    known = n_discs.known_derivatives(scene)
     if known is None:
         known = insertions.expected(scene) if scene.discs < LARGE else bulk_derivatives(scene)
     guess = dict.fromkeys(("disc_collision", "any_wall"), _guessed_rate(scene) / 2)
@@ -618,7 +618,7 @@ def expected_rates(scene):
     by_class = rates(scene, known)
     summed = {event: sum(by_class[name] for name in parts) for event, parts in PARTS.items()}
     found = guess | {e: rate for e, rate in summed.items() if rate and e in scene.events}
-    if scene.discs >= LARGE and crowding(scene) == DENSEST and not methods.method(scene):
+    if scene.discs >= LARGE and crowding(scene) == DENSEST and not n_discs.method(scene):
         found |= {event: max(rate, found[event]) for event, rate in guess.items()}
     return found
 

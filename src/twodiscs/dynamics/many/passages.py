@@ -47,8 +47,8 @@ from twodiscs.sampling.many.initial import (
     velocity_memory,
 )
 from twodiscs.sampling.streams import open_stream, signed_uniform, uniform
-from twodiscs.theory.flux import constant
-from twodiscs.theory.many import methods
+from twodiscs.theory import n_discs
+from twodiscs.theory.virial import flux_constant
 
 #: For the rate of hops, if it is not known exactly: states on the surface, the most proposals of
 #: them, and samples of the volume. The rate then has an error of about one per cent.
@@ -266,7 +266,7 @@ def neighbours(scene, hop):
 @lru_cache(maxsize=64)
 def hop_rate(scene, hop):
     """Return the rate of hops of any pair, from samples if it is not known exactly."""
-    if rate := methods.event_rates(scene)[hop]:
+    if rate := n_discs.event_rates(scene)[hop]:
         return rate
     scene, hop = hopping_along(scene, hop, "x")
     volume, (accepted, proposals) = (
@@ -276,4 +276,4 @@ def hop_rate(scene, hop):
     a, b, n = scene.range_x, scene.range_y, scene.discs
     level = n * (n - 1) / 2 * (scene.room(hop) / b) ** 2 / a * accepted / proposals
     empty = math.exp(n * math.log(a * b) - volume[0].log_volume)
-    return math.sqrt(2) * constant(scene.velocity_components) * level * empty
+    return math.sqrt(2) * flux_constant(scene.velocity_components) * level * empty

@@ -13,7 +13,7 @@ the start with reversed velocities. For the same reason a path ends as soon as |
 the time that is left.
 
 The number of crossings of a start depends mostly on its distance from the surface and its velocity
-towards it. Their laws are exact, and ⟨N⟩ is a mean over strata of both (``points.strata``).
+towards it. Their laws are exact, and ⟨N⟩ is a mean over strata of both (``points.estimates``).
 """
 
 import math
@@ -27,7 +27,7 @@ from twodiscs.dynamics.two.follow import across, follow
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import hopping_along
-from twodiscs.points.strata import PARTS, fractions_of_speeds, stratified_mean
+from twodiscs.points.estimates import PARTS, fractions_of_speeds, stratified_mean
 from twodiscs.sampling.blocks.rounds import SequentialRun, on_grid
 from twodiscs.sampling.prism import PrismSampler, neck_of, prism_of, proposed_measure
 from twodiscs.sampling.starts import kinetic_fraction_of, start_sampler

@@ -31,7 +31,7 @@ from twodiscs.sampling.many import chains, insertions
 from twodiscs.sampling.many.cells import Grid, grid_of
 from twodiscs.sampling.many.insertions import around
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
-from twodiscs.theory.many import channel
+from twodiscs.theory import channel
 
 #: The least free fraction of (AB)^N for rejection, which then takes less time than a chain.
 LEAST = 1e-3

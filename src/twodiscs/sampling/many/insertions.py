@@ -32,7 +32,7 @@ from twodiscs.sampling.blocks.rounds import Sampler
 from twodiscs.sampling.blocks.threads import in_a_thread
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
-from twodiscs.theory.many.rates import Derivatives, overlap_of_two
+from twodiscs.theory.virial import Derivatives, overlap_of_two
 
 #: Samples with one random stream.
 BLOCK = 1 << 12
@@ -314,7 +314,7 @@ def inserted(scene, quantities, shell, seed):
 def _volume_and_areas(scene):
     """Return volume and areas for a mean weight of 1, in the order of ``QUANTITIES``.
 
-    Areas are those of ``theory.many.methods.surfaces``: of any pair, or of one disc at one wall.
+    Areas are those of ``theory.n_discs.surfaces``: of any pair, or of one disc at one wall.
     """
     a, b, n = scene.range_x, scene.range_y, scene.discs
     volume, pairs = (a * b) ** n * box_of(scene).typical, n * (n - 1) / 2

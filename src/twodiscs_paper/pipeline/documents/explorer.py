@@ -8,11 +8,10 @@ import json
 import math
 from pathlib import Path
 
-from twodiscs.comparison.tables.mean_times import MeanTimes
-from twodiscs.comparison.tables.monte_carlo import Areas, Volume
-from twodiscs.figures.kit.looks import LOOKS
+from twodiscs.comparison.scene_tables import Areas, MeanTimes, Volume
+from twodiscs.figures.style import LOOKS
 from twodiscs.model.events import DECLARED
-from twodiscs.theory.flux import constant
+from twodiscs.theory.virial import flux_constant
 
 #: The scripts of the page in their order.
 SCRIPTS = ("theory.js", "dynamics.js", "plot.js", "page.js")
@@ -53,7 +52,7 @@ def by_monte_carlo(volumes, areas, components):
         event, radius = row["quantity"].removesuffix("_area"), row["radius"]
         if event in times and radius in volume and row["stderr"] is not None and row["exact"]:
             free, area = volume[radius], row["estimate"] - row["bias"]
-            time = 2 / (DECLARED[event].ways * constant(components)) * free["estimate"] / area
+            time = 2 / (DECLARED[event].ways * flux_constant(components)) * free["estimate"] / area
             error = math.hypot(free["stderr"] / free["estimate"], row["stderr"] / area)
             times[event].append([radius, time, time * error])
     return times

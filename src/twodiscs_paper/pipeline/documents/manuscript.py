@@ -4,8 +4,8 @@ import json
 import os
 from pathlib import Path
 
-from twodiscs.comparison.measured.transmission import QUIET
-from twodiscs.comparison.tables.base import NUMBER, TEXT, Table
+from twodiscs.comparison.table import NUMBER, TEXT, Table
+from twodiscs.comparison.transmission import QUIET
 from twodiscs.dynamics.intervals import RETURNS
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.box import Box

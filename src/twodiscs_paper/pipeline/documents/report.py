@@ -14,11 +14,8 @@ from pathlib import Path, PurePosixPath
 from markupsafe import Markup, escape
 from PIL import Image, ImageSequence
 
-from twodiscs.comparison.measured.measurements import measurement
-from twodiscs.comparison.tables.check import Check
-from twodiscs.comparison.tables.cost import Cost
-from twodiscs.comparison.tables.mean_times import MeanTimes
-from twodiscs.comparison.tables.theory import Grid
+from twodiscs.comparison.measurements import measurement
+from twodiscs.comparison.scene_tables import Check, Cost, Grid, MeanTimes
 from twodiscs.figures.catalogue import ANIMATION, GEOMETRY
 from twodiscs.model.box import Box
 from twodiscs_paper.catalogue import ENTRIES

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from twodiscs.points.digests import KEY, SECONDS
+from twodiscs.points.base import KEY, SECONDS
 
 #: The largest difference of floats, relative to their size.
 RELATIVE = 1e-12

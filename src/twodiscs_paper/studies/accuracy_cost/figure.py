@@ -5,9 +5,9 @@ import math
 import numpy as np
 from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
 
-from twodiscs.figures.kit import drawing
-from twodiscs.figures.kit.panels import add_panel, title
-from twodiscs.figures.kit.style import (
+from twodiscs.figures import drawing
+from twodiscs.figures.panels import add_panel, title
+from twodiscs.figures.style import (
     BLACK,
     BLUE,
     GREEN,

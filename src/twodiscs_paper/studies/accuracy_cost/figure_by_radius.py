@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from twodiscs.figures.kit import panels
-from twodiscs.figures.kit.limits import limits
-from twodiscs.figures.kit.looks import LOOKS, name_of
-from twodiscs.figures.kit.style import BLACK, SIZES
+from twodiscs.figures import panels
+from twodiscs.figures.curves import limits
+from twodiscs.figures.style import BLACK, LOOKS, SIZES, name_of
 from twodiscs.model.box import Box
 from twodiscs.theory.exact import event_rate, mean_times
 

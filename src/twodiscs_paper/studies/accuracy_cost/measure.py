@@ -24,8 +24,7 @@ import numpy as np
 from mpmath import mp
 from tqdm import tqdm
 
-from twodiscs.comparison.tables.mean_times import MeanTimes
-from twodiscs.comparison.tables.theory import Theory
+from twodiscs.comparison.scene_tables import MeanTimes, Theory
 from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
 from twodiscs.dynamics.two import strip

@@ -1,6 +1,6 @@
 """The processor time that a digit costs, by each method."""
 
-from twodiscs.comparison.tables.base import (
+from twodiscs.comparison.table import (
     COUNT,
     HEIGHT,
     NUMBER,

@@ -9,7 +9,7 @@ import numpy as np
 from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import Estimate, density_of_chains_at_zero, sums_of_others
 from twodiscs.theory import exact
-from twodiscs.theory.many.three import integrals
+from twodiscs.theory.three import integrals
 from twodiscs_paper.study import row
 
 #: The pairs of events whose scores are correlated.

@@ -2,12 +2,11 @@
 
 import numpy as np
 
-from twodiscs.figures.kit import panels
-from twodiscs.figures.kit.looks import name_of
-from twodiscs.figures.kit.style import BLACK, GREY, SERIES, SIZES
+from twodiscs.figures import panels
+from twodiscs.figures.style import BLACK, GREY, SERIES, SIZES, name_of
 from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
-from twodiscs.theory import tails
+from twodiscs.theory import laws
 
 #: The longest time shown, in mean times, and the largest relative error of a rate.
 LONGEST, LARGEST_ERROR = 12, 0.15
@@ -73,7 +72,7 @@ def _rates(axes, rows):
             fit = {"ls": DASHES[constant], "zorder": 2}
             kinds.add(constant)
             axes.plot(ends, [row["estimate"] * mean] * 2, color=colour, lw=1.4, **fit)
-        zero = mean * tails.density_at_zero(box.scene(radius), event)
+        zero = mean * laws.density_at_zero(box.scene(radius), event)
         axes.plot(DASH, [zero] * 2, color=colour, lw=1.8, clip_on=False, zorder=5)
     axes.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)), label="exponential")
     for constant in sorted(kinds, reverse=True):

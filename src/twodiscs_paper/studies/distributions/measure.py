@@ -7,7 +7,7 @@ P(F > t) = (1/τ) ∫_t^∞ P(T > s) ds connects the two: for every c
 
     ⟨min(F, c)⟩ = ⟨T² − (T − c)₊²⟩/(2τ),    hence    ⟨F⟩ = ⟨T²⟩/(2τ) = τ (1 + CV²)/2.
 
-If the tail of T is cubic (see ``theory.tails.tail_constant``), the variances of F and T² are
+If the tail of T is cubic (see ``theory.laws.tail_constant``), the variances of F and T² are
 infinite, and only the first form can be tested.
 """
 
@@ -33,7 +33,7 @@ from twodiscs.sampling.separations import (
     draw_velocity,
 )
 from twodiscs.sampling.streams import open_stream
-from twodiscs.theory import exact, tails
+from twodiscs.theory import exact, laws
 from twodiscs_paper.study import row
 
 #: Independent blocks behind an error bar, and the bins of a histogram of intervals.
@@ -211,7 +211,7 @@ def measured(start, scene, hop, seed, events=EVENTS):
     ``start`` has the columns that name scene and hop. ``events`` is the most wall and disc events
     that the intervals may take, and the first passages as well.
     """
-    constant, mean = tails.tail_constant(scene, hop), exact.mean_times(scene)[hop]
+    constant, mean = laws.tail_constant(scene, hop), exact.mean_times(scene)[hop]
     rate = exact.event_rate(scene)
     affordable = int(nearest_power_of_two(max(1.0, events / (rate * mean)))) // BLOCKS
     block = max(1, min(affordable, MOST_INTERVALS // BLOCKS))
@@ -242,7 +242,7 @@ def measured(start, scene, hop, seed, events=EVENTS):
     counts = histogram[:-1]
     if 4 * width <= draw.beyond_x:
         zero = density_at_zero(counts[:2], intervals, width)
-        due = tails.density_at_zero(scene, hop)
+        due = laws.density_at_zero(scene, hop)
         ends = {"first": 0.0, "last": 2 * width, "z": (zero.value - due) / zero.stderr}
         yield row(of_intervals, zero, quantity="density_at_zero", reference=due, **ends)
     bins = list(hazard(counts, intervals, width))

@@ -1,16 +1,6 @@
 """How intervals between hops are distributed."""
 
-from twodiscs.comparison.tables.base import (
-    COUNT,
-    HEIGHT,
-    NUMBER,
-    RADIUS,
-    SCENE,
-    TEXT,
-    TIME,
-    WIDTH,
-    Table,
-)
+from twodiscs.comparison.table import COUNT, HEIGHT, NUMBER, RADIUS, SCENE, TEXT, TIME, WIDTH, Table
 from twodiscs.figures.catalogue import DYNAMICS, Caption, Entry
 from twodiscs_paper.study import AS_ESTIMATE, SEE_QUANTITY, Study, scaled
 

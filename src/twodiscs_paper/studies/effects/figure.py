@@ -4,10 +4,9 @@ import json
 
 import numpy as np
 
-from twodiscs.figures.kit import panels
-from twodiscs.figures.kit.limits import limits
-from twodiscs.figures.kit.looks import name_of
-from twodiscs.figures.kit.style import (
+from twodiscs.figures import panels
+from twodiscs.figures.curves import limits
+from twodiscs.figures.style import (
     BLACK,
     BLUE,
     GREEN,
@@ -15,6 +14,7 @@ from twodiscs.figures.kit.style import (
     ORANGE,
     PURPLE,
     VERMILLION,
+    name_of,
     new_figure,
 )
 from twodiscs.model.box import Box

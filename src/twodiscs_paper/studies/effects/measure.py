@@ -14,15 +14,15 @@ from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.two.follow import new_rows, put_state, state_at
 from twodiscs.dynamics.two.path import time_to_next
-from twodiscs.figures.kit import curves
-from twodiscs.figures.kit.limits import limits
+from twodiscs.figures import curves
+from twodiscs.figures.curves import limits
 from twodiscs.model.box import Box
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.points import estimates
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.starts import draw_states, start_sampler
 from twodiscs.sampling.streams import open_stream
-from twodiscs.theory import exact, tails
+from twodiscs.theory import exact, laws
 from twodiscs_paper.study import row
 
 #: Blocks of ``REPLICAS`` starts that are followed until their discs meet, and the times at which
@@ -144,7 +144,7 @@ def share_rows(start, scene, seed, blocks):
 def share_law(plain, time):
     """Return the share of starts of plain discs without a meeting by a long ``time``."""
     mean = exact.mean_times(plain)["disc_collision"]
-    return tails.tail_constant(plain, "disc_collision") / (2 * mean * time**2)
+    return laws.tail_constant(plain, "disc_collision") / (2 * mean * time**2)
 
 
 # The curves ---------------------------------------------------------------------------------------

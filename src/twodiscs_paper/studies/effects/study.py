@@ -1,6 +1,6 @@
 """How each effect changes the mean times, and its cost."""
 
-from twodiscs.comparison.tables.base import (
+from twodiscs.comparison.table import (
     COUNT,
     HEIGHT,
     LENGTH,

@@ -1,8 +1,7 @@
 """Mean times against the number of discs: theory, Monte Carlo and dynamics."""
 
-from twodiscs.figures.kit import panels
-from twodiscs.figures.kit.looks import LOOKS, name_of
-from twodiscs.figures.kit.style import BLACK, GREY
+from twodiscs.figures import panels
+from twodiscs.figures.style import BLACK, GREY, LOOKS, name_of
 
 #: Inches: heights of a panel of one radius and of the residuals.
 PANEL, RESIDUALS = 1.6, 1.3

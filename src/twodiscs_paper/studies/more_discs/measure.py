@@ -15,8 +15,8 @@ from twodiscs.model.events import DECLARED, SHELLS
 from twodiscs.model.many import multiplicity
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial, insertions
-from twodiscs.theory.many import methods
-from twodiscs.theory.many.rates import rates, virial_sum, virial_weights
+from twodiscs.theory import n_discs
+from twodiscs.theory.virial import rates, virial_sum, virial_weights
 from twodiscs_paper.study import row
 
 #: The box per disc, 0.75 × 1: two discs have the box 1.5 × 1.
@@ -82,7 +82,7 @@ def rows(events, samples, seed, discs=DISCS, radii=RADII):
 
 
 def _of_scene(scene, events, samples, seed):
-    known = methods.known_derivatives(scene)
+    known = n_discs.known_derivatives(scene)
     true = rates(scene, known) if known else {}
     has_samples = scene.discs not in FEWER
     sampled, errors_of_samples = (
@@ -93,7 +93,7 @@ def _of_scene(scene, events, samples, seed):
     found, errors, virial_error = dynamics_rates(scene, events, seed)
     start = {
         "discs": scene.discs, "width": scene.width, "height": scene.height, "radius": scene.radius,
-        "theory": methods.method(scene) or "none", "states": initial.method(scene),
+        "theory": n_discs.method(scene) or "none", "states": initial.method(scene),
     }  # fmt: skip
     for event in SHELLS:
         time, _ = _time(scene, event, true.get(event))

@@ -2,20 +2,11 @@
 
 import numpy as np
 
-from twodiscs.comparison.measured.transmission import box_time
-from twodiscs.figures.kit import drawing, panels
-from twodiscs.figures.kit.looks import name_of
-from twodiscs.figures.kit.style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    PURPLE,
-    SIZES,
-    SKY,
-    VERMILLION,
-)
+from twodiscs.comparison.transmission import box_time
+from twodiscs.figures import drawing, panels
+from twodiscs.figures.style import BLACK, BLUE, GREEN, PURPLE, SIZES, SKY, VERMILLION, name_of
 from twodiscs.model.box import Box
-from twodiscs.theory import exact, tails
+from twodiscs.theory import exact, laws
 from twodiscs_paper.studies.passages.measure import ONE_INERTIA, thresholds
 
 #: Halvings of the distance at which κ(t) is shown, for smooth discs and for rough discs.
@@ -115,7 +106,7 @@ def _curves(axes, box, hop, limit, rows):
                 axes.plot(late, row["estimate"] * fall, color=BLACK, lw=0.7, zorder=5)
     early = np.geomspace(0.1, 0.6, 20)
     scene = box.scene(limit * (1 - 2.0**-12))
-    slope = tails.density_at_zero(scene, hop) * box_time(scene, hop)
+    slope = laws.density_at_zero(scene, hop) * box_time(scene, hop)
     axes.plot(early, 1 - 2 * slope * early, color=BLACK, lw=0.8, ls=(0, (3, 1.5)), zorder=6)
     for inertia, name in ((None, "smooth discs"), (ONE_INERTIA, f"rough, $I={ONE_INERTIA:g}$")):
         colour, marker = LOOKS[inertia]

@@ -1,7 +1,7 @@
 """How fast discs diffuse by hops: two discs on a ring, and files."""
 
-from twodiscs.figures.kit import drawing, panels
-from twodiscs.figures.kit.style import BLACK, BLUE, GREEN, PURPLE, SKY
+from twodiscs.figures import drawing, panels
+from twodiscs.figures.style import BLACK, BLUE, GREEN, PURPLE, SKY
 from twodiscs_paper.studies.passages.figure import (
     LOOKS,
     columns,

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from twodiscs.figures.kit import drawing, panels
-from twodiscs.figures.kit.style import BLACK, BLUE, GREY, PURPLE, VERMILLION
+from twodiscs.figures import drawing, panels
+from twodiscs.figures.style import BLACK, BLUE, GREY, PURPLE, VERMILLION
 from twodiscs.model.scene import Scene
 from twodiscs_paper.studies.passages.figure import columns, is_empty, points, select
 from twodiscs_paper.studies.passages.figure_diffusion import KICKED_FILE, SMOOTH_FILE

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from twodiscs.figures.kit import drawing, panels
-from twodiscs.figures.kit.style import BLACK, GREY, SERIES
+from twodiscs.figures import drawing, panels
+from twodiscs.figures.style import BLACK, GREY, SERIES
 from twodiscs.model.box import Box
 from twodiscs_paper.studies.passages.figure import columns, first_scene, is_empty, points, select
 from twodiscs_paper.studies.passages.measure import KICKED

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from twodiscs.figures.kit import drawing, panels
-from twodiscs.figures.kit.limits import QUARTERS
-from twodiscs.figures.kit.style import BLACK, BLUE, GREY, SKY, VERMILLION
+from twodiscs.figures import drawing, panels
+from twodiscs.figures.curves import QUARTERS
+from twodiscs.figures.style import BLACK, BLUE, GREY, SKY, VERMILLION
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS
 from twodiscs_paper.studies.passages.figure import (

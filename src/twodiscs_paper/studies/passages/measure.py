@@ -13,7 +13,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from twodiscs.comparison.measured.transmission import (
+from twodiscs.comparison.scores import student_deviate
+from twodiscs.comparison.transmission import (
     TIMES,
     are_rare,
     box_time,
@@ -25,16 +26,15 @@ from twodiscs.comparison.measured.transmission import (
     quiet_time,
     seed_of,
 )
-from twodiscs.comparison.scores import student_deviate
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.two import strip
 from twodiscs.dynamics.two.passages import HOPS_OF_BLOCK, cluster_sizes, hop_sums
 from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
-from twodiscs.points import strata
+from twodiscs.points import estimates
 from twodiscs.points.estimates import Estimate, LinearFit, mean_of
-from twodiscs.theory import exact, tails
+from twodiscs.theory import exact, laws
 from twodiscs_paper.studies.passages.models import file, limit
 from twodiscs_paper.study import row
 
@@ -131,7 +131,7 @@ def slope_time(scene, hop):
 
     The time is None if discs that turn round so late do not find the neck again.
     """
-    density = tails.density_at_zero(scene, hop)
+    density = laws.density_at_zero(scene, hop)
     time = FIRST / (2 * density)
     found = time <= math.sqrt(scene.contact_distance * scene.room(hop))
     return time if found else None, density
@@ -279,7 +279,7 @@ class NearThreshold:
         sums, events = strip.run_blocks(self.scene, self.hop, around, stream, 0, blocks)
         fractions = strip.fractions_of(self.scene, self.hop, around)
         per_time = around.fraction / (2 * around.time)
-        mean, error = (per_time * part for part in strata.stratified_mean(fractions, *sums))
+        mean, error = (per_time * part for part in estimates.stratified_mean(fractions, *sums))
         found = Estimate(mean, error, blocks * REPLICAS)
         return self.row("rate", "states", found, 2 * around.time, 1 / self.mean, int(events))
 

@@ -1,6 +1,6 @@
 """Which hops are passages, and how fast discs diffuse by them."""
 
-from twodiscs.comparison.tables.base import (
+from twodiscs.comparison.table import (
     COUNT,
     HEIGHT,
     NUMBER,

@@ -2,15 +2,8 @@
 
 from matplotlib.ticker import FixedLocator, LogLocator, NullLocator
 
-from twodiscs.figures.kit import drawing, panels
-from twodiscs.figures.kit.style import (
-    BLUE,
-    GREY,
-    ORANGE,
-    SERIES,
-    VERMILLION,
-    new_figure,
-)
+from twodiscs.figures import drawing, panels
+from twodiscs.figures.style import BLUE, GREY, ORANGE, SERIES, VERMILLION, new_figure
 
 #: Inches: the width of two columns, the height of a panel, margins, the gap between panels.
 WIDTH, HEIGHT = 7.0, 1.5

@@ -6,16 +6,17 @@ import numpy as np
 from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocator
 from matplotlib.transforms import blended_transform_factory
 
-from twodiscs.figures.kit import drawing, panels
-from twodiscs.figures.kit.looks import LOOKS, name_of
-from twodiscs.figures.kit.style import (
+from twodiscs.figures import drawing, panels
+from twodiscs.figures.style import (
     BLACK,
     BLUE,
     GREEN,
     GREY,
+    LOOKS,
     ORANGE,
     SERIES,
     VERMILLION,
+    name_of,
     new_figure,
 )
 from twodiscs_paper.studies.stability.figure import (

@@ -14,8 +14,7 @@ import numpy as np
 from mpmath import mp, mpf
 
 from twodiscs.comparison import scores
-from twodiscs.comparison.tables.monte_carlo import Areas, Volume
-from twodiscs.comparison.tables.theory import Theory
+from twodiscs.comparison.scene_tables import Areas, Theory, Volume
 from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import after_event, contact_quotient, law_of, wall_quotient

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from twodiscs.figures.kit import panels
-from twodiscs.figures.kit.looks import name_of
-from twodiscs.figures.kit.style import BLACK, BLUE, GREEN, VERMILLION
+from twodiscs.figures import panels
+from twodiscs.figures.style import BLACK, BLUE, GREEN, VERMILLION, name_of
 
 #: Colour and marker of the cases, in the order of the table.
 LOOKS = ((BLUE, "o"), (VERMILLION, "s"), (GREEN, "^"))

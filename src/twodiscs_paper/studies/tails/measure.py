@@ -6,7 +6,7 @@ the last event. An interval F + G is picked in proportion to its length. By Palm
     P(T > t) = τ ⟨1[F + G > t] / (F + G)⟩.
 
 Starts come from the invariant measure; G is found by running backwards from the same start. Long
-intervals begin near a neutral motion (see ``theory.tails.tail_constant``), where all energy except
+intervals begin near a neutral motion (see ``theory.laws.tail_constant``), where all energy except
 a small share s is along one axis. On the sphere of speeds s is uniform on [0, 1]. The smaller of
 the shares along x and y is therefore uniform on [0, 1/2]. This range is cut into strata, each a
 quarter of the one before. All strata have the same number of starts; their exact weights are powers
@@ -31,7 +31,7 @@ from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import draw_configuration, draw_constants, draw_in_disc
 from twodiscs.sampling.starts import draw_starts, state_in
 from twodiscs.sampling.streams import next_bits, open_stream, uniform
-from twodiscs.theory import exact, tails
+from twodiscs.theory import exact, laws
 from twodiscs_paper.study import row
 
 #: Independent blocks behind an error bar, which then has a relative error of about 7 %.
@@ -237,7 +237,7 @@ def rows(box, samples, replicas, seed):
     found = []
     for i, (event, radius) in enumerate(cases(box)):
         scene = box.scene(radius)
-        start, constant = start_of(scene, event), tails.tail_constant(scene, event)
+        start, constant = start_of(scene, event), laws.tail_constant(scene, event)
         mean = start["exact_mean"]
         times = [time * mean for time in COUNTED]
         estimates = mean_of(survivals(scene, event, times, replicas, seed + 2 * i))
@@ -264,7 +264,7 @@ def long_run(weighted, counted):
     start = start_of(scene, event)
     times = [time * start["exact_mean"] for time in weighted["times"]]
     estimates = tail(scene, event, times, weighted["samples"], weighted["seed"])
-    constant = tails.tail_constant(scene, event)
+    constant = laws.tail_constant(scene, event)
     falling = survival_rows("weighted", start, times, estimates, constant)
 
     box = Box(counted["width"], counted["height"])

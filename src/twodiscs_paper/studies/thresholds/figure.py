@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from twodiscs.figures.kit import drawing, panels
-from twodiscs.figures.kit.looks import LOOKS, name_of
-from twodiscs.figures.kit.style import BLACK, GREY
+from twodiscs.figures import drawing, panels
+from twodiscs.figures.style import BLACK, GREY, LOOKS, name_of
 from twodiscs.model.events import HOPS, SHELLS
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import leading_law

@@ -1,6 +1,6 @@
 """The laws where a hop becomes blocked."""
 
-from twodiscs.comparison.tables.base import (
+from twodiscs.comparison.table import (
     COUNT,
     HEIGHT,
     LENGTH,

@@ -38,8 +38,8 @@ from twodiscs.dynamics.many.lockstep import (
 from twodiscs.points.estimates import Estimate, mean_of
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.many import initial, insertions
-from twodiscs.theory.many import channel
-from twodiscs.theory.many.rates import rates
+from twodiscs.theory import channel
+from twodiscs.theory.virial import rates
 
 
 @compiled

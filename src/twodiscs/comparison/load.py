@@ -1,0 +1,186 @@
+"""Tables, results and points of a build, read from their files."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import twodiscs
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.model.box import Box, scene_of
+from twodiscs.model.checks import (
+    InputError,
+    answering,
+    quote,
+)
+from twodiscs.model.plugins import plugin
+from twodiscs.points.base import digest, read_json, with_arrays
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    import pandas as pd
+
+    from twodiscs.comparison.intervals import Intervals
+    from twodiscs.comparison.measurements import Measurements
+    from twodiscs.comparison.scan import Scan
+    from twodiscs.comparison.transmission import Transmission
+
+
+@answering
+def load(folder: str | PathLike[str]) -> dict[str, pd.DataFrame]:
+    """Read every table in a folder of results.
+
+    Parameters
+    ----------
+    folder : path-like
+        The folder of a scene below results, such as "results/paper".
+
+    Returns
+    -------
+    dict
+        {name: ``DataFrame``}. ``attrs`` of a table has its units, the meanings of its columns, and
+        its origin: path, sha256 and the configuration, all as plain values.
+
+    Raises
+    ------
+    InputError
+        For a folder without tables, and for a damaged table.
+
+    Examples
+    --------
+    >>> tables = td.load("results/paper")  # doctest: +SKIP
+    >>> figure = td.plot(tables["mean_times"])  # doctest: +SKIP
+    """
+    if not isinstance(folder, str | Path):
+        raise InputError(f"folder must be the path of a folder, not {folder!r}")
+    frames, folder = {}, Path(folder)
+    if not folder.is_dir():
+        what = "is no folder" if folder.exists() else "does not exist"
+        raise InputError(f"folder must hold tables of results, but {str(folder)!r} {what}")
+    known = plugin("tables") or SCENE_TABLES
+    for path in sorted(folder.glob("*.csv")):
+        if path.stem in known:
+            frames[path.stem] = read(path, known[path.stem])
+    if not frames:
+        raise InputError(f"folder must hold tables of results, but {str(folder)!r} has none")
+    return frames
+
+
+def read(path, table):
+    """Return the file of a ``Table`` as a ``DataFrame`` with units and meanings in ``attrs``."""
+    frame, configuration = table.frame(path), _configuration(path)
+    columns = table.columns_of(frame)
+    frame.attrs = {
+        "table": table.name(),
+        "meaning": table.meaning(),
+        "meanings": {name: column.meaning for name, column in columns.items()},
+        "units": {name: column.unit for name, column in columns.items()},
+        "path": str(path),
+        "sha256": digest(path),
+        "configuration": configuration,
+    }
+    if (box := _box(configuration)) is not None:
+        frame.attrs["box"] = box.parameters()
+    return frame
+
+
+def _box(configuration):
+    """Return the ``Box`` of the only scene of a configuration; None if there is none."""
+    scenes = configuration.get("scenes", []) if isinstance(configuration, Mapping) else []
+    try:
+        (scene,) = scenes
+        # YAML reads 1e0 as text.
+        sides, effects = (
+            {name: value if name == "periodic" else float(value) for name, value in block.items()}
+            for block in (scene["box"], scene.get("effects", {}))
+        )
+        return Box.configured(sides, effects, scene.get("discs", 2))
+    except (InputError, AttributeError, KeyError, TypeError, ValueError):
+        return None
+
+
+def _configuration(path):
+    """Return the configuration, with only the scene of a table; None if it is not known."""
+    for folder in (path.parent, path.parent.parent):
+        try:
+            known = json.loads((folder / "configuration.json").read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            continue
+        if folder == path.parent or not isinstance(known, Mapping):
+            return known
+        scenes = [s for s in known.get("scenes", []) if s.get("name") == path.parent.name]
+        return {**known, "scenes": scenes}
+    return None
+
+
+def from_dict(content):
+    """Return the result that ``to_dict`` describes, made again from its sums."""
+    if content["kind"] == "scan":
+        from twodiscs.comparison.scan import Scan
+
+        return Scan(map(from_dict, content["results"]), dict(content["refused"]))
+    if content["kind"] == "intervals":
+        from twodiscs.comparison.intervals import run_intervals as make
+    elif content["kind"] == "transmission":
+        from twodiscs.comparison.transmission import run_transmission as make
+    else:
+        from twodiscs.comparison.measurements import MAKERS
+
+        make = MAKERS[content["kind"]]
+    parts, settings = with_arrays(content["parts"]), content["settings"]
+    return make(scene_of(content["scene"]), **settings, kept=parts)
+
+
+@answering
+def load_result(
+    path: str | PathLike[str],
+) -> Measurements | Intervals | Transmission | Scan:
+    """Read a result that ``save(path)`` wrote, or a point of a build; ``more`` goes on from it.
+
+    A type checker needs to know its class before you use it:
+    ``assert isinstance(result, td.Measurements)``.
+
+    Parameters
+    ----------
+    path : path-like
+        The file. Only the version of the package that wrote it can read it.
+
+    Returns
+    -------
+    Measurements, Intervals, Transmission or Scan
+        The result.
+
+    Raises
+    ------
+    InputError
+        For a file of another version, and for any other file.
+
+    Examples
+    --------
+    >>> td.simulate(scene, 0.1, seed=1, events="any_wall").save("walls.json")
+    >>> more = td.load_result("walls.json").more(error=5e-4)
+    >>> more["any_wall_time"].relative_stderr < 5e-4
+    True
+    """
+    if not isinstance(path, str | PathLike) or "\0" in str(path):
+        raise InputError(f"path must be the path of a file, not {quote(path)}")
+    try:
+        content = read_json(path)
+    except OSError as error:
+        raise InputError(
+            f"path must be a file to read, not {str(path)!r}: {error.strerror}"
+        ) from None
+    except InputError:
+        raise InputError(
+            f"path must be a file that save() wrote, or a point of a build, not {str(path)!r}"
+        ) from None
+    if (version := content.get("twodiscs")) != twodiscs.__version__:
+        raise InputError(
+            f"the result must be of version {twodiscs.__version__}, so that its numbers are the "
+            f"same, not of {quote(version)}"
+        )
+    return from_dict(content)

@@ -1,0 +1,633 @@
+"""Results of simulations and samples beside the exact values: objects that print themselves.
+
+Their numbers come from rows of the tables, made by the same functions.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from twodiscs.comparison.quantities import Quantities
+from twodiscs.comparison.result import Result, note_of_number, progress_bar, seed_of
+from twodiscs.comparison.scene_tables import Areas, MeanTimes, Theory, Volume
+from twodiscs.model.box import Box
+from twodiscs.model.checks import (
+    InputError,
+    answering,
+    check_count,
+    check_error,
+    check_fraction,
+    check_length,
+    did_you_mean,
+    quote,
+)
+from twodiscs.model.events import EVENTS
+from twodiscs.model.scene import Scene, check_scene, why_absent
+from twodiscs.points.estimates import normal_quantile
+from twodiscs.points.monte_carlo import WALL_AREAS
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from uncertainties import UFloat
+
+    from twodiscs import Event, Quantity
+
+
+#: The columns that people read.
+COLUMNS = ("quantity", "estimate", "± error", "exact", "unit", "z", "count", "status")
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """An estimate of one quantity, beside its exact value.
+
+    ``float(m)`` is the value, ``f"{m:.3f}"`` and ``round(m, 3)`` are those of the value. ``m.u`` is
+    a number of the package uncertainties, with which you calculate.
+
+    Parameters
+    ----------
+    quantity : str
+        Its name, as it is printed, as a key and as a column.
+    value : float or None
+        The estimate, None without an event or hit.
+    stderr : float or None
+        The standard error, None if there are too few events for one.
+    exact : float or None
+        The exact value, None if none is known or if the ``status`` is impossible.
+    z : float or None
+        The standard normal deviate of the estimate from the exact value or, for an area, from the
+        exact ``expectation`` of its shell. If events are few, or come in few clusters, there is no
+        normal law. z then comes from an upper bound on the probability of such a deviation; the
+        column ``test`` of ``frame()`` marks these rows. If the bound is 1, nothing is known about
+        the deviation: z is None, prints as "–", and is 0 in the table.
+    count : int
+        The number of events, or hits.
+    status : str
+        As in the tables; "derived" for a pressure or free energy, "too-few" if there is no error,
+        see Notes.
+    unit : str
+        The unit of value, stderr, exact, expectation and bound.
+    expectation : float, optional
+        The exact expectation of a shell, for an area.
+    bound : float, optional
+        A lower bound on a mean time at 95 %, if no event was counted.
+    source : Measurements or UFloat, optional
+        The result that has it, whose quantities are correlated, or the number ``u`` itself.
+
+    Attributes
+    ----------
+    relative_stderr : float or None
+        The standard error over the size of the value.
+    u : uncertainties.UFloat
+        The value with its error.
+
+    Notes
+    -----
+    A mean time has an error from 100 replicas and 100 effective events on, of which a cluster
+    counts once. Rough discs near a threshold have very many events after a few of the initial
+    states; there it also needs enough initial states (``theory.exact.replicas_needed``), a number
+    that does not depend on the seed. Anything else needs 100 hits and 100 misses: if discs are so
+    small that all of 1048576 draws are hits, the volume has no error.
+
+    Examples
+    --------
+    >>> v, w = (td.sample(scene, 1e6, seed=n)["volume"] for n in (1, 2))
+    >>> difference = v.u - w.u
+    >>> abs(difference.nominal_value) < 5 * difference.std_dev
+    True
+    >>> abs(float(v) - v.exact) < 5 * v.stderr
+    True
+    """
+
+    quantity: str
+    value: float | None
+    stderr: float | None
+    exact: float | None
+    z: float | None
+    count: int
+    status: str
+    unit: str
+    expectation: float | None = None
+    bound: float | None = None
+    source: Measurements | UFloat | None = field(default=None, compare=False)
+
+    def __post_init__(self):
+        if self.value is None or self.exact is None:
+            # The tables then have z = 0 if no event was expected, which compares nothing.
+            object.__setattr__(self, "z", None)
+
+    @property
+    def relative_stderr(self) -> float | None:
+        """The standard error over the size of the value, or None."""
+        return self.stderr / abs(self.value) if self.stderr and self.value else None
+
+    def interval(self, confidence: float = 0.95) -> tuple[float, float] | None:
+        """Return the normal confidence interval.
+
+        Parameters
+        ----------
+        confidence : float, default 0.95
+            The probability that it covers the true value, between 0 and 1.
+
+        Returns
+        -------
+        (float, float) or None
+            Its ends, None without an error.
+
+        Raises
+        ------
+        InputError
+            For a confidence that is not between 0 and 1.
+
+        Examples
+        --------
+        >>> volume = td.sample(scene, 1e6, seed=1)["volume"]
+        >>> low, high = volume.interval(0.99)
+        >>> low < volume.value < high
+        True
+        """
+        half = normal_quantile(confidence)
+        if self.stderr is None or self.value is None:
+            return None
+        return self.value - half * self.stderr, self.value + half * self.stderr
+
+    def __float__(self) -> float:
+        if self.value is None:
+            raise InputError(f"{self.quantity} must have a value, but its status is {self.status}")
+        return float(self.value)
+
+    def __format__(self, spec: str) -> str:
+        return format(float(self), spec) if spec else str(self)
+
+    def __round__(self, digits: int | None = None) -> float | int:
+        return round(float(self), digits)
+
+    @property
+    def u(self) -> UFloat:
+        """The value with its error, a number of the package uncertainties.
+
+        Numbers of one result of ``simulate`` are correlated as their counts are, and numbers of one
+        result of ``sample`` as far as their samples tell. Numbers of two results are taken as
+        independent: give them two seeds. The error is NaN if it is not known.
+        """
+        from uncertainties import ufloat
+
+        independent = ufloat(float(self), math.nan if self.stderr is None else self.stderr)
+        if isinstance(self.source, Measurements):
+            return self.source.correlated.get(self.quantity, independent)
+        return independent if self.source is None else self.source
+
+    def cells(self) -> tuple[str, ...]:
+        """Return the texts of a printed line.
+
+        Returns
+        -------
+        tuple of str
+            Quantity, estimate, error, exact value, unit, z, count and status.
+
+        Examples
+        --------
+        >>> td.sample(scene, 1e6, seed=1)["volume"].cells()
+        ('volume', '0.23605', '0.00021', '0.23611', 'length⁴', '-0.31', '568219', 'sampled')
+        """
+        value, error = _with_error(self.value, self.stderr)
+        if self.value is None and self.bound is not None:
+            value = f"> {self.bound:.4g}"
+        if self.exact is None:
+            exact = "–" if self.status == "impossible" else "not known"
+        else:
+            exact = _with_error(self.exact, self.stderr)[0]
+        z = "–" if self.z is None else f"{self.z:+.2f}"
+        return self.quantity, value, error, exact, self.unit, z, str(self.count), self.status
+
+    def __str__(self) -> str:
+        _, value, error, exact, unit, z, number, status = self.cells()
+        compared = f", exact {exact}" + (f", z = {z}" if self.z is not None else "")
+        error, unit = f" ± {error}" if error else "", f" {unit}" if unit else ""
+        return f"{self.quantity} = {value}{error}{unit}{compared}, {number} counted, {status}"
+
+    __repr__ = __str__
+
+
+def derived(quantity, u, exact, unit, count):
+    """Return the ``Measurement`` of a number ``u`` of uncertainties, beside its ``exact`` value."""
+    error = None if math.isnan(u.std_dev) else u.std_dev
+    z = (u.nominal_value - exact) / error if error and exact is not None else None
+    return Measurement(quantity, u.nominal_value, error, exact, z, count, "derived", unit, source=u)
+
+
+def _with_error(value, error):
+    """Return the texts of a value and its error; both end at the second digit of the error."""
+    if value is None:
+        return "–", ""
+    if not error:
+        return f"{value:.8g}", ""
+    digits = 2
+    if value:
+        digits += math.floor(math.log10(abs(value))) - math.floor(math.log10(error))
+    return _to_digits(value, min(max(digits, 2), 17)), _to_digits(error, 2)
+
+
+def _to_digits(x, n):
+    """Return ``x`` to ``n`` significant digits, zeros at the end among them: 1.3380."""
+    return f"{x:#.{n}g}".rstrip(".")
+
+
+def table_of(measurements):
+    """Return the texts of ``measurements`` as a ``DataFrame``."""
+    import pandas as pd
+
+    return pd.DataFrame([one.cells() for one in measurements], columns=COLUMNS)
+
+
+class Measurements(Result, Mapping[str, Measurement]):
+    """{quantity: ``Measurement``} of one scene; prints as a table.
+
+    ``simulate`` and ``sample`` return one. The name of an event is short for its quantity.
+
+    Parameters
+    ----------
+    kind : str
+        The function that made it.
+    scene : Scene
+        The scene.
+    rows : list of dict
+        The rows of the table of its kind, as the pipeline writes it.
+    settings : dict
+        {argument: value} beside the scene, with the seed and the error that was asked for.
+    point : DynamicsPoint or MonteCarloPoint
+        The sums of its work, from which it goes on.
+    note : str, optional
+        The difference between the work that was asked for and the work that was done.
+
+    Attributes
+    ----------
+    version : str
+        The version of the package.
+
+    Examples
+    --------
+    >>> md = td.simulate(scene, error=0.02, seed=1)
+    >>> md["vertical_hop_time"] == md["vertical_hop"]
+    True
+    >>> md.frame().index[0], md.settings["seed"]
+    ('vertical_hop_time', 1)
+    """
+
+    def __init__(self, kind, scene, rows, settings, point, note=None):
+        self.kind, self.scene, self.rows, self.settings = kind, scene, rows, settings
+        self.point, self.parts, self.note = point, point.parts, note
+        found = (measurement(scene, row, self) for row in rows)
+        self._measurements = Quantities((one.quantity, one) for one in found)
+
+    @cached_property
+    def correlated(self) -> dict[str, UFloat]:
+        """{quantity: number} of uncertainties, of all quantities with errors from the same sums."""
+        from uncertainties import correlated_values
+
+        names, means, covariances = self.point.moments()
+        known = [k for k, name in enumerate(names) if self._has_error(name)]
+        if not known:
+            return {}
+        numbers = correlated_values(means[known], covariances[np.ix_(known, known)])
+        found = {}
+        for k, number in zip(known, numbers, strict=True):
+            one = self[names[k]]
+            # A mean time is inversely proportional to its mean count, an area proportional to hits.
+            ratio = means[k] / number if self.kind == "simulate" else number / means[k]
+            found[one.quantity] = one.value * ratio
+        if self.kind == "sample" and "any_wall_area" not in names and {*WALL_AREAS} <= found.keys():
+            copies = (self.scene.multiplicity(wall.removesuffix("_area")) for wall in WALL_AREAS)
+            found["any_wall_area"] = sum(
+                n * found[wall] for n, wall in zip(copies, WALL_AREAS, strict=True)
+            )
+        return found
+
+    def _again(self, settings, options):
+        return MAKERS[self.kind](self.scene, **settings, **options, kept=self.parts)
+
+    def _has_error(self, name):
+        return name in self and self[name].stderr is not None
+
+    def __getitem__(self, name: str) -> Measurement:
+        return self._measurements[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._measurements)
+
+    def __len__(self) -> int:
+        return len(self._measurements)
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self)
+
+    def _texts(self) -> pd.DataFrame:
+        """Return the texts of the printed table, one row for each quantity."""
+        return table_of(self.values())
+
+    def frame(self) -> pd.DataFrame:
+        """Return a table of all measurements.
+
+        Returns
+        -------
+        DataFrame
+            One row per quantity, which the index names, with the columns of the pipeline's table:
+            mean_times.csv, or volume.csv and areas.csv.
+
+        Examples
+        --------
+        >>> table = td.simulate(scene, duration=1e3, seed=1).frame()
+        >>> table.loc["vertical_hop_time", ["estimate", "stderr", "exact"]].round(3).to_list()
+        [1.328, 0.008, 1.338]
+        """
+        return frame_of(rows_by_quantity(self.rows), index="quantity")
+
+
+def measurement(scene, row, source=None):
+    """Return the ``Measurement`` of a row of a table, which a result ``source`` has."""
+    quantity = quantity_of(row)
+    # A bound of 1 on the probability has z = 0 in the tables, as a perfect match would have.
+    z = row["z"] if row["z"] or row.get("test") == "normal" else None
+    return Measurement(
+        quantity,
+        row["estimate"], row["stderr"], row["exact"], z,
+        row["count"] if "count" in row else row["hits"], row["status"], scene.unit(quantity),
+        row.get("expectation"), row.get("bound"), source,
+    )  # fmt: skip
+
+
+def quantity_of(row):
+    """Return the name of the quantity of a row of results."""
+    return row.get("quantity") or f"{row['event']}_time"
+
+
+def rows_by_quantity(rows):
+    """Return the ``rows`` with their quantity as a column."""
+    return [{"quantity": quantity_of(row)} | row for row in rows]
+
+
+def frame_of(rows, index):
+    import pandas as pd
+
+    return pd.DataFrame(rows).set_index(index)
+
+
+def theory_rows(scene):
+    """Return the rows of theory.csv of one ``Scene``."""
+    return Theory.rows(Box.of(scene), [scene.radius])
+
+
+# The calls -------------------------------------------------------------------------------------
+
+
+def _named(key, what, names, allowed, scene):
+    """Return the ``names`` in the order of ``allowed``, or all that are allowed for None."""
+    if names is None:
+        return list(allowed)
+    if isinstance(names, str):
+        names = [names]
+    single = isinstance(names, bytes | Mapping) or not isinstance(names, Iterable)
+    if single or not (names := [*names]):
+        raise InputError(f"{key} must be some of {', '.join(allowed)}, not {quote(names)}")
+    for name in names:
+        hint = did_you_mean(name, allowed) if isinstance(name, str) and name else ""
+        hint = why_absent(scene, name) or hint
+        if not isinstance(name, str) or name not in allowed:
+            raise InputError(f"{what} must be one of {', '.join(allowed)}, not {quote(name)}{hint}")
+    return [name for name in allowed if name in names]
+
+
+@answering
+def simulate(
+    scene: Scene,
+    error: float | str | Mapping[Event, float | str] | None = None,
+    *,
+    duration: float | None = None,
+    budget: float = 2e9,
+    events: Event | Iterable[Event] | None = None,
+    seed: int = 1,
+    name: str | None = None,
+    cores: int = 1,
+    progress: bool | None = None,
+) -> Measurements:
+    """Measure mean times by molecular dynamics: {quantity: ``Measurement``}, in time.
+
+    Many independent trajectories start in the invariant measure. Each has the same duration T, a
+    power of two that depends on the scene. The mean count in T is exactly T times the rate, for
+    every T. Trajectories are added until every relative standard error is below ``error``, or
+    ``budget`` events are simulated; with a ``duration``, until that time is simulated.
+
+    Work comes in whole blocks of 1024 trajectories, 2.4e5 events each for a radius of 0.2 in a box
+    of 1.5 × 1. Without a ``duration`` the minimum is 32 blocks, 7.7e6 events there, or fewer within
+    the ``budget``, but at least one block. If this is more than asked for, the ``note`` of the
+    result says so. For quick results with many discs give ``budget=1e6``.
+
+    Parameters
+    ----------
+    scene : Scene
+        The box, the discs and their effects.
+    error : float, str or dict, optional
+        The relative standard error, above 0 and at most 1, or "draft" (1e-2), "paper" (3e-4) or
+        "reference" (1e-4): one for all, or {event: error}. It is 1e-3 if neither ``error`` nor
+        ``duration`` is given.
+    duration : float, optional
+        The simulated time of all trajectories together, in time. It is rounded up to whole blocks.
+        All events are then counted in the same trajectories, rare hops too.
+    budget : float, default 2e9
+        The most wall hits and disc collisions, an integer from 1 on.
+    events : str or iterable of str, optional
+        Events to count, some of ``EVENTS``; if left out, all that exist in the scene.
+    seed, name, cores, progress : optional
+        See ``help(twodiscs)``.
+
+    Returns
+    -------
+    Measurements
+        {quantity: ``Measurement``}; ``more(error=…)`` goes on from it.
+
+    Raises
+    ------
+    InputError
+        For an unknown event, for a number out of range, for both ``error`` and ``duration``, and
+        for a ``duration`` with more events than the ``budget``.
+
+    Notes
+    -----
+    The first call compiles for some seconds; compiled code is kept. Ctrl-C stops a call without
+    delay, but a script first ends a compilation, which takes some 10 to 30 s.
+
+    Examples
+    --------
+    >>> md = td.simulate(scene, error=0.02, seed=1, events="vertical_hop")
+    >>> abs(md["vertical_hop_time"].z) < 5
+    True
+    >>> td.simulate(scene, duration=1e4, seed=1)["any_wall_time"].count > 1e4
+    True
+    """
+    if error is None and duration is None:
+        error = 1e-3
+    return run_simulation(scene, error, duration, seed, budget, events, name, cores, progress)
+
+
+def run_simulation(
+    scene, error, duration=None, seed=1, budget=2e9, events=None, name=None, cores=1,
+    progress=None, kept=None,
+):  # fmt: skip
+    """Return the ``Measurements`` of ``simulate``; the parts ``kept`` are not done again."""
+    possible = check_scene(scene).events
+    if duration is not None:
+        return _timed(scene, error, duration, seed, budget, events, name, cores, progress, kept)
+    if isinstance(error, Mapping) and not error:
+        raise InputError(f"error must hold some of {', '.join(possible)}, not {{}}")
+    if not isinstance(error, Mapping):
+        errors = dict.fromkeys(possible, error)
+    elif events is None:
+        errors, events = error, [*error]
+    else:
+        errors = error
+    tracked = _named("events", "event", events, possible, scene)
+    if missing := [event for event in tracked if event not in errors]:
+        raise InputError(f"error must have a value for every event, but has none for {missing[0]}")
+    target = {event: check_error("error", errors[event]) for event in tracked}
+    budget, stream = check_count("budget", budget), seed_of(scene, "dynamics", seed, name)
+    settings = {
+        "error": target if isinstance(error, Mapping) else check_error("error", error),
+        "seed": int(seed), "budget": budget, "events": tracked, "name": name,
+    }  # fmt: skip
+    from twodiscs.dynamics.counting import CountingRun
+
+    run = CountingRun(scene, target, budget, stream)
+    with progress_bar(progress, f"simulate r = {scene.radius:g}") as progress:
+        point = run.run(progress, cores, kept)
+    rows = MeanTimes.rows(Box.of(scene), theory_rows(scene), {"dynamics": [point]})
+    note = _note_of_error(rows, target, budget, point.events)
+    return Measurements("simulate", scene, rows, settings, point, note)
+
+
+def _note_of_error(rows, target, budget, events):
+    """Return the note of a run whose minimum work is far more than was asked for, else None."""
+    minimum = f"{events:.2g} wall hits and collisions"
+    if events > 2 * budget:
+        return f"budget {budget:g} asked for: the minimum, one block, is {minimum}"
+    possible = [row for row in rows if row["status"] != "impossible"]
+    if possible and all(
+        row["relative_stderr"] and row["relative_stderr"] < target[row["event"]] / 2
+        for row in possible
+    ):
+        reached = max(row["relative_stderr"] for row in possible)
+        asked = min(target[row["event"]] for row in possible)
+        return f"error {asked:g} asked for, {reached:.2g} reached: the minimum is {minimum}"
+    return None
+
+
+def _timed(scene, error, duration, seed, budget, events, name, cores, progress, kept):
+    """Return the ``Measurements`` of mean times from trajectories of a ``duration`` in all."""
+    if error is not None:
+        raise InputError("error and duration must not both be given: leave out one of them")
+    tracked = _named("events", "event", events, scene.events, scene)
+    budget, stream = check_count("budget", budget), seed_of(scene, "dynamics", seed, name)
+    duration = check_length("duration", duration)
+    settings = {
+        "error": None, "duration": duration, "seed": int(seed), "budget": budget,
+        "events": tracked, "name": name,
+    }  # fmt: skip
+    from twodiscs.dynamics.timed import TimedRun
+
+    # No error is asked for: 1 is the largest that a run takes.
+    run = TimedRun(scene, dict.fromkeys(tracked, 1.0), budget, stream, duration)
+    with progress_bar(progress, f"simulate r = {scene.radius:g}") as progress:
+        point = run.run(progress, cores, kept)
+    rows = MeanTimes.rows(Box.of(scene), theory_rows(scene), {"dynamics": [point]})
+    total = point.replicas * point.duration
+    note = (
+        f"duration {duration:g} asked for, {total:g} simulated: {point.replicas} trajectories "
+        f"of {point.duration:g} each"
+    )
+    return Measurements("simulate", scene, rows, settings, point, note)
+
+
+@answering
+def sample(
+    scene: Scene,
+    samples: float = 10**7,
+    *,
+    quantities: Quantity | Iterable[Quantity] | None = None,
+    shell: float = 0.02,
+    seed: int = 1,
+    name: str | None = None,
+    cores: int = 1,
+    progress: bool | None = None,
+) -> Measurements:
+    """Measure volume and areas of configuration space by Monte Carlo: {quantity: ``Measurement``}.
+
+    Areas are estimated by shells: z compares with the exact expectation of the shell.
+
+    Parameters
+    ----------
+    scene : Scene
+        The box, the discs and their effects.
+    samples : float, default 1e7
+        Configurations to draw, an integer from 1 on. It is rounded up to whole blocks, of 2²⁰ for
+        two plain discs; ``note`` of the result has the number that was drawn.
+    quantities : str or iterable of str, optional
+        Some of "volume" and "<event>_area"; all if left out.
+    shell : float, default 0.02
+        The thickness of a shell, between 0 and 1, as a fraction of the radius or, if that is
+        smaller, of the distance to the radius at which the surface vanishes.
+    seed, name, cores, progress : optional
+        See ``help(twodiscs)``.
+
+    Returns
+    -------
+    Measurements
+        {quantity: ``Measurement``}, for two discs in length⁴ and length³, for balls in length⁶ and
+        length⁵, for N discs in length²ᴺ and length²ᴺ⁻¹; ``more(samples=…)`` goes on from it.
+
+    Raises
+    ------
+    InputError
+        For an unknown quantity or a number out of range.
+
+    Examples
+    --------
+    >>> volume = td.sample(scene, 1e6, seed=1, quantities="volume")["volume"]
+    >>> abs(volume.value - td.volume(scene)) < 5 * volume.stderr
+    True
+    """
+    return run_sampling(scene, samples, seed, quantities, shell, name, cores, progress)
+
+
+def run_sampling(scene, samples, seed, quantities, shell, name, cores=1, progress=None, kept=None):
+    """Return the ``Measurements`` of ``sample``; the parts ``kept`` are not done again."""
+    allowed = ("volume", *(f"{event}_area" for event in check_scene(scene).events))
+    quantities = _named("quantities", "quantity", quantities, allowed, scene)
+    samples = check_count("samples", samples)
+    shell, stream = check_fraction("shell", shell), seed_of(scene, "monte_carlo", seed, name)
+    settings = {
+        "samples": samples, "seed": int(seed), "quantities": quantities, "shell": shell,
+        "name": name,
+    }  # fmt: skip
+    from twodiscs.sampling.montecarlo import SamplingRun
+    from twodiscs.sampling.starts import require_free_fraction
+
+    require_free_fraction(scene)
+    run = SamplingRun(scene, quantities, samples, shell, stream)
+    with progress_bar(progress, f"sample r = {scene.radius:g}") as progress:
+        point = run.run(progress, cores, kept)
+    points = {"monte_carlo": [point]}
+    theory, areas = theory_rows(scene), [e for e in EVENTS if f"{e}_area" in quantities]
+    rows = Volume.rows(theory, points) + Areas.rows(Box.of(scene), theory, points, areas)
+    # Insertions always have the volume.
+    rows = [row for row in rows if row["quantity"] in quantities]
+    note = note_of_number("samples", samples, point.samples)
+    return Measurements("sample", scene, rows, settings, point, note)
+
+
+#: {kind of a result: the function that makes it}
+MAKERS = {"simulate": run_simulation, "sample": run_sampling}

@@ -1,0 +1,396 @@
+"""Averages over the invariant measure of the values of a user's function, with their errors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import islice
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from twodiscs.comparison.result import note_of_number, progress_bar, seed_of
+from twodiscs.comparison.states import with_aliases
+from twodiscs.dynamics.counting import engine_of
+from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, kicks_of, new_wraps, unwrap
+from twodiscs.model.checks import (
+    InputError,
+    answering,
+    as_list,
+    check_count,
+    format_number,
+    quote,
+)
+from twodiscs.model.many import LARGE
+from twodiscs.model.scene import check_scene
+from twodiscs.sampling.blocks.threads import in_threads
+from twodiscs.sampling.starts import as_records, components, states
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    import pandas as pd
+
+    from twodiscs import Axis
+    from twodiscs.model.scene import Scene
+
+#: Replicas with one random stream. ``LARGE`` numbers of discs have the blocks of ``simulate``.
+BLOCK = 4096
+
+#: The most numbers of the states of a block at several times that are in memory together.
+KEPT = 2**22
+
+
+@dataclass(frozen=True, eq=False)
+class Observed:
+    """Averages over independent replicas of the invariant measure of one scene.
+
+    ``observe`` and ``diffusion`` return one.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    times : array, shape (times,)
+        The times, ascending, in time.
+    mean, stderr : array, shape (times, …)
+        Averages and their standard errors in the unit of the function. After the first axis they
+        have the shape of its value for one replica.
+    replicas : int
+        The number of independent trajectories.
+    settings : dict
+        {argument: value} with the replicas, the seed and the name.
+    note : str, optional
+        The number of replicas that was asked for, if more were simulated.
+    names : tuple of str, optional
+        The names of averages, for ``frame()``.
+
+    Examples
+    --------
+    >>> found = td.observe(scene, lambda start, now: now["x1"], [0, 1], 4096, seed=1)
+    >>> found.frame().shape
+    (2, 2)
+    """
+
+    scene: Scene
+    times: np.ndarray
+    mean: np.ndarray
+    stderr: np.ndarray
+    replicas: int
+    settings: dict[str, object]
+    note: str | None = None
+    names: tuple[str, ...] = ()
+
+    def __eq__(self, other):
+        if type(other) is not type(self):
+            return NotImplemented
+        return (self.scene, self.settings) == (other.scene, other.settings) and all(
+            np.array_equal(getattr(self, name), getattr(other, name), equal_nan=True)
+            for name in ("times", "mean", "stderr")
+        )
+
+    __hash__ = None
+
+    def frame(self) -> pd.DataFrame:
+        """Return a table of the averages.
+
+        Returns
+        -------
+        DataFrame
+            One row per time. The columns are mean and stderr, numbered if there are several, or
+            <name> and <name>_stderr for each of ``names``.
+
+        Examples
+        --------
+        >>> ring = td.Scene(1.5, 1.0, 0.2, periodic="x")
+        >>> td.diffusion(ring, [1, 2], 4096, seed=1).frame().columns[:2].to_list()
+        ['squared_displacement', 'diffusion']
+        """
+        import pandas as pd
+
+        columns = {}
+        for name, values in (("mean", self.mean), ("stderr", self.stderr)):
+            flat = values.reshape(len(values), -1)
+            numbered = [f"{name}_{k}" for k in range(flat.shape[1])]
+            heads = [f"{n}_stderr" if name == "stderr" else n for n in self.names] or (
+                numbered if len(numbered) > 1 else [name]
+            )
+            columns |= dict(zip(heads, flat.T, strict=True))
+        return pd.DataFrame(columns, index=pd.Index(self.times, name="time"))
+
+    def __str__(self) -> str:
+        note = f"\n\n{self.note}" if self.note else ""
+        return f"{self.scene}, {self.replicas} replicas\n\n{self.frame().to_string()}{note}"
+
+    __repr__ = __str__
+
+    def _repr_html_(self) -> str:
+        return self.frame().to_html()
+
+
+def _times(times):
+    times = as_list(times)
+    try:
+        checked = np.atleast_1d(np.asarray(times, float))
+        ascending = checked.ndim == 1 and checked.size and np.all(np.diff(checked) > 0)
+        if ascending and checked[0] >= 0 and np.isfinite(checked[-1]):
+            return checked
+    except (TypeError, ValueError):
+        pass
+    raise InputError(f"times must be ascending numbers from 0 on, not {quote(times)}")
+
+
+def _values(function, start, now):
+    """Return the values of the ``function``, an array with a row for each replica."""
+    # The function gets the same start for all times: if it wrote into it, later times were wrong.
+    start.flags.writeable = now.flags.writeable = False
+    returned = function(start, now)
+    try:
+        values = np.asarray(returned)
+    except (TypeError, ValueError):  # lists of several lengths
+        values = None
+    if values is None or values.dtype.kind not in "biuf" or values.shape[:1] != start.shape:
+        allowed = (
+            "function must return a real number, or the same number of them, for each of the "
+            f"{start.size} replicas"
+        )
+        if returned is None:
+            found = "None: is its return missing?"
+        elif values is None or not values.shape:
+            found = quote(returned)
+        elif values.dtype.names:
+            found = f"an array with the fields {', '.join(values.dtype.names)}: choose one of them"
+        elif values.dtype.kind == "c":
+            found = (
+                f"complex ones of shape {values.shape}: return real and imaginary part as two "
+                "columns, np.stack((z.real, z.imag), axis=1)"
+            )
+        else:
+            found = f"an array of shape {values.shape} and kind {values.dtype}"
+        raise InputError(f"{allowed}, not {found}")
+    return values.astype(float)
+
+
+def _check_finite(values, times, first):
+    """Raise ``InputError`` for NaN and infinity in ``values``, from the replica ``first`` on."""
+    if not np.isfinite(values).all():
+        replica, time, *_ = np.argwhere(~np.isfinite(values))[0]
+        value = values[replica, time][~np.isfinite(values[replica, time])].flat[0]
+        raise InputError(
+            f"function must return finite numbers, not {value} at the time {times[time]:g} of the "
+            f"replica {first + replica}"
+        )
+
+
+@answering
+def observe(
+    scene: Scene,
+    function: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    times: float | Iterable[float],
+    replicas: float = 2**16,
+    *,
+    seed: int = 1,
+    name: str | None = None,
+    cores: int = 1,
+    progress: bool | None = None,
+) -> Observed:
+    """Average your function over trajectories that start in the invariant measure.
+
+    Parameters
+    ----------
+    scene : Scene
+        The box, the discs and their effects.
+    function : callable
+        ``function(start, now)`` takes two read-only arrays of states in the form of ``starts``, at
+        time 0 and at one of the ``times``. It returns an array with a number, or an array, for each
+        of the states. On periodic axes positions go on beyond the cell.
+    times : float or iterable of float
+        Ascending, from 0 on, in time.
+    replicas : float, default 2¹⁶
+        Trajectories, an integer from 1 to 1e9. It is rounded up to whole blocks: of 4096, and
+        of fewer for 20 discs or more. ``note`` of the result has the number that was followed.
+    seed, name, cores, progress : optional
+        See ``help(twodiscs)``.
+
+    Returns
+    -------
+    Observed
+        ``mean`` and ``stderr`` at each time, arrays of shape (times, …). The error comes from the
+        spread between the replicas, which are independent. All times have the same replicas, so
+        their averages are correlated.
+
+    Raises
+    ------
+    InputError
+        For times of more than 10⁷ events and kicks, and for a function that returns anything else.
+
+    Examples
+    --------
+    >>> found = td.observe(scene, lambda start, now: start["u1"] * now["u1"], [0, 1], seed=1)
+    >>> bool(abs(found.mean[0] - 1 / 4) < 5 * found.stderr[0])  # ⟨u₁²⟩ of four components
+    True
+    """
+    return averages(scene, function, times, replicas, seed, name, cores, progress)
+
+
+def averages(
+    scene, function, times, replicas, seed, name, cores=1, progress=None, names=(),
+    over_times=lambda values, before, steps: values,
+):  # fmt: skip
+    """Return the averages of a user's ``function`` as ``Observed``.
+
+    ``over_times(values, before, steps)`` is applied to the values of the replicas of a block at
+    some of the times, (replicas, times, …), before they are averaged. ``before`` are the values at
+    the time before these, None at first. ``steps`` are the times since the time before each.
+    ``names`` are the names of the averages.
+    """
+    stream, times = seed_of(check_scene(scene), "observe", seed, name), _times(times)
+    if not callable(function):
+        raise InputError(f"function must take two arrays of states, not be {quote(function)}")
+    each = BLOCK if scene.discs < LARGE else engine_of(scene).block_replicas(scene)
+    blocks = -(-check_count("replicas", replicas, most=10**9) // each)
+    rate = engine_of(scene).expected_event_rate(scene) + scene.friction
+    if times[-1] * rate > MOST_EVENTS:
+        raise InputError(
+            f"times must be below {format_number(MOST_EVENTS / rate, '.3g')}, where "
+            f"{format_number(MOST_EVENTS, 'g')} events are due, not {format_number(times[-1], 'g')}"
+        )
+
+    steps = np.diff(times, prepend=0.0)
+
+    def snapshots(block):
+        """Yield (states at time 0, states at a time) of a block, for all ``times``."""
+        filled, wraps = states(scene, each, stream, block), new_wraps(scene, each)
+        kicks = kicks_of(scene, each, stream, block)
+        start = with_aliases(as_records(scene, filled))
+        for step in steps:
+            if step:
+                advance_all(scene, filled, wraps, step, kicks)
+            now = as_records(scene, filled)
+            unwrap(scene, now, wraps)
+            yield start, with_aliases(now)
+
+    def moments(block, first, found, before):
+        """Return the last values of a block, and the means and sums of squares at some times."""
+        values = np.stack([_values(function, start, now) for start, now in found], axis=1)
+        _check_finite(values, times[first:], block * each)
+        last, values = values[:, -1], over_times(values, before, steps[first : first + len(found)])
+        return last, values.mean(axis=0), ((values - values.mean(axis=0)) ** 2).sum(axis=0)
+
+    # If the states of a block at all times are too many, one block a core goes on piece by piece.
+    together = max(1, KEPT // (each * len(components(scene))))
+    in_pieces = times.size > together
+    abreast = cores if in_pieces else blocks
+    total = mean = square = None
+    with progress_bar(progress, f"observe r = {scene.radius:g}") as progress:
+        for low in range(0, blocks, abreast):
+            numbers = range(low, min(low + abreast, blocks))
+            paths = [*map(snapshots, numbers)] if in_pieces else map(snapshots, numbers)
+            parts = {}
+            for first in range(0, times.size, together):
+                calls = ((path,) for path in paths)
+                every = in_threads(lambda path: [*islice(path, together)], calls, cores)
+                for block, found in zip(numbers, every, strict=True):
+                    before = parts[block][-1][0] if first else None
+                    part = moments(block, first, found, before)
+                    parts.setdefault(block, []).append(part)
+                    if first + together < times.size:
+                        continue
+                    _, own, spread = map(np.concatenate, zip(*parts.pop(block), strict=True))
+                    if mean is None:
+                        total, mean, square = each, own, spread
+                    else:
+                        # The mean and the sum of squares of two samples together (Chan et al.,
+                        # 1979).
+                        n, apart = total + each, own - mean
+                        square = square + spread + apart**2 * (total * each / n)
+                        mean, total = mean + apart * (each / n), n
+                    if progress is not None:
+                        progress(block + 1, blocks)
+    stderr = np.sqrt(square / (total - 1) / total)
+    settings = {"replicas": total, "seed": int(seed), "name": name}
+    note = note_of_number("replicas", int(replicas), total)
+    return Observed(scene, times, mean, stderr, total, settings, note, names)
+
+
+@answering
+def diffusion(
+    scene: Scene,
+    times: float | Iterable[float],
+    replicas: float = 2**16,
+    *,
+    axis: Axis | None = None,
+    seed: int = 1,
+    name: str | None = None,
+    cores: int = 1,
+    progress: bool | None = None,
+) -> Observed:
+    """Measure the diffusion of the discs along a periodic axis, from the invariant measure.
+
+    Displacements are of single discs, averaged over all of them if they are equal, else of disc 1.
+    Smooth discs conserve the total momentum along the axis, which is 0: two equal discs then move
+    in opposite directions.
+
+    Parameters
+    ----------
+    scene : Scene
+        The box, which is periodic along ``axis``, the discs and their effects.
+    times : float or iterable of float
+        Ascending, above 0, in time.
+    replicas : float, default 2¹⁶
+        Trajectories, an integer from 1 to 1e9, rounded up to whole blocks as in ``observe``.
+    axis : str, optional
+        "x", "y" or "z"; the first periodic one if left out.
+    seed, name, cores, progress : optional
+        See ``help(twodiscs)``.
+
+    Returns
+    -------
+    Observed
+        ``mean`` and ``stderr``, shape (times, 2), have two columns, which ``frame()`` names:
+        squared_displacement ⟨Δx²⟩(t), in length², and diffusion, in length²/time. The latter is
+        half of the slope since the previous time, or since 0 for the first. The error of a slope
+        includes the correlation of its two ends.
+
+    Raises
+    ------
+    InputError
+        For an axis with walls, between which displacements have a bound, for times of more than
+        10⁷ events and kicks, and for a time of 0.
+
+    Notes
+    -----
+    The diffusion coefficient D is the limit of the second column for long times, if there is one.
+    Long free flights along a smooth channel can make it grow like a logarithm, and single discs
+    cannot diffuse on a ring if they cannot pass each other.
+
+    Examples
+    --------
+    >>> ring = td.Scene(1.5, 1.0, 0.2, periodic="x")
+    >>> found = td.diffusion(ring, [2, 4, 8], 1e4, seed=1)
+    >>> bool(0.02 < found.frame()["diffusion"].iloc[-1] < 0.05)
+    True
+    """
+    periodic = check_scene(scene).periodic
+    if not periodic or (axis is not None and not (isinstance(axis, str) and axis in [*periodic])):
+        allowed = f"one of {', '.join(periodic)}" if periodic else "periodic in the scene"
+        raise InputError(
+            f"axis must be {allowed} for diffusion, not {quote(axis)}: displacements between walls "
+            "have a bound"
+        )
+    axis, times = axis or periodic[0], _times(times)
+    if times[0] == 0:
+        raise InputError("times must be above 0 for diffusion, not 0")
+    discs = range(1, scene.discs + 1 if scene.identical else 2)
+
+    def squared(start, now):
+        return sum((now[f"{axis}{n}"] - start[f"{axis}{n}"]) ** 2 for n in discs) / len(discs)
+
+    def with_slopes(values, before, steps):
+        before = np.zeros(len(values)) if before is None else before
+        slopes = np.diff(values, axis=1, prepend=before[:, None]) / (2 * steps)
+        return np.stack([values, slopes], axis=2)
+
+    names = "squared_displacement", "diffusion"
+    return averages(
+        scene, squared, times, replicas, seed, name, cores, progress, names, with_slopes
+    )

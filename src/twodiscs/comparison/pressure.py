@@ -1,0 +1,231 @@
+"""Pressures and free energy, exact and measured, in units of the mass of disc 1 and its speed.
+
+The total energy is 1/2 in D components of velocity, so that kT = 1/D. A wall of the length h has
+the pressure F/h. The force F of all N discs on it is N times the rate of disc 1 at that wall times
+the mean momentum of a hit (``theory.virial``). With the ranges A and B of the centres, the virial
+theorem for the two walls together is
+
+    h A P_right + w B P_top = 2 N kT (1 + σ ν_coll/(√2 N c_D))
+
+with the rate ν_coll of all collisions: a pressure without wall hits. For two discs √2 N is √8.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, overload
+
+from twodiscs.comparison.measurements import Measurement, Measurements, derived, table_of
+from twodiscs.model.checks import InputError, quote
+from twodiscs.model.events import AXIS, WALLS
+from twodiscs.model.scene import Scene
+from twodiscs.theory import exact, virial
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+class Pressures(dict):
+    """{quantity: ``Measurement``} of one ``scene``; prints as a table."""
+
+    def __init__(self, scene, measurements):
+        self.scene = scene
+        super().__init__({one.quantity: one for one in measurements})
+
+    def __repr__(self):
+        return f"{self.scene}\n\n{table_of(self.values()).to_string(index=False)}"
+
+    def __reduce__(self):
+        return type(self), (self.scene, [*self.values()])
+
+
+def _require_simple(scene):
+    """Raise ``InputError`` for scenes that have no single pressure."""
+    if scene.field:
+        raise InputError(
+            f"field must be 0 for a pressure, which depends on the height, not {scene.field!r}"
+        )
+    if scene.radius_ratio != 1:
+        raise InputError(
+            "radius_ratio must be 1 for a pressure, because only the hits of disc 1 are counted, "
+            f"not {scene.radius_ratio!r}"
+        )
+    if not any(AXIS[wall] in scene.walled for wall in WALLS):
+        raise InputError("scene must have walls along x or y for a pressure, but both are periodic")
+
+
+def terms(scene):
+    """Return {quantity: (constant, {event: factor of its rate})} of all pressures of a ``Scene``.
+
+    The virial pressure is among them between walls, for equal discs.
+    """
+    _require_simple(scene)
+    n, kt = scene.discs, 1 / scene.velocity_components
+    volume = math.prod(scene.side(axis) for axis in scene.axes)
+    found, weighted, norm = {}, {}, 0.0
+    for wall in WALLS:
+        axis = AXIS[wall]
+        if axis in scene.walled:
+            force, reach = n * virial.momentum_per_hit(scene, wall), float(scene.reach(axis))
+            area = volume / scene.side(axis)
+            found[f"{wall}_pressure"] = 0.0, {wall: force / area}
+            weighted[wall], norm = force * reach, norm + area * reach
+    mean = {wall: weight / norm for wall, weight in weighted.items()}
+    found["wall_pressure"] = 0.0, mean
+    if (weights := virial.weights(scene)) is not None:
+        kinetic = 2 * n * kt / norm
+        found["virial_pressure"] = (
+            kinetic,
+            {"disc_collision": -kinetic * weights["disc_collision"]},
+        )
+    ideal = n * kt / volume
+    found["ideal_pressure"] = ideal, {}
+    ratio = {wall: factor / ideal for wall, factor in mean.items()}
+    found["compressibility_factor"] = 0.0, ratio
+    return found
+
+
+@overload
+def pressure(of: Scene) -> dict[str, float | None]: ...
+@overload
+def pressure(of: Measurements) -> Mapping[str, Measurement]: ...
+def pressure(of):
+    """Return the pressures of a scene, exact or from the rates that dynamics measured.
+
+    The unit is energy/length² (energy/length³ for balls) where the mass of disc 1 is 1 and the
+    total energy 1/2. kT is 1/D, with D = ``scene.velocity_components``.
+
+    Parameters
+    ----------
+    of : Scene or Measurements
+        A scene for exact values, or a result of ``simulate``.
+
+    Returns
+    -------
+    dict
+        {quantity: number}, or {quantity: ``Measurement``} with errors, exact values and z:
+
+        - right_wall_pressure, top_wall_pressure: the force of all discs on a wall over its length
+        - wall_pressure: their mean with the weights h A and w B, with the ranges A and B of the
+          centres; the error includes the correlation of the two
+        - virial_pressure: the same mean from the collisions of the discs only
+        - ideal_pressure: N kT/(w h), the pressure of points
+        - compressibility_factor: wall_pressure over ideal_pressure
+
+        A number is None if no exact value is known, for more than two discs. A result has the
+        pressures whose events it counted. On a periodic axis there are no walls.
+
+    Raises
+    ------
+    InputError
+        In a field, for unequal radii, without walls, and for anything but a ``Scene`` or a result
+        of ``simulate``.
+
+    Notes
+    -----
+    The sum rule wall_pressure = virial_pressure is the virial theorem of Clausius: exact values
+    agree to rounding, measured values within their errors. It holds between walls for any number of
+    equal discs, smooth or rough.
+
+    Examples
+    --------
+    >>> exact = td.pressure(scene)
+    >>> round(exact["right_wall_pressure"], 12), round(exact["compressibility_factor"], 12)
+    (0.609598818993, 1.943912364366)
+    >>> abs(exact["wall_pressure"] / exact["virial_pressure"] - 1) < 1e-12
+    True
+    >>> abs(td.pressure(td.simulate(scene, 0.02, seed=1))["virial_pressure"].z) < 5
+    True
+    """
+    if isinstance(of, Scene):
+        return {name: _of_rates(of, *term) for name, term in terms(of).items()}
+    if isinstance(of, Measurements) and of.kind == "simulate":
+        scene, rows = of.scene, {row["event"]: row for row in of.rows}
+        return Pressures(
+            scene,
+            [
+                _measured(of, rows, name, constant, factors)
+                for name, (constant, factors) in terms(scene).items()
+                if factors.keys() <= rows.keys()
+            ],
+        )
+    raise InputError(f"of must be a Scene or a result of simulate, not {quote(of)}")
+
+
+def _of_rates(scene, constant, factors):
+    """Return a constant plus factors times exact rates, None if a rate is not known."""
+    rates = {event: exact.rate(scene, event) for event in factors}
+    if None in rates.values():
+        return None
+    return constant + sum(factors[event] * rate for event, rate in rates.items())
+
+
+def _measured(result, rows, name, constant, factors):
+    """Return the ``Measurement`` of a constant plus factors times measured rates."""
+    scene, some = result.scene, [rows[event] for event in factors]
+    power = "²³"[len(scene.axes) - 2]
+    unit = "" if name.endswith("factor") else f"energy/length{power}"
+    due = _of_rates(scene, constant, factors)
+    count = min((row["count"] for row in some), default=0)
+    if not some:
+        return Measurement(name, constant, 0.0, due, None, count, "exact", unit)
+    if any(row["estimate"] is None for row in some):
+        return Measurement(name, None, None, due, None, count, "derived", unit)
+    # A time is that of the trajectories that can have the event, which are a share of all.
+    pressure = constant + sum(
+        factors[event] * scene.share(event) / result[event].u for event in factors
+    )
+    return derived(name, pressure, due, unit, count)
+
+
+@overload
+def free_energy(of: Scene) -> float | None: ...
+@overload
+def free_energy(of: Measurements) -> Measurement: ...
+def free_energy(of):
+    """Return the excess free energy over an ideal gas, exact or from the measured volume.
+
+    It is −ln(V/V_ideal) in units of kT. V is the volume of configuration space, and V_ideal the
+    volume for points in the same box, (w h)ᴺ, or (w h d)ᴺ for balls. It equals minus the excess
+    entropy over k, because discs that do not overlap have no potential energy. Its derivatives by
+    the sides are the forces on the walls.
+
+    Parameters
+    ----------
+    of : Scene or Measurements
+        A scene for the exact value, or a result of ``sample`` that has the volume.
+
+    Returns
+    -------
+    float or Measurement
+        In units of kT, without dimension. The number is None if no exact value is known, for more
+        than two discs.
+
+    Raises
+    ------
+    InputError
+        In a field, and for anything but a ``Scene`` or a result of ``sample``.
+
+    Examples
+    --------
+    >>> round(td.free_energy(scene), 12)
+    2.254368712677
+    >>> abs(td.free_energy(td.sample(scene, 1e6, seed=1)).z) < 5
+    True
+    """
+    is_result = isinstance(of, Measurements) and "volume" in of
+    scene = of.scene if is_result else of
+    if not isinstance(scene, Scene):
+        raise InputError(f"of must be a Scene or a result of sample, not {quote(of)}")
+    if scene.field:
+        raise InputError(f"field must be 0 for the free energy of hard discs, not {scene.field!r}")
+    ideal = scene.discs * math.fsum(math.log(scene.side(axis)) for axis in scene.axes)
+    if not is_result:
+        volume = exact.volume(scene)
+        return None if volume is None else ideal - math.log(volume)
+    from uncertainties.umath import log
+
+    volume = of["volume"]
+    exact_energy = None if volume.exact is None else ideal - math.log(volume.exact)
+    energy = ideal - log(volume.u)
+    return derived("excess_free_energy", energy, exact_energy, "kT", volume.count)

@@ -1,0 +1,246 @@
+"""Exact values by the names of quantities, as functions of the face return them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
+
+from twodiscs.comparison.scene_tables import Theory
+from twodiscs.model.box import Box
+from twodiscs.model.checks import (
+    LARGEST_INTEGER,
+    InputError,
+    answering,
+    check_length,
+    did_you_mean,
+    quote,
+)
+from twodiscs.model.events import EVENTS
+from twodiscs.theory import exact as theory
+
+if TYPE_CHECKING:
+    from typing import Unpack
+
+    import pandas as pd
+
+    from twodiscs import Effects
+    from twodiscs.model.scene import Scene
+    from twodiscs.theory.exact import Exact
+
+
+class Quantities(dict):
+    """{quantity: value} with at most one quantity of each event, whose name is short for it.
+
+    Any other key raises a ``KeyError`` that lists the quantities.
+    """
+
+    def __getitem__(self, name):
+        if (known := spelled(name, self)) not in self:
+            raise unknown_key(name, self)
+        return super().__getitem__(known)
+
+    def __contains__(self, name):
+        return super().__contains__(spelled(name, self))
+
+    def get(self, name, default=None):
+        """Return the value of a quantity, ``default`` if there is none."""
+        return super().get(spelled(name, self), default)
+
+
+def spelled(name, quantities):
+    """Return the name of a quantity, given its name or its event; ``quantities`` are the names."""
+    if name in EVENTS:
+        for kind in ("time", "area"):
+            if f"{name}_{kind}" in quantities:
+                return f"{name}_{kind}"
+    return name
+
+
+def unknown_key(name, quantities):
+    """Return the ``KeyError`` for a ``name`` that is none of ``quantities``."""
+    hint = did_you_mean(name, quantities) if isinstance(name, str) else ""
+    return KeyError(f"{quote(name)} is none of {', '.join(quantities)}{hint}")
+
+
+def areas(scene: Scene) -> dict[str, float]:
+    """Return the areas of the surfaces of all events in configuration space.
+
+    Parameters
+    ----------
+    scene : Scene
+        The box, the discs and their effects.
+
+    Returns
+    -------
+    dict
+        {"<event>_area": area} in the order of ``EVENTS``; the name of an event is short for it.
+        Areas are in length³ for two discs, length⁵ for balls. An area is exactly 0.0 if the event
+        is impossible or does not exist in the scene, and None if no exact value is known, for more
+        than two discs. The area of all walls is 4 (right + top) in a plain scene. Areas have a
+        factor 1/√mass (1 for disc 1), and the weight (1 − U/E)₊^((D − 1)/2) in a field (see
+        ``volume``, also for the accuracy).
+
+    Raises
+    ------
+    InputError
+        For anything that is not a ``Scene``.
+
+    Examples
+    --------
+    >>> round(td.areas(scene)["disc_collision_area"], 12)
+    0.988197171469
+    """
+    return Quantities((f"{event}_area", area) for event, area in theory.areas(scene).items())
+
+
+def mean_times(scene: Scene) -> dict[str, float | None]:
+    """Return the mean times between two events of each kind.
+
+    Disc 1 has mass 1 and the total energy is 1/2. Wall times are times of disc 1 on the
+    trajectories that can reach the wall. If a blocked hop keeps disc 1 from it in one half of
+    configuration space, they fill the other half. If a larger disc 1 stays on its side and still
+    reaches both walls, the time is one over the mean of its two rates. For more than two discs wall
+    times are averages over all initial conditions.
+
+    Parameters
+    ----------
+    scene : Scene
+        The box, the discs and their effects.
+
+    Returns
+    -------
+    dict
+        {"<event>_time": mean time} in the order of ``EVENTS``; the name of an event is short for
+        it. Times are lengths over unit speed. A time is None if the event is impossible, or if no
+        exact value is known, for more than two discs. The accuracy is that of ``volume``.
+
+    Raises
+    ------
+    InputError
+        For anything that is not a ``Scene``.
+
+    Examples
+    --------
+    >>> round(td.mean_times(scene)["vertical_hop_time"], 12)
+    1.338047200916
+    >>> td.mean_times(td.Scene(1.5, 1.0, 0.3))["horizontal_hop_time"] is None
+    True
+    """
+    return Quantities((f"{event}_time", time) for event, time in theory.mean_times(scene).items())
+
+
+def exact(scene: Scene) -> Exact:
+    """Return all exact numbers of a scene as one dict, ready for JSON.
+
+    Parameters
+    ----------
+    scene : Scene
+        The box, the discs and their effects.
+
+    Returns
+    -------
+    dict
+        Keys are regime, ergodic_components, largest_radius, volume, areas and mean_times, the last
+        two with the dicts of the functions of these names. Values that are not known for more than
+        two discs are None.
+
+    Raises
+    ------
+    InputError
+        For anything that is not a ``Scene``.
+
+    Examples
+    --------
+    >>> td.exact(scene)["regime"]
+    'all-hops'
+    """
+    return theory.exact(scene) | {"areas": areas(scene), "mean_times": mean_times(scene)}
+
+
+@answering
+def exact_table(
+    width: float, height: float, radii: Iterable[float], **effects: Unpack[Effects]
+) -> pd.DataFrame:
+    """Return the exact numbers of a box over ``radii``, one row per radius.
+
+    Parameters
+    ----------
+    width, height : float
+        Sides of the box, in length, from 1e-60 to 1e60.
+    radii : iterable of float
+        Radii of disc 1, in length, each of which must fit.
+    **effects
+        The effects and ``discs`` of ``Scene``.
+
+    Returns
+    -------
+    DataFrame, shape (radii, 2 + 1 + 12)
+        Its index is the radius. Columns are regime, ergodic_components, volume, and <event>_area
+        and <event>_time of every event. A time is NaN if the event is impossible or no exact value
+        is known. Units are those of ``volume``, ``areas`` and ``mean_times``.
+
+    Raises
+    ------
+    InputError
+        For a radius that does not fit, for an empty list, and for an unknown effect.
+
+    Examples
+    --------
+    >>> td.exact_table(1.5, 1.0, [0.1, 0.2])["vertical_hop_time"].round(6)
+    radius
+    0.1    1.673843
+    0.2    1.338047
+    Name: vertical_hop_time, dtype: float64
+    """
+    import pandas as pd
+
+    box = box_with(width, height, effects)
+    scenes, refused = scenes_of(box, radii)
+    rows = [
+        {
+            "radius": scene.radius,
+            "regime": scene.regime,
+            "ergodic_components": scene.ergodic_components,
+            **{row["quantity"]: row["exact"] for row in Theory.rows(box, [scene.radius])},
+        }
+        for scene in scenes
+    ]
+    rows += [{"radius": radius, "regime": why} for radius, why in refused.items()]
+    frame = pd.DataFrame(rows).set_index("radius")
+    parts = [row.get("ergodic_components") for row in rows]
+    if any(part is None or part > LARGEST_INTEGER for part in parts):
+        frame["ergodic_components"] = pd.Series(parts, frame.index, object)
+    times = [f"{event}_time" for event in EVENTS]
+    known = ["volume", *(f"{event}_area" for event in EVENTS), *times]
+    frame[known] = frame[known].astype(float)
+    frame.attrs["box"] = box.parameters()
+    return frame
+
+
+def box_with(width, height, effects):
+    """Return the ``Box`` of sides, effects and ``discs``, which may be among the ``effects``."""
+    if not isinstance(effects, dict) or "discs" not in effects:
+        return Box(width, height, effects)
+    rest = {name: value for name, value in effects.items() if name != "discs"}
+    return Box(width, height, rest, effects["discs"])
+
+
+def scenes_of(box, radii):
+    """Return the scenes of a ``Box`` at some ``radii``, and {radius: why it does not fit}.
+
+    Raises ``InputError`` if none of them fits.
+    """
+    if isinstance(radii, str | bytes | Mapping) or not isinstance(radii, Iterable):
+        raise InputError(f"radii must be a list of numbers, not {quote(radii)}")
+    scenes, refused = [], {}
+    for radius in radii:
+        radius = check_length("radius", radius)
+        try:
+            scenes.append(box.scene(radius))
+        except InputError as error:
+            refused[radius] = str(error)
+    if not scenes:
+        raise InputError(
+            [*refused.values(), "radii must have at least one radius, but has none"][0]
+        )
+    return scenes, refused

@@ -1,0 +1,217 @@
+"""A result with its settings and sums: it can be saved, loaded, and taken to a smaller error."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import contextmanager
+from html import escape
+from typing import TYPE_CHECKING, ClassVar, Self
+
+import twodiscs
+from twodiscs.model.box import Box, parameters_of
+from twodiscs.model.checks import InputError, quote, writing_to
+from twodiscs.model.radii import key, stream_seed
+from twodiscs.model.scene import check_scene
+from twodiscs.points.base import content_of, write_json
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    import pandas as pd
+
+    from twodiscs.model.scene import Scene
+
+
+class Result:
+    """A result and how it was made: ``kind`` is the function of the face that made it.
+
+    ``settings`` are its arguments beside the scene, {name: value}, with the seed and the error that
+    was asked for; ``version`` is the version of the package. ``parts`` are the parts of its run
+    (see ``points.base``), from which it goes on.
+    """
+
+    kind: ClassVar[str]
+    scene: Scene
+    settings: dict[str, object]
+    parts: dict[str, dict]
+    version: str = twodiscs.__version__
+    #: The difference between the work that was asked for and the work that was done, None if none.
+    note: str | None = None
+
+    def __eq__(self, other):
+        """Return whether the other result has the same kind, scene, settings and rows."""
+        if type(other) is not type(self):
+            return NotImplemented
+        ours, theirs = ((r.scene, r.settings, r.rows) for r in (self, other))
+        return ours == theirs
+
+    __hash__ = None
+
+    def more(
+        self, amount: object = None, *, cores: int = 1, progress: bool | None = None, **larger
+    ) -> Self:
+        """Return a result from more work, which goes on from this one.
+
+        It is the same, bit for bit, as the result of one call with the new arguments.
+
+        Parameters
+        ----------
+        amount : optional
+            The argument that says how much work there is: a smaller error of ``simulate`` and
+            ``scan``, more samples, intervals (``number``) or hops.
+        cores : int, default 1
+            Cores to work on.
+        progress : bool, optional
+            Whether to show a progress bar; if left out, only in a terminal or a notebook.
+        **larger
+            The same by name, or a larger ``budget`` or ``duration``.
+
+        Returns
+        -------
+        Measurements, Intervals, Transmission or Scan
+            The result, which includes the work of this one.
+
+        Raises
+        ------
+        InputError
+            For an argument that is not among the ``settings`` of this result.
+
+        Examples
+        --------
+        >>> some = td.simulate(scene, duration=1e3, seed=1, events="any_wall")
+        >>> some.more(duration=1e4) == td.simulate(scene, duration=1e4, seed=1, events="any_wall")
+        True
+        """
+        names = [name for name in MORE if name in self.settings]
+        if amount is not None:
+            larger = {names[0]: amount} | larger
+        larger = {name: value for name, value in larger.items() if value is not None}
+        if unknown := [name for name in larger if name not in names]:
+            raise InputError(
+                f"{unknown[0]} must be left out for a result of {self.kind}: to go on, give "
+                f"{' or '.join(f'{name}=' for name in names)}"
+            )
+        return self._again(self.settings | larger, {"cores": cores, "progress": progress})
+
+    def _again(self, settings, options):
+        """Return the result of these ``settings``, which uses the sums of this one."""
+        raise NotImplementedError
+
+    def to_dict(self) -> dict[str, object]:
+        """Return the result as ``save`` writes it.
+
+        Returns
+        -------
+        dict
+            Numbers, texts, lists and dicts.
+
+        Examples
+        --------
+        >>> content = td.simulate(scene, duration=1e3, seed=7).to_dict()
+        >>> content["kind"], content["settings"]["seed"]
+        ('simulate', 7)
+        """
+        return content_of(self.kind, parameters_of(self.scene), self.settings, self.parts)
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the result to a JSON file that ``load_result`` reads.
+
+        Parameters
+        ----------
+        path : path-like
+            The file.
+
+        Raises
+        ------
+        InputError
+            For a path that cannot be written.
+
+        Examples
+        --------
+        >>> md = td.simulate(scene, duration=1e3, seed=1)
+        >>> md.save("md.json")
+        >>> td.load_result("md.json") == md
+        True
+        """
+        with writing_to(path):
+            write_json(path, self.to_dict())
+
+    def _texts(self) -> pd.DataFrame:
+        """Return the texts of the printed table."""
+        raise NotImplementedError
+
+    def __str__(self) -> str:
+        parts = self.scene, self._texts().to_string(index=False), self.note
+        return "\n\n".join(str(part) for part in parts if part)
+
+    def __repr__(self) -> str:
+        return str(self)
+
+    def _repr_html_(self) -> str:
+        note = f"<p>{escape(self.note)}</p>" if self.note else ""
+        return f"<p>{escape(str(self.scene))}</p>{self._texts().to_html(index=False)}{note}"
+
+
+def note_of_number(what, asked, done):
+    """Return the note that a number was rounded up to whole blocks, None if it was not."""
+    if done == asked:
+        return None
+    return f"{asked} {what} asked for, {done} done: whole blocks"
+
+
+#: Settings that can grow when a result goes on; the first one of a kind is its amount.
+MORE = ("error", "samples", "number", "hops", "duration", "budget")
+
+
+#: Seconds before a bar appears: shorter work needs none.
+PATIENCE = 1.0
+
+BAR = "{desc}: {percentage:3.0f}% |{bar}| {elapsed}, {remaining} left"
+
+
+@contextmanager
+def progress_bar(progress, what):
+    """Give a function of the work done (None: as before) and the work in all, or None.
+
+    ``progress`` says whether it shows a bar with the name ``what``; None means only in a terminal
+    or a notebook, so that logs stay clean. Without a bar there is no function, but None.
+    """
+    if progress is None:
+        terminal = sys.stderr is not None and sys.stderr.isatty()
+        progress = terminal or "ipykernel" in sys.modules
+    elif not isinstance(progress, bool):
+        raise InputError(f"progress must be True, False or None, not {quote(progress)}")
+    if not progress:
+        yield None
+        return
+    from importlib.util import find_spec
+    from time import monotonic
+
+    # A notebook without widgets shows a line of text, which is enough. tqdm.auto would warn of it.
+    if "ipykernel" in sys.modules and find_spec("ipywidgets"):
+        from tqdm.notebook import tqdm
+    else:
+        from tqdm import tqdm
+
+    start = monotonic()
+    with tqdm(desc=what, total=1, leave=False, delay=PATIENCE, bar_format=BAR) as bar:
+
+        def progress(done, total):
+            bar.total = max(total, bar.n if done is None else done)
+            if done is not None:
+                bar.update(done - bar.n)
+            elif monotonic() - start > PATIENCE:
+                bar.refresh()
+
+        yield progress
+
+
+def seed_of(scene, method, seed, name):
+    """Return the seed of the random streams of one job, as the pipeline derives it.
+
+    ``name`` is the name of the scene in a configuration; None means the parameters of the box.
+    """
+    box = Box.of(check_scene(scene)).parameters()
+    if name is not None and not isinstance(name, str):
+        raise InputError(f"name must be the name of a scene, not {name!r}")
+    return stream_seed(seed, repr(box) if name is None else name, method, key(scene.radius))

@@ -1,0 +1,376 @@
+"""One trajectory as a table, which can compute the states between its rows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from twodiscs.comparison.result import progress_bar, seed_of
+from twodiscs.comparison.states import VELOCITIES, component, with_aliases
+from twodiscs.dynamics.trajectory import DISCS, columns, followed
+from twodiscs.model.box import parameters_of, scene_of
+from twodiscs.model.checks import (
+    InputError,
+    answering,
+    as_list,
+    quote,
+    writing_to,
+)
+from twodiscs.sampling.starts import components
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from os import PathLike
+
+    from twodiscs.model.scene import Scene
+
+
+class Trajectory(pd.DataFrame):
+    """A trajectory: a table with one row per event, its time, its name and the state right after.
+
+    It is a pandas ``DataFrame`` with these columns:
+
+    - time; x1, y1, …, xN, yN: the centres, from the centre of the box; z1, z2 for balls. On
+      periodic axes they go on beyond the cell.
+    - event; first and second, the discs of the event
+    - u1, v1, …, uN, vN: the velocities along x and y, which vx1, vy1 and so on give, too; w1, w2
+      (vz1, vz2) for balls; s1, s2: the speeds of the surfaces of rough discs
+
+    Parameters
+    ----------
+    data, index, columns, dtype, copy : optional
+        The arguments of ``DataFrame``. The function ``trajectory`` returns one.
+
+    Attributes
+    ----------
+    scene : Scene
+        The scene. ``attrs["scene"]`` has its parameters as plain values, so that every format of
+        pandas can write the table.
+
+    Examples
+    --------
+    >>> path = td.trajectory(scene, 10, seed=1)
+    >>> bool((path["vx1"] == path["u1"]).all())
+    True
+    >>> path.positions([0.5, 1, 2]).shape  # time, disc, axis
+    (3, 2, 2)
+    """
+
+    @property
+    def _constructor(self):
+        return Trajectory
+
+    @property
+    def scene(self) -> Scene:
+        """The scene, whose parameters ``attrs`` holds."""
+        if "scene" not in self.attrs:
+            raise InputError(
+                "trajectory must have a scene in its attrs, but has none; two trajectories "
+                "together keep it only if it is the same"
+            )
+        return scene_of(self.attrs["scene"])
+
+    def __getitem__(self, key):
+        if isinstance(key, str) and key not in self.columns and component(key) in self.columns:
+            return super().__getitem__(component(key)).rename(key)
+        if isinstance(key, list) and any(
+            isinstance(name, str) and component(name) != name and name not in self.columns
+            for name in key
+        ):
+            names = [component(name) if isinstance(name, str) else name for name in key]
+            return super().__getitem__(names).set_axis(key, axis=1)
+        return super().__getitem__(key)
+
+    def states_at(self, times: float | Iterable[float]) -> np.ndarray:
+        """Return the states at some times, exactly.
+
+        Parameters
+        ----------
+        times : float or iterable of float
+            In any order, from the first to the last one of the trajectory, in time.
+
+        Returns
+        -------
+        structured array, shape (times,)
+            States with the fields of ``starts``.
+
+        Raises
+        ------
+        InputError
+            For other times, and if columns of the trajectory are missing. Also if the discs do not
+            move freely from each row to the next one, as in a selection of events.
+
+        Examples
+        --------
+        >>> states = td.trajectory(scene, 5, seed=1).states_at([0.1, 0.3])
+        >>> states["x1"].round(4)
+        array([-0.1522, -0.1876])
+        """
+        scene = self.scene
+        names = components(scene)
+        require_all_rows(self, scene)
+        known, times = self["time"].to_numpy(), as_list(times)
+        try:
+            at = np.atleast_1d(np.asarray(times, float))
+        except (TypeError, ValueError):
+            raise InputError(f"times must be a list of numbers, not {quote(times)}") from None
+        if at.ndim > 1 or not np.all((at >= known[0]) & (at <= known[-1])):
+            raise InputError(
+                f"times must be numbers from {known[0]!s} to {known[-1]!s}, not {quote(times)}"
+            )
+        row = np.searchsorted(known, at, side="right") - 1
+        states = np.empty(at.size, [(name, float) for name in names])
+        for name in names:
+            states[name] = self[name].to_numpy()[row]
+        _fly(scene, states, at - known[row])
+        return with_aliases(states)
+
+    def positions(self, times: float | Iterable[float] | None = None) -> np.ndarray:
+        """Return the centres of all discs as a plain array.
+
+        Parameters
+        ----------
+        times : float or iterable of float, optional
+            As for ``states_at``; those of the rows if left out.
+
+        Returns
+        -------
+        array, shape (times, discs, axes)
+            In length, from the centre of the box; two axes, three for balls.
+
+        Raises
+        ------
+        InputError
+            As ``states_at``.
+
+        Examples
+        --------
+        >>> td.trajectory(scene, 5, seed=1).positions([0.1, 0.3, 0.5]).shape  # time, disc, axis
+        (3, 2, 2)
+        """
+        return self._along_axes(times, "xyz")
+
+    def velocities(self, times: float | Iterable[float] | None = None) -> np.ndarray:
+        """Return the velocities of all discs as a plain array.
+
+        Parameters
+        ----------
+        times : float or iterable of float, optional
+            As for ``states_at``; those of the rows if left out, right after the event.
+
+        Returns
+        -------
+        array, shape (times, discs, axes)
+            In the speed unit, in which √(v₁² + v₂²) is one for two plain discs.
+
+        Raises
+        ------
+        InputError
+            As ``states_at``.
+
+        Examples
+        --------
+        >>> v = td.trajectory(scene, 5, seed=1).velocities([0.1, 0.3, 0.5])
+        >>> (v**2).sum(axis=(1, 2)).round(12)  # the energy is 1/2
+        array([1., 1., 1.])
+        """
+        return self._along_axes(times, "uvw")
+
+    def _along_axes(self, times, letters):
+        # Two events at one time are two rows with different states.
+        states = self if times is None else self.states_at(times)
+        scene = self.scene
+        names = [
+            [f"{letter}{disc}" for letter in letters[: len(scene.axes)]]
+            for disc in range(1, scene.discs + 1)
+        ]
+        missing = [name for disc in names for name in disc if times is None and name not in self]
+        if missing:
+            raise InputError(
+                f"trajectory must have all of its columns, but has no {', '.join(missing)}"
+            )
+        return np.stack(
+            [np.stack([np.asarray(states[n], float) for n in disc], axis=-1) for disc in names],
+            axis=1,
+        )
+
+    def to_xyz(
+        self, path: str | PathLike[str], times: float | Iterable[float] | None = None
+    ) -> None:
+        """Write the trajectory as an extended XYZ file, which ASE and OVITO read.
+
+        MDAnalysis reads the centres only: give it the box, ``universe.dimensions``.
+
+        A frame has the time, the box as its lattice and, for each disc, the species X, its centre,
+        mass, momentum, radius and number. Coordinates begin at a corner of the box. Discs in the
+        plane are in the middle of a lattice whose thickness is the diameter of the larger disc. On
+        periodic axes centres go on beyond the cell.
+
+        Parameters
+        ----------
+        path : path-like
+            The file, which usually ends in .xyz.
+        times : float or iterable of float, optional
+            The times of the frames, as for ``states_at``; without them the times of the rows, which
+            have no equal steps.
+
+        Raises
+        ------
+        InputError
+            As ``states_at``, and for a path that cannot be written.
+
+        Examples
+        --------
+        >>> td.trajectory(scene, 5, seed=1).to_xyz("two.xyz", [0, 1, 2])
+        >>> len(open("two.xyz").readlines())  # three frames, each of two lines and two discs
+        12
+        """
+        scene = self.scene
+        at = self["time"].to_numpy() if times is None else np.atleast_1d(as_list(times))
+        centres, velocities = self.positions(times), self.velocities(times)
+        discs, flat = scene.discs, len(scene.axes) == 2
+        radii, masses = scene.radii, scene.masses
+        sides = [scene.side(axis) for axis in scene.axes]
+        if flat:
+            sides.append(2 * max(radii))
+            centres, velocities = (
+                np.pad(a, ((0, 0), (0, 0), (0, 1))) for a in (centres, velocities)
+            )
+        centres = centres + np.array(sides) / 2
+        lattice = " ".join(repr(float(side)) for side in np.diag(sides).flat)
+        periodic = " ".join("T" if axis in scene.periodic else "F" for axis in "xyz")
+        properties = "species:S:1:pos:R:3:masses:R:1:momenta:R:3:radius:R:1:id:I:1"
+        with writing_to(path), open(path, "w", encoding="utf-8", newline="\n") as file:
+            for time, places, speeds in zip(at, centres, velocities, strict=True):
+                file.write(
+                    f'{discs}\nLattice="{lattice}" Properties={properties} pbc="{periodic}" '
+                    f"Time={float(time)!r}\n"
+                )
+                for disc in range(discs):
+                    numbers = (*places[disc], masses[disc], *(masses[disc] * speeds[disc]))
+                    texts = (repr(float(number)) for number in (*numbers, radii[disc]))
+                    file.write(f"X {' '.join(texts)} {disc + 1}\n")
+
+
+#: The largest distance of a row from the end of the free flight that begins at the row before it,
+#: over the lengths whose rounding causes it. They agree within 2e-15 in every kind of scene.
+ROUNDING = 1e-10
+
+
+def _fly(scene, states, since):
+    """Let the discs in ``states``, arrays by component, move freely for the times ``since``."""
+    for axis in scene.axes:
+        falling = scene.field if axis == "y" else 0.0
+        for disc in range(1, scene.discs + 1):
+            place, velocity = f"{axis}{disc}", f"{VELOCITIES[axis]}{disc}"
+            states[place] = states[place] + (states[velocity] - falling * since / 2) * since
+            states[velocity] = states[velocity] - falling * since
+
+
+def require_all_rows(trajectory, scene):
+    """Raise ``InputError`` unless the discs move freely from each row to the next one.
+
+    Labels of rows do not show that a row is missing, because they may have been renewed. The states
+    show it. Rows of hops may be missing, because a hop changes no state.
+    """
+    names = ["time", *components(scene)]
+    missing = [name for name in names if name not in trajectory]
+    if missing or trajectory.empty:
+        raise InputError(
+            "trajectory must have all of its columns and at least one row, but has "
+            f"{len(trajectory)} rows and lacks {', '.join(missing) or 'no column'}"
+        )
+    rows = {name: trajectory[name].to_numpy(float) for name in names}
+    time, flown = rows["time"], {name: values[:-1] for name, values in rows.items()}
+    free = np.diff(time) >= 0
+    _fly(scene, flown, np.diff(time))
+    for axis in scene.axes:
+        for disc in range(1, scene.discs + 1):
+            place, velocity = f"{axis}{disc}", f"{VELOCITIES[axis]}{disc}"
+            speeds = np.abs(rows[velocity][:-1]) + np.abs(flown[velocity])
+            scale = scene.side(axis) + np.abs(rows[place][1:]) + speeds * time[1:]
+            free &= np.abs(flown[place] - rows[place][1:]) <= ROUNDING * scale
+    if not free.all():
+        first = int(free.argmin())
+        raise InputError(
+            "trajectory must have all rows from its first to its last, because the discs move "
+            f"freely between them, but do not from the time {time[first]!s} to "
+            f"{time[first + 1]!s}: rows are missing, in another order or rounded"
+        )
+
+
+@answering
+def trajectory(
+    scene: Scene,
+    duration: float | None = None,
+    *,
+    seed: int = 1,
+    start: Sequence[float] | np.ndarray | np.void | None = None,
+    name: str | None = None,
+    progress: bool | None = None,
+) -> Trajectory:
+    """Follow one trajectory: a table with one row per event, its time, name and the state after it.
+
+    Hops are among the events. On periodic axes positions go on beyond the cell.
+
+    Parameters
+    ----------
+    scene : Scene
+        The box, the discs and their effects.
+    duration : float, optional
+        The duration, in time, at most 10⁷ events, and for many discs at most 1.2e8 numbers of
+        states: 29,000 events of 1024 discs. If left out, it is some eight mean times of the
+        rarest open hop or some 6000 events, for more than two discs 1500.
+    seed : int, default 1
+        Seed of the random numbers, from 0 to 2⁶³ − 1. The initial state is the first one of
+        ``starts`` with this seed.
+    start : sequence of float or state, optional
+        An initial state in the form of ``starts``, or its numbers: discs inside the box, without
+        overlap, with the energy 1/2.
+    name, progress : optional
+        See ``help(twodiscs)``.
+
+    Returns
+    -------
+    Trajectory
+        A pandas ``DataFrame``; ``states_at(times)`` and ``positions(times)`` give the states
+        between its rows.
+
+    Raises
+    ------
+    InputError
+        For a start that is no state, and for a duration of more events.
+
+    Examples
+    --------
+    >>> path = td.trajectory(scene, 10, seed=1)
+    >>> path["time"].iloc[-1]
+    np.float64(10.0)
+    >>> path.positions([1, 2.5]).shape  # time, disc, axis
+    (2, 2, 2)
+    """
+    seed = seed_of(scene, "trajectory", seed, name)
+    with progress_bar(progress, f"trajectory r = {scene.radius:g}") as progress:
+        rows = followed(scene, seed, start, duration, progress)
+    times, events, *discs, states = zip(*rows, strict=True)
+    known = dict(zip(components(scene), np.array(states).T, strict=True))
+    known |= {"time": times, "event": events}
+    known |= {name: pd.array(of, "Int64") for name, of in zip(DISCS, discs, strict=True)}
+    names = [name for name in columns(scene.discs) if name in known]
+    frame = Trajectory(
+        {
+            name: known[name]
+            for name in [*names, *(n for n in _by_disc(scene, known) if n not in names)]
+        }
+    )
+    frame.attrs["scene"] = parameters_of(scene)
+    return frame
+
+
+def _by_disc(scene, names):
+    """Return ``names`` of components disc by disc: u1, v1, u2, v2, not u1, u2, v1, v2."""
+    numbers = {str(disc): disc for disc in range(1, scene.discs + 1)}
+    return sorted((n for n in names if n[1:] in numbers), key=lambda name: numbers[name[1:]])

@@ -1,0 +1,198 @@
+"""Configuration space: a section in three dimensions, and the whole as a product of two squares."""
+
+from itertools import combinations, pairwise, product
+from math import cos, pi, radians, sin, sqrt
+
+import numpy as np
+from matplotlib.patches import Polygon
+
+from twodiscs.figures import drawing
+from twodiscs.figures.style import BLACK, BLUE, COLUMN, GREY, VERMILLION, new_figure
+
+#: Radius of the discs, over the shorter side, and x and y of the point, over √2 r: neither excluded
+#: band vanishes there.
+RADIUS = 0.16
+POINT = (0.88, 0.72)
+
+#: X and Y of the point, its positions along the diagonals, over their largest values.
+ALONG = (0.28, 0.45)
+
+LEFT, RIGHT, GAP, BOTTOM, TOP = 0.27, 0.1, 0.42, 0.3, 0.28
+
+#: Inches between the squares and the prism above them, and the largest height of that.
+BETWEEN, PRISM = 0.42, 1.7
+
+#: The direction of view of the prism, in degrees around the vertical and above the horizon.
+AZIMUTH, ELEVATION = -112.0, 24.0
+
+#: Strips of the cylinder, and its colours: outside, where light falls on it or not, and cut.
+STRIPS, SHADES, CUT = 60, ((0.72, 0.60, 0.32), (0.99, 0.95, 0.82)), "#E2CF95"
+
+
+def draw(box):
+    """Draw the two squares of the ``Box``."""
+    width, height = drawing.outline(box)
+    radius = RADIUS * min(width, height)
+    side = (COLUMN - LEFT - RIGHT - GAP) / 2
+    halves = (width / 2 - radius, height / 2 - radius)
+    corners = [_seen(corner) for corner in product(*((-n, n) for n in _sizes(halves)))]
+    x, y = zip(*corners, strict=True)
+    extent = (min(x), max(x), min(y), max(y))
+    room = COLUMN - 2 * LEFT
+    inches = drawing.scale(extent[1] - extent[0], extent[3] - extent[2], room, PRISM)
+    squares = BOTTOM + side + TOP
+    figure = new_figure(squares + BETWEEN + inches * (extent[3] - extent[2]))
+    middle = (COLUMN - inches * (extent[1] - extent[0])) / 2
+    axes = drawing.add_axes(figure, middle, squares + BETWEEN - TOP / 2, inches, extent)
+    _prism(axes, halves, sqrt(2) * radius)
+    for text, at in (
+        ("(a)", squares + BETWEEN + inches * (extent[3] - extent[2]) - 0.08),
+        ("(b)", squares),
+    ):
+        figure.text(0.01, (at - 0.02) / figure.get_figheight(), text, va="top")
+    for i, (half, colour) in enumerate(zip(halves, (BLUE, VERMILLION), strict=True)):
+        left = LEFT + i * (side + GAP)
+        axes = drawing.add_axes(figure, left, BOTTOM, side / (2 * half), (-half, half, -half, half))
+        name, other = ("x", "y") if i == 0 else ("y", "x")
+        band = sqrt(2) * radius * sqrt(1 - POINT[1 - i] ** 2)
+        _square(axes, half, band, sqrt(2) * radius, (name, other), "ab"[i])
+        depth = POINT[i] * sqrt(2) * radius
+        _point(axes, depth, ALONG[i] * (sqrt(2) * half - depth), colour)
+    cross = (LEFT + side + 0.13) / COLUMN
+    middle = (BOTTOM + side / 2) / figure.get_figheight()
+    figure.text(cross, middle, r"$\times$", fontsize=12, ha="center", va="center")
+    return figure
+
+
+def _sizes(halves):
+    """Return half of the sides of the prism, along x1, x2 and y."""
+    return halves[0], halves[0], sqrt(2) * halves[1]
+
+
+def _seen(point):
+    """Return where a point (x1, x2, y) is on the page."""
+    a, e = radians(AZIMUTH), radians(ELEVATION)
+    forward = cos(a) * point[0] + sin(a) * point[1]
+    return cos(a) * point[1] - sin(a) * point[0], cos(e) * point[2] - sin(e) * forward
+
+
+def _towards(direction):
+    """Return how far a ``direction`` points to who looks at the prism."""
+    a, e = radians(AZIMUTH), radians(ELEVATION)
+    return cos(e) * (cos(a) * direction[0] + sin(a) * direction[1]) + sin(e) * direction[2]
+
+
+def _prism(axes, halves, radius):
+    """Draw the prism, with edges that it hides dashed, and the cylinder of a ``radius`` in it."""
+    sizes = _sizes(halves)
+    corners = [*product((-1, 1), repeat=3)]
+    edges = [
+        (one, two)
+        for one, two in combinations(corners, 2)
+        if sum(i != j for i, j in zip(one, two, strict=True)) == 1
+    ]
+    # An edge is hidden if both faces that meet in it look away.
+    shared = [[i if i == j else 0 for i, j in zip(*edge, strict=True)] for edge in edges]
+    hidden = [
+        all(_towards([n * (k == axis) for k in range(3)]) < 0 for axis, n in enumerate(faces) if n)
+        for faces in shared
+    ]
+
+    def draw(edge, **options):
+        ends = [_seen([n * size for n, size in zip(c, sizes, strict=True)]) for c in edge]
+        drawing.line(axes, ends, **options)
+
+    for edge, is_hidden in zip(edges, hidden, strict=True):
+        if is_hidden:
+            draw(edge, colour=GREY, width=0.5, style=(0, (3, 2)), zorder=0)
+    _cylinder(axes, sqrt(2) * halves[0], radius)
+    for edge, is_hidden in zip(edges, hidden, strict=True):
+        if not is_hidden:
+            draw(edge, colour=BLACK, width=0.8)
+    # Along the lower edges that are nearest, and the upright one on the left.
+    drawing.label(axes, "$x_1$", _seen((0, -sizes[1], -sizes[2])), (0, -8))
+    side = 1 if _towards((1, 0, 0)) > 0 else -1
+    drawing.label(axes, "$x_2$", _seen((side * sizes[0], 0, -sizes[2])), (-9, -5))
+    drawing.label(axes, "$y$", _seen((-side * sizes[0], -sizes[1], 0)), (8, 0))
+
+
+def _cylinder(axes, reach, radius):
+    """Draw the cylinder around the diagonal, as far as the prism ``reach``es along that."""
+    angles = np.linspace(0, 2 * pi, STRIPS + 1)
+
+    def at(angle, end):
+        across = radius * cos(angle)
+        along = end * (reach - abs(across))
+        return _seen((*_turned(across, along), radius * sin(angle)))
+
+    dark, light = map(np.array, SHADES)
+    for angle, later in pairwise(angles):
+        middle = (angle + later) / 2
+        facing = _towards((*_turned(cos(middle), 0), sin(middle)))
+        if facing > 0:
+            corners = [at(angle, -1), at(later, -1), at(later, 1), at(angle, 1)]
+            colour = tuple(dark + (light - dark) * facing)
+            axes.add_patch(
+                Polygon(corners, facecolor=colour, edgecolor=colour, lw=0.3, clip_on=False)
+            )
+    for end in (-1, 1):
+        # The two halves of an end lie in two faces of the prism.
+        for first, normal in ((-pi / 2, _end_normal(end, True)), (pi / 2, _end_normal(end, False))):
+            half = [at(angle, end) for angle in np.linspace(first, first + pi, STRIPS)]
+            if _towards(normal) > 0:
+                axes.add_patch(Polygon(half, facecolor=CUT, edgecolor=BLACK, lw=0.6, clip_on=False))
+            else:
+                drawing.line(axes, half, colour=GREY, width=0.4, style=(0, (3, 2)))
+
+
+def _end_normal(end, is_right):
+    """Return the normal of the face in which half of an end lies; ``is_right`` where x1 > x2."""
+    return (end, 0, 0) if is_right == (end > 0) else (0, end, 0)
+
+
+def _turned(across, along):
+    """Return (x1, x2) with (x1 − x2)/√2 = ``across`` and (x1 + x2)/√2 = ``along``."""
+    return (along + across) / sqrt(2), (along - across) / sqrt(2)
+
+
+def _strip(axes, half, depth, **options):
+    """Fill the part of the square with |x1 − x2|/√2 < ``depth``."""
+    d = sqrt(2) * depth
+    corners = [(-half, -half), (d - half, -half), (half, half - d)]
+    corners += [(-x, -y) for x, y in corners]
+    axes.add_patch(Polygon(corners, clip_on=False, **options))
+
+
+def _square(axes, half, band, widest, names, letter):
+    name, other = names
+    quarter = [(0, 0), (half, half), (half, -half)]
+    axes.add_patch(Polygon(quarter, facecolor="none", edgecolor="#B8B8B8", hatch="////", lw=0))
+    _strip(axes, half, band, facecolor="#F3E3B5", edgecolor="none")
+    _strip(axes, half, band, facecolor="none", edgecolor="#8C6A00", hatch="....", lw=0)
+    _strip(axes, half, widest, facecolor="none", edgecolor=GREY, lw=0.5, ls=(0, (3, 2)))
+    drawing.rectangle(axes, -half, half, -half, half, width=0.9)
+
+    tip = sqrt(2) * half
+    capital = name.upper()
+    drawing.arrow(axes, (0, 0), _turned(0, 0.93 * tip), width=0.6, size=6)
+    drawing.arrow(axes, (0, 0), _turned(0.93 * tip, 0), width=0.6, size=6)
+    white = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}
+    drawing.label(axes, f"${capital}$", _turned(0, 0.66 * tip), (6, -4), bbox=white)
+    drawing.label(axes, f"${name}$", _turned(0.8 * tip, 0), (3, 6), bbox=white)
+
+    drawing.label(axes, f"${name}_1$", (0, -half), (0, -9))
+    drawing.label(axes, f"${name}_2$", (-half, 0), (-10, 0))
+    for end, text in ((-half, f"$-{letter}$"), (half, f"${letter}$")):
+        drawing.label(axes, text, (end, -half), (0, -8))
+        drawing.label(axes, text, (-half, end), (-9, 0))
+    inside = rf"$|{name}|<\sqrt{{2r^2-{other}^2}}$"
+    drawing.label(axes, inside, (0.3 * half, half), (0, 10))
+    at = _turned(-0.5 * band, 0.8 * tip)
+    drawing.line(axes, [(0.3 * half, 1.07 * half), at], colour=BLACK, width=0.5)
+
+
+def _point(axes, depth, along, colour):
+    """Mark a point and its distance ``depth`` from the diagonal."""
+    point, foot = _turned(depth, along), _turned(0, along)
+    drawing.arrow(axes, foot, point, "-", colour=colour, width=1)
+    axes.plot(*point, "o", color=colour, markersize=3.4, clip_on=False)

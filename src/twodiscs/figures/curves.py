@@ -1,0 +1,119 @@
+"""Exact curves over the radius, dense where they bend and broken at the limits of a regime."""
+
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+
+from twodiscs.comparison.scene_tables import Theory
+from twodiscs.model.events import AXIS, EVENTS, HOPS
+
+#: The name of the largest radius, and the names of the radii at which hops become blocked.
+LARGEST, QUARTERS = r"r_{\mathrm{max}}", {"x": "h/4", "y": "w/4"}
+
+#: The names of radii of a box with effects: hops become blocked, disc 1 can no longer change sides,
+#: in a field it can reach the top wall, on a periodic axis discs can no longer pass each other. If
+#: two radii are the same, the name is that of a hop, or else the first.
+VERTICAL, HORIZONTAL = r"r_{\mathrm{v}}", r"r_{\mathrm{h}}"
+TOP, ACROSS_X, ACROSS_Y = r"r_{\mathrm{t}}", r"r_{\mathrm{x}}", r"r_{\mathrm{y}}"
+CHANGES = {
+    VERTICAL: lambda scene: scene.vertical_hops,
+    HORIZONTAL: lambda scene: scene.horizontal_hops,
+    TOP: lambda scene: scene.is_possible("top_wall"),
+    ACROSS_X: lambda scene: scene.confined[0],
+    ACROSS_Y: lambda scene: scene.confined[1],
+    r"\sigma=h/2": lambda scene: _fills(scene, "y"),
+    r"\sigma=w/2": lambda scene: _fills(scene, "x"),
+}
+
+
+@cache
+def limits(box):
+    """Return ((radius, name in mathtext), …) of a ``Box``, ascending.
+
+    For two plain discs they are h/4 and w/4, if discs of these radii fit, and the largest radius.
+    With effects, and for more discs, they are r_v and r_h, at which vertical and horizontal hops
+    become blocked. In a field r_t is the radius from which on disc 1 can rise to the top wall. At
+    r_x and r_y disc 1 loses its way to the other side of disc 2, if the hop is not blocked there.
+    A periodic axis adds the radii at which σ = r1 + r2 is half of a side. The last one is the
+    largest radius, which a field may lower.
+    """
+    names = {}
+    if box.is_plain:
+        for hop in sorted(HOPS, key=AXIS.get):
+            radius, name = box.threshold(hop), QUARTERS[AXIS[hop]]
+            names[radius] = f"{names[radius]}={name}" if radius in names else name
+        names = {radius: name for radius, name in names.items() if radius in box.thresholds}
+        return *sorted(names.items()), (box.largest_radius, LARGEST)
+    largest = box.last_radius
+    for name, state in CHANGES.items():
+        first = state(box.scene(1e-6 * largest))
+        radius = box.end(lambda here, s=state, f=first: s(here) == f)
+        if radius in names and name == HORIZONTAL:
+            names[radius] += f"={name}"
+        elif radius < largest:
+            names.setdefault(radius, name)
+    return *sorted(names.items()), (largest, LARGEST)
+
+
+def _fills(scene, axis):
+    return bool(scene.periodic) and scene.reach(axis) <= scene.exact_contact
+
+
+def hop_ends(box):
+    """Return {hop: (radius at which it ends, its name)} of a ``Box``."""
+    ends = limits(box)
+    names = (QUARTERS["y"], QUARTERS["x"]) if box.is_plain else (VERTICAL, HORIZONTAL)
+    return {
+        hop: next((limit for limit in ends if name in limit[1].split("=")), ends[-1])
+        for hop, name in zip(HOPS, names, strict=True)
+    }
+
+
+#: The closest approach to the limits of a regime, over its length; ``FARTHER`` is for effects.
+CLOSEST, FARTHER = 1e-9, 1e-5
+
+#: The number of radii in each regime. They are Chebyshev nodes, which are dense at both ends, where
+#: curves bend, and go on in geometric progression to the limits. Effects have fewer, because their
+#: theory takes longer, and four or more discs have the fewest: one radius takes up to a minute.
+NODES, FEWER, FEWEST, GEOMETRIC = 96, 56, 24, 8
+
+
+def branches(box, others=()):
+    """Return one ascending array of radii for each regime of a ``Box``, none on its limits.
+
+    The first one starts at 1e-4 of its length, where the law for small radii holds. ``others`` are
+    more limits, such as the limits of another box in the same figure.
+    """
+    own = [radius for radius, _ in limits(box)]
+    ends = sorted({0, *own, *(radius for radius in others if radius < own[-1])})
+    nodes = NODES if box.is_plain else FEWER if box.discs < 4 else FEWEST
+    inner = (1 - np.cos(np.pi * np.arange(1, nodes) / nodes)) / 2
+    near = np.geomspace(CLOSEST if box.is_plain else FARTHER, inner[0], GEOMETRIC)
+    regimes = []
+    for low, high in pairwise(ends):
+        start = np.geomspace(1e-4, inner[0], GEOMETRIC) if low == 0 else near
+        end = 1 - near if box.discs < 4 else []
+        fractions = np.unique(np.concatenate([start, inner, end]))
+        radii = low + fractions * (high - low)
+        regimes.append(np.unique(radii[(radii > low) & (radii < high)]))
+    return regimes
+
+
+def exact_curves(box, others=()):
+    """Return (radii, {quantity: values}) along the exact curves of a ``Box``.
+
+    Quantities are named as in theory.csv. A NaN between two regimes breaks a line through the
+    values at a limit, where some of them jump. NaN also means that an event is impossible, or that
+    no exact value is known. ``others`` are more limits, as in ``branches``.
+    """
+    radii, rows = [], []
+    for branch in branches(box, others):
+        for radius in map(float, branch):
+            radii.append(radius)
+            rows.append({row["quantity"]: row["exact"] for row in Theory.rows(box, [radius])})
+        radii.append(np.nan)
+        rows.append({})
+    names = ["volume", *(f"{event}_{kind}" for kind in ("area", "time") for event in EVENTS)]
+    columns = {name: np.array([row.get(name) for row in rows], float) for name in names}
+    return np.array(radii), columns

@@ -1,0 +1,101 @@
+"""Drawings to scale: panels, dimension lines, discs.
+
+A panel's coordinates are lengths of the box. Positions on the page are in inches. The distance of a
+label from its object is in points.
+"""
+
+from matplotlib.patches import Circle, Rectangle
+
+from twodiscs.figures.style import BLACK, BLUE, COLUMN, GREY, VERMILLION, new_figure
+
+#: Tallest drawing, in inches.
+TALLEST = 3.6
+
+#: The longest box drawn to scale, over its short side; it shows everything that longer boxes show.
+LONGEST = 4
+
+#: Fill and outline of disc 1 and disc 2.
+DISCS = (("#CFE3F1", BLUE), ("#F8DDC8", VERMILLION))
+
+
+def outline(box, longest=LONGEST):
+    """Return the sides of a drawn ``Box``, the longer cut to ``longest`` times the shorter."""
+    return min(box.width, longest * box.height), min(box.height, longest * box.width)
+
+
+def scale(width, height, room_x, room_y):
+    """Return the inches per unit at which ``width`` × ``height`` fits into the given inches."""
+    return min(room_x / width, room_y / height)
+
+
+def add_axes(figure, left, bottom, inches, extent):
+    """Add a panel without frame and ticks and return its axes.
+
+    Its lower left corner is ``left``, ``bottom`` inches from the figure's, one unit is ``inches``
+    long, and ``extent`` is (x0, x1, y0, y1). Lines may cross its edges.
+    """
+    x0, x1, y0, y1 = extent
+    across, up = figure.get_size_inches()
+    axes = figure.add_axes(
+        (left / across, bottom / up, inches * (x1 - x0) / across, inches * (y1 - y0) / up)
+    )
+    axes.set(xlim=(x0, x1), ylim=(y0, y1))
+    axes.set_axis_off()
+    return axes
+
+
+def single(extent, left, right, bottom, top):
+    """Return (figure, axes) of one panel as large as a column allows, with margins in inches."""
+    x0, x1, y0, y1 = extent
+    room_x = COLUMN - left - right
+    inches = scale(x1 - x0, y1 - y0, room_x, TALLEST - bottom - top)
+    figure = new_figure(bottom + top + inches * (y1 - y0))
+    spare = room_x - inches * (x1 - x0)
+    return figure, add_axes(figure, left + spare / 2, bottom, inches, extent)
+
+
+def label(axes, text, at, offset=(0, 0), **options):
+    """Write ``text`` centred at ``offset`` points from the point ``at``."""
+    settings = {"ha": "center", "va": "center", "annotation_clip": False} | options
+    return axes.annotate(text, at, offset, textcoords="offset points", **settings)
+
+
+def arrow(axes, tail, head, style="-|>", colour=BLACK, width=0.7, size=7, **options):
+    """Draw a straight arrow between two points."""
+    properties = {"arrowstyle": style, "color": colour, "linewidth": width, "mutation_scale": size}
+    properties |= {"shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", head, tail, arrowprops=properties, annotation_clip=False, **options)
+
+
+def dimension(axes, start, end, text, offset, **options):
+    """Draw a dimension line, its text ``offset`` points from its middle."""
+    arrow(axes, start, end, "<|-|>", width=0.5, size=5)
+    middle = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2)
+    label(axes, text, middle, offset, **options)
+
+
+def line(axes, points, colour=GREY, width=0.5, style="-", **options):
+    """Draw a line through ``points``, without clipping."""
+    settings = {"color": colour, "linewidth": width, "linestyle": style, "clip_on": False} | options
+    axes.plot(*zip(*points, strict=True), **settings)
+
+
+def rectangle(axes, x0, x1, y0, y1, edge=BLACK, face="none", width=0.8, **options):
+    """Draw the rectangle [x0, x1] × [y0, y1]."""
+    settings = {"edgecolor": edge, "facecolor": face, "linewidth": width, "clip_on": False}
+    axes.add_patch(Rectangle((x0, y0), x1 - x0, y1 - y0, **settings | options))
+
+
+def disc(axes, number, centre, radius):
+    """Draw disc 1 or 2 with a dot at its centre."""
+    face, edge = DISCS[number - 1]
+    settings = {"edgecolor": edge, "linewidth": 0.8, "clip_on": False}
+    axes.add_patch(Circle(centre, radius, facecolor=face, **settings))
+    axes.plot(*centre, ".", color=edge, markersize=3, clip_on=False)
+
+
+def points(axes):
+    """Return the length in the box that corresponds to one point on the page."""
+    x0, x1 = axes.get_xlim()
+    inches = axes.get_position().width * axes.figure.get_figwidth()
+    return (x1 - x0) / (72 * inches)

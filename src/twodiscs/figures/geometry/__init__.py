@@ -1,1 +1,0 @@
-"""Drawings of the box and of its configuration space."""

@@ -1,0 +1,257 @@
+"""Figures of the motion: hops of two discs, world lines of many, and intervals between hops."""
+
+from itertools import groupby, takewhile
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.colors import to_rgb
+
+from twodiscs.figures import panels
+from twodiscs.figures.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    SERIES,
+    SKY,
+    VERMILLION,
+    name_of,
+    new_figure,
+)
+from twodiscs.model.events import AXIS, HOPS
+from twodiscs.theory import laws
+
+#: Inches: each of the two panels.
+PANEL = 1.55
+
+#: The mean number of rows in the lower panel, which is lower if hops would be closer than ``APART``
+#: of its width; and its longest time, over that of the upper panel.
+CLOSE, APART, MOST = 150, 0.02, 1 / 3
+
+
+def draw_trajectory(box, rows, radius=None):
+    """Draw x2 − x1 against time from trajectory.csv.
+
+    In a box higher than wide, or if x is periodic, it is y2 − y1. The ``radius``, if given, is
+    written above. Between events the discs move freely, or fall with the same acceleration, so
+    straight lines through the rows are the trajectory itself. More than two discs are drawn by
+    ``world_lines``.
+    """
+    if box.family == "many":
+        return world_lines(box, rows, radius)
+    hop = shown_hop(box)
+    axis = AXIS[hop]
+    times = np.array([row["time"] for row in rows])
+    apart = np.array([row[f"{axis}2"] - row[f"{axis}1"] for row in rows])
+    hops = times[[row["event"] == hop for row in rows]]
+
+    figure = new_figure(2 * PANEL, layout="constrained")
+    whole, close = figure.subplots(2)
+    length = (times[-1] - times[0]) * min(MOST, CLOSE / len(rows))
+    start, end = _crowded(hops, length, times[0], times[-1])
+    gaps = np.diff(hops[(hops > start) & (hops < end)])
+    if gaps.size and gaps.min() < APART * length:
+        length = max(gaps.min() / APART, length / 10)
+        start, end = _crowded(hops, length, times[0], times[-1])
+    for axes, thick, size in ((whole, 0.3, 2.2), (close, 0.7, 3)):
+        axes.set(xlabel="time $t$", ylabel=f"${axis}_2-{axis}_1$")
+        axes.axhline(0, color=GREY, lw=0.5, zorder=1)
+        axes.plot(times, apart, color=BLUE, lw=thick, zorder=2)
+        axes.plot(hops, 0 * hops, "o", color=VERMILLION, markersize=size, mew=0, zorder=3)
+    reach = 1.08 * np.abs(apart).max()
+    whole.set(xlim=(times[0], times[-1]), ylim=(-reach, reach))
+    close.set(xlim=(start, end), ylim=(-reach, reach))
+    whole.axvspan(start, end, color=ORANGE, alpha=0.45, lw=0, zorder=0, label="stretch in (b)")
+    if hops.size:
+        whole.plot([], [], ls="", marker="o", markersize=2.2, color=VERMILLION, label="hops")
+    figure.legend(loc="outside lower center", ncols=2)
+    panels.title(whole, "a", box, panels.of_radius(radius))
+    panels.title(close, "b")
+    return figure
+
+
+def shown_hop(box):
+    """Return the hop of two discs in a ``Box`` that the figure shows.
+
+    It is the one along the longer side, unless this axis is periodic.
+    """
+    periodic = box.effects.get("periodic", "")
+    along_x = "y" in periodic or (box.width >= box.height and "x" not in periodic)
+    return "horizontal_hop" if along_x else "vertical_hop"
+
+
+def _crowded(hops, length, start, end):
+    """Return the ends of the stretch of ``length`` with the most ``hops``."""
+    first = start
+    if len(hops):
+        counts = np.searchsorted(hops, hops + 0.6 * length) - np.arange(len(hops))
+        first = hops[np.argmax(counts)] - 0.3 * length
+    first = min(max(first, start), end - length)
+    return first, first + length
+
+
+# Many discs ---------------------------------------------------------------------------------------
+
+
+#: The colours of up to six discs.
+FEW = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
+
+#: The part of the map of colours of more discs that is neither too dark nor too light.
+LOW, HIGH = 0.05, 0.95
+
+#: Inches: each of the two panels.
+LINES_PANEL = 2.0
+
+#: Points: a line for each disc, in the upper panel and in the lower one.
+THIN, THICK = 0.5, 0.9
+
+#: Bends for each disc that either panel shows.
+BENDS, CLOSE_BENDS = 75, 15
+
+#: The most discs that the legend names, and the most lines in a panel.
+NAMED, LINES = 8, 24
+
+
+def along(box):
+    """Return "x" in a box at least as wide as high, else "y"."""
+    return "x" if box.width >= box.height else "y"
+
+
+def colours(box, first):
+    """Return a colour for each disc, by its rank along the longer side in the row ``first``."""
+    places = [first[f"{along(box)}{disc}"] for disc in range(1, box.discs + 1)]
+    ranks = np.argsort(np.argsort(places))
+    if box.discs <= len(FEW):
+        return [to_rgb(FEW[rank]) for rank in ranks]
+    shades = LOW + (HIGH - LOW) * ranks / (box.discs - 1)
+    return [to_rgb(colormaps["turbo"](shade)) for shade in shades]
+
+
+def world_lines(box, rows, radius=None):
+    """Draw the positions of the discs of a ``Box`` along its longer side, against time.
+
+    ``rows`` are the rows of trajectory.csv; the first ones are shown, and discs move freely between
+    them. Of more than ``LINES`` discs there are that number, at equal distances in their order at
+    the start. The ``radius``, if given, is written above.
+    """
+    axis, side = along(box), max(box.width, box.height)
+    rows = [row for row in rows if row["event"] not in HOPS][: BENDS * box.discs + 1]
+    times = np.array([row["time"] for row in rows])
+    figure = new_figure(2 * LINES_PANEL, layout="constrained")
+    whole, close = figure.subplots(2)
+    shades = colours(box, rows[0])
+    whole.set_xlim(times[0], times[-1])
+    # A short trajectory has fewer rows than either panel could show.
+    close.set_xlim(times[0], times[min(CLOSE_BENDS * box.discs, len(times) * CLOSE_BENDS // BENDS)])
+    places = np.array([[row[f"{axis}{disc}"] for row in rows] for disc in range(1, box.discs + 1)])
+    shown_discs = np.arange(box.discs)
+    if box.discs > LINES:
+        ranks = np.linspace(0, box.discs - 1, LINES).round().astype(int)
+        shown_discs = np.argsort(places[:, 0], kind="stable")[ranks]
+    for axes, width in ((whole, THIN), (close, THICK)):
+        shown = places[:, times <= axes.get_xlim()[1]]
+        goes_on = axis in box.effects.get("periodic", "")
+        low, high = (shown.min(), shown.max()) if goes_on else (-side / 2, side / 2)
+        axes.set(xlabel="time $t$", ylabel=f"${axis}$", ylim=(low, high))
+        for disc in shown_discs:
+            axes.plot(times, places[disc], color=shades[disc], lw=width)
+    if box.discs <= NAMED:
+        names = ["disc 1", *map(str, range(2, box.discs + 1))]
+        figure.legend(
+            close.get_lines(), names, loc="outside lower center", ncols=box.discs, handlelength=1
+        )
+    panels.title(whole, "a", box, panels.of_radius(radius))
+    panels.title(close, "b")
+    if box.discs > LINES:
+        close.set_title(f"{LINES} of the discs", loc="right", pad=3)
+    return figure
+
+
+# Intervals ----------------------------------------------------------------------------------------
+
+
+#: Inches: the panel of all intervals, and the panel of short ones.
+ALL, SHORT = 2.4, 1.7
+
+#: The longest of the short intervals, in mean times.
+LONGEST_SHORT = 2.5
+
+#: The curve ends before a bin with fewer intervals than this.
+FEWEST = 10
+
+#: The number of bins that can show a density that changes with the room at a hop.
+FINE = 4
+
+#: Length of the dashes that mark exact densities at 0, in mean times, to either side of the axis.
+DASH = 0.035
+
+#: The distance between symbols in either panel, in mean times.
+SYMBOLS, SYMBOLS_SHORT = 1.2, 0.4
+
+
+def draw_hop_histogram(box, rows):
+    """Draw the densities of hop_histogram.csv, in units of the mean interval (``unit_of``)."""
+    figure = new_figure(ALL + SHORT, layout="constrained")
+    whole, short = figure.subplots(2, height_ratios=[ALL, SHORT])
+    groups = [list(group) for _, group in groupby(rows, key=lambda row: row["radius"])]
+    radii = panels.numbers([group[0]["radius"] for group in groups])
+    low, last = 0.1, 1.0
+    for i, group in enumerate(groups):
+        colour, marker = SERIES[i % len(SERIES)]
+        for axes, bins, fewest, apart in (
+            (whole, "wide", FEWEST, SYMBOLS),
+            (short, "equal", 1, SYMBOLS_SHORT),
+        ):
+            edges, density, errors = curve([r for r in group if r["bins"] == bins], fewest)
+            middles = (edges[1:] + edges[:-1]) / 2
+            wanted = apart * np.arange(0.4 + i / len(groups), middles[-1] / apart)
+            at = np.unique(np.searchsorted(middles, wanted))
+            axes.stairs(density, edges, baseline=None, color=colour, lw=0.7)
+            symbol = panels.open_symbol(colour, marker)
+            axes.errorbar(
+                middles[at], density[at], errors[at], ls="", label=f"$r={radii[i]}$", **symbol
+            )
+            if axes is whole:
+                low, last = min(low, density.min()), max(last, edges[-1])
+        if box.is_plain:
+            _mark_zero(short, box, group[0], colour)
+    for axes, end in ((whole, last), (short, LONGEST_SHORT)):
+        times = np.linspace(0, end, 60)
+        axes.plot(times, np.exp(-times), color=BLACK, ls=(0, (4, 2)), label=r"$e^{-t/\tau}$")
+        axes.set(xlim=(0, end), xlabel=r"interval $t/\tau$", ylabel=r"density $\tau\,p(t)$")
+    whole.set(yscale="log", ylim=(low / 3, None))
+    short.set_ylim(0, None)
+    whole.legend(loc="upper right")
+    panels.title(whole, "a", box, f",  {name_of(rows[0]['event'])}")
+    panels.title(short, "b")
+    return figure
+
+
+def _mark_zero(axes, box, row, colour):
+    """Mark the exact density at 0 if bins are fine enough to show it."""
+    scene, hop = box.scene(row["radius"]), row["event"]
+    free, across = (scene.width, scene.height)[:: 1 if AXIS[hop] == "y" else -1]
+    sigma = scene.contact_distance
+    if (row["right"] - row["left"]) * FINE <= min(across - sigma, free - 2 * sigma):
+        value = row["exact_mean"] * laws.density_at_zero(scene, hop)
+        axes.plot([-DASH, DASH], [value, value], color=colour, lw=1.8, clip_on=False, zorder=5)
+
+
+def unit_of(row):
+    """Return the exact mean interval of a row or, if that is not known, the measured one."""
+    return row["exact_mean"] or row["mean"]
+
+
+def curve(rows, fewest):
+    """Return (edges, density, standard error) in units of the mean interval (``unit_of``).
+
+    ``rows`` are successive bins of one radius. The first bin with fewer than ``fewest`` intervals
+    and all later ones are left out.
+    """
+    shown = list(takewhile(lambda row: row["count"] >= fewest, rows))
+    mean = unit_of(rows[0])
+    edges = [rows[0]["left"], *(row["right"] for row in shown)]
+    values = ([row[name] * mean for row in shown] for name in ("density", "stderr"))
+    return np.array(edges) / mean, *map(np.array, values)

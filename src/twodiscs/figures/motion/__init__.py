@@ -1,1 +1,0 @@
-"""Figures of the motion: paths of the discs, pressures on the walls, times between hops."""

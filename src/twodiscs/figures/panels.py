@@ -1,0 +1,376 @@
+"""Estimates against exact curves over the radius, with residuals beneath.
+
+A series is drawn from rows of a table: the exact curve on top of open symbols with error bars, one
+standard error each. Rows without an error are crosses. If no event was counted, an arrow begins at
+the lower bound of the mean time. Vertical lines through both panels mark the radii at which a
+regime ends, with names above.
+"""
+
+import math
+import re
+from dataclasses import dataclass
+from itertools import cycle
+
+import numpy as np
+from matplotlib import rcParams
+from matplotlib.lines import Line2D
+from matplotlib.ticker import Formatter
+
+from twodiscs.figures import drawing
+from twodiscs.figures.curves import limits
+from twodiscs.figures.style import BLACK, COLUMN, GREY, SERIES, SIZES, new_figure
+from twodiscs.model.effects import EFFECTS
+
+#: Inches: margins of panels that are placed by hand.
+LEFT, RIGHT = 0.48, 0.1
+
+#: Inches: the panels of curves, of residuals and beneath, with their labels.
+MAIN, LOWER, BENEATH = 2.3, 0.95, 1.7
+
+#: Names of limits that are closer than this share of the abscissa are written as one.
+NEAR = 0.12
+
+#: Inches: a further line of a heading. Points: the distance of a title above names of limits.
+LINE, ABOVE = 0.13, 14
+
+#: The most digits of a box and a radius that leave space for something beside them.
+BESIDE = 11
+
+#: The most pieces of a heading (the box, its effects and additions) in one line.
+PIECES = 3
+
+#: The texts of what a box calls for in mathtext, {name: format}, in their order.
+SYMBOLS = {"discs": "${}$ discs"} | {name: EFFECTS[name].symbol for name in sorted(EFFECTS)}
+
+#: Residuals beyond this many standard errors are drawn as triangles at the edge.
+LARGEST_RESIDUAL = 6.5
+
+#: Guide lines: 95 % of all residuals are within the inner ones; no test passes beyond 5.
+GUIDES = {2: (0, (4, 2)), 5: (0, (1, 1.5))}
+
+
+@dataclass(frozen=True)
+class Series:
+    """One quantity: its name in the legend, rows of a table, exact values along the curve.
+
+    ``look`` is (colour, marker); without it the order of the series decides.
+    """
+
+    name: str
+    rows: list
+    exact: np.ndarray
+    look: tuple | None = None
+
+    def is_visible(self):
+        """Return whether there is a positive value to be drawn."""
+        drawn = (row["estimate"] or row.get("bound") for row in self.rows)
+        return bool(np.any(self.exact > 0)) or any(drawn)
+
+
+def panels(box, label, judged=True, beneath=False):
+    """Return (figure, main axes, axes of residuals, axes beneath) for curves over the radius.
+
+    ``label`` is the label of the main ordinate. The axes of residuals are None unless the estimates
+    are ``judged``, the axes beneath unless there are any ``beneath``.
+    """
+    heights = [MAIN] + [LOWER] * judged + [BENEATH] * beneath
+    figure = new_figure(sum(heights), layout="constrained")
+    axes = figure.subplots(len(heights), height_ratios=heights, squeeze=False)[:, 0]
+    main, lower = axes[0], axes[1] if judged else None
+    for one, name in zip(axes, ["main"] + ["residuals"] * judged + ["beneath"], strict=False):
+        one.set_label(name)
+    main.set_ylabel(label)
+    (lower or main).set_xlabel("radius $r$")
+    if judged:
+        main.tick_params(labelbottom=False)
+        lower.set_ylabel("residual $z$")
+        scale_residuals(lower)
+    mark([main, lower] if judged else [main], limits(box))
+    title(main, "a" if beneath else "", box, up=ABOVE)
+    if beneath:
+        title(axes[-1], "b")
+    return figure, main, lower, axes[-1] if beneath else None
+
+
+def stacked(width=COLUMN, **heights):
+    """Return (figure, its axes) of lettered panels above each other.
+
+    ``heights`` are inches, with labels and titles, by the names of the panels from the top down.
+    """
+    figure = new_figure(sum(heights.values()), width, layout="constrained")
+    axes = figure.subplots(len(heights), height_ratios=[*heights.values()])
+    for one, name, letter in zip(axes, heights, "abcdefgh", strict=False):
+        one.set_label(name)
+        title(one, letter)
+    return figure, axes
+
+
+def title(axes, letter="", box=None, more="", up=3):
+    """Write the ``letter`` of a panel, the sides of its box, ``more`` and its effects above it.
+
+    ``up`` is the distance from the panel, in points.
+    """
+    words = [f"({letter})"] if letter else []
+    if box is not None:
+        words.append(",\n".join(heading(box, more)))
+    axes.set_title("  ".join(words), loc="left", pad=up)
+
+
+def scale_residuals(lower):
+    """Draw the guide lines of residuals, and set the ends of their panel beyond them."""
+    lower.set_ylim(-LARGEST_RESIDUAL, LARGEST_RESIDUAL)
+    lower.set_yticks([-5, -2, 0, 2, 5])
+    lower.axhline(0, color=GREY, lw=0.5, zorder=0)
+    for size, dashes in GUIDES.items():
+        for z in (-size, size):
+            lower.axhline(z, color=GREY, lw=0.5, ls=dashes, zorder=0)
+
+
+def mark(panels, ends):
+    """Mark the limits ``ends`` in all ``panels``, axes from the top; the last ends the abscissa."""
+    last = 1.02 * ends[-1][0]
+    for axes in panels:
+        axes.set_xlim(0, last)
+        for radius, _ in ends:
+            axes.axvline(radius, color=GREY, lw=0.5, ls=(0, (5, 1.5, 1, 1.5)), zorder=0)
+    groups = [[ends[0]]]
+    for end in ends[1:]:
+        if end[0] - groups[-1][-1][0] < NEAR * last:
+            groups[-1].append(end)
+        else:
+            groups.append([end])
+    at_top = {"xycoords": ("data", "axes fraction"), "va": "bottom", "fontsize": 7.5}
+    for group in groups:
+        middle = sum(radius for radius, _ in group) / len(group)
+        names = r",\,".join(name for _, name in group)
+        drawing.label(panels[0], f"${names}$", (middle, 1), (0, 3), **at_top)
+
+
+def add_panel(figure, bottom, height, left=LEFT, width=COLUMN - LEFT - RIGHT, name=""):
+    """Return new axes at ``left`` and ``bottom``, ``width`` × ``height``, all in inches.
+
+    ``name`` is their label, which identifies them among the axes of the figure.
+    """
+    across, up = figure.get_size_inches()
+    axes = figure.add_axes((left / across, bottom / up, width / across, height / up), label=name)
+    # The power of ten of an ordinate is beside the heading.
+    axes.yaxis.get_offset_text().set(ha="right", x=-0.01)
+    return axes
+
+
+def math_of(value):
+    """Return a ``value`` in mathtext: 0.25, or 3 × 10⁻⁶ if it is very small or large."""
+    return powers(f"{value:g}")
+
+
+def numbers(values):
+    """Return ``values`` in mathtext, all with powers of ten if any is very small or large."""
+    texts = [f"{value:g}" for value in values]
+    if any("e" in text for text in texts):
+        parts = (f"{value:.5e}".split("e") for value in values)
+        texts = [f"{float(digits):g}e{power}" for digits, power in parts]
+    return [powers(text) for text in texts]
+
+
+def powers(text):
+    """Return a ``text`` in mathtext with 3e-06 written as 3 × 10⁻⁶, and 1e-06 as 10⁻⁶."""
+
+    def power(number):
+        times = "" if number[1] == "1" else rf"{number[1]}\times"
+        return f"{times}10^{{{int(number[2])}}}"
+
+    return re.sub(r"\b([\d.]+)e([+-]\d+)\b", power, text)
+
+
+def sides(box):
+    """Return the sides of a ``Box`` in mathtext."""
+    numbers = map(math_of, (box.width, box.height))
+    return r"\times".join(f"({side})" if "times" in side else side for side in numbers)
+
+
+def of_radius(radius):
+    """Return the text of a ``radius`` that follows the sides of a box, empty if it is None."""
+    return f",  $r={math_of(radius)}$" if radius else ""
+
+
+def is_short(box, radius=0):
+    """Return whether the ``heading``, maybe with a ``radius``, leaves space beside it."""
+    digits = sum(len(math_of(value)) for value in (box.width, box.height, radius or 0))
+    return box.is_plain and digits <= BESIDE
+
+
+def heading(box, more=""):
+    """Return the lines that name the sides of the box, ``more`` and the effects."""
+    pieces = [*rf"$w\times h={sides(box)}${more}".split(",  "), *effects(box)]
+    return [",  ".join(pieces[i : i + PIECES]) for i in range(0, len(pieces), PIECES)]
+
+
+def room(box, more=""):
+    """Return the inches that lines of the ``heading`` beyond the first one take."""
+    return LINE * (len(heading(box, more)) - 1)
+
+
+def effects(box):
+    """Return the number of discs of a ``Box``, if not two, and its effects, as texts in symbols."""
+    named = box.calls_for | {"periodic": "$, $".join(box.effects.get("periodic", ""))}
+    return [powers(text.format(named[name])) for name, text in SYMBOLS.items() if named.get(name)]
+
+
+def with_looks(series):
+    """Return ((colour, marker), ``Series``) for each of the ``series``."""
+    return [(part.look or look, part) for look, part in zip(cycle(SERIES), series, strict=False)]
+
+
+def draw_series(main, lower, radii, series, single=False):
+    """Draw the ``series`` in both panels; a ``single`` one has its curve in black.
+
+    ``lower`` is None if there are no residuals.
+    """
+    for (colour, marker), part in with_looks(series):
+        main.plot(radii, part.exact, color=BLACK if single else colour, zorder=5)
+        estimates(main, part.rows, colour, marker)
+        if lower:
+            residuals(lower, part.rows, colour, marker)
+
+
+#: The style of a limiting law, and its name in a legend.
+LAW = {"color": BLACK, "lw": 0.7, "ls": (0, (4, 2)), "zorder": 6}
+LAW_NAME = "limiting law"
+
+
+def _column(rows, *names):
+    return [[row[name] for row in rows] for name in names]
+
+
+def estimates(axes, rows, colour, marker):
+    """Draw the estimates of ``rows`` over their radii; estimates from a strip have full symbols."""
+    known = [row for row in rows if row["estimate"] is not None and row["stderr"] is not None]
+    rough = [row for row in rows if row["estimate"] is not None and row["stderr"] is None]
+    bound = [row for row in rows if row["estimate"] is None and row.get("bound") is not None]
+    for shown, style in by_start(known, open_symbol(colour, marker)):
+        r, y, s = _column(shown, "radius", "estimate", "stderr")
+        axes.errorbar(r, y, s, ls="", elinewidth=0.6, **style, zorder=3)
+    axes.plot(*_column(rough, "radius", "estimate"), "x", color=colour, zorder=3)
+    r, y = _column(bound, "radius", "bound")
+    axes.errorbar(r, y, [0.4 * b for b in y], lolims=True, ls="", color=colour, elinewidth=0.6)
+
+
+def by_start(rows, style):
+    """Yield (rows, style of symbols); rows from a strip, if there are any, have full symbols."""
+    strips = [row for row in rows if row.get("starts") == "strip"]
+    yield [row for row in rows if row not in strips], style
+    if strips:
+        yield strips, style | {"markerfacecolor": style["color"]}
+
+
+def open_symbol(colour, marker, scale=1):
+    """Return the settings of an open symbol, ``scale`` times as large as usual."""
+    size = scale * SIZES[marker]
+    return {"color": colour, "marker": marker, "markersize": size, "markerfacecolor": "white"}
+
+
+def look_of(series, colour, marker):
+    """Return the settings of a ``Series`` in a legend: a symbol only if it has estimates."""
+    return open_symbol(colour, marker) if series.rows else {"color": colour}
+
+
+def is_judged(row):
+    """Return whether the residual of a ``row`` is drawn: there is one, and it may differ from 0."""
+    return row.get("z") is not None and row.get("test") != "certain"
+
+
+def residuals(axes, rows, colour, marker):
+    """Draw the residuals of ``rows`` over their radii, except the certain ones."""
+    rows = [row for row in rows if is_judged(row)]
+    for shown, symbol, clip in (
+        ([r for r in rows if abs(r["z"]) <= LARGEST_RESIDUAL], marker, 1),
+        ([r for r in rows if r["z"] > LARGEST_RESIDUAL], "^", 0.97),
+        ([r for r in rows if r["z"] < -LARGEST_RESIDUAL], "v", 0.97),
+    ):
+        r, z = _column(shown, "radius", "z")
+        z = [math.copysign(min(abs(v), clip * LARGEST_RESIDUAL), v) for v in z]
+        style = open_symbol(colour, symbol) if clip == 1 else {"color": colour, "marker": symbol}
+        axes.plot(r, z, ls="", **style | {"markersize": 0.75 * SIZES[symbol] if clip == 1 else 2.6})
+
+
+#: A legend with the distance of a letter's height from the symbols that it can avoid.
+CLEAR = {"borderpad": 1.2, "borderaxespad": -0.6}
+
+
+def legend(axes, series, single=None, more=()):
+    """Explain the symbols at the emptiest place; ``single`` names the method of the only series.
+
+    ``more`` are (name, style) of other lines. Series without a visible value, of impossible events,
+    are left out.
+    """
+    handles, names = [], []
+    for (colour, marker), part in with_looks(series):
+        style = look_of(part, colour, marker)
+        if single and not part.rows:
+            handles += axes.plot([], [], color=BLACK)
+            names.append("exact")
+        elif single and not np.any(np.isfinite(part.exact)):
+            handles += axes.plot([], [], ls="", **style)
+            names.append(single)
+        elif single:
+            handles += axes.plot([], [], color=BLACK) + axes.plot([], [], ls="", **style)
+            names += ["exact", single]
+        elif part.is_visible():
+            handles += axes.plot([], [], ls="-" if np.any(part.exact > 0) else "", **style)
+            names.append(part.name)
+    for name, style in more:
+        handles.append(Line2D([], [], **style))
+        names.append(name)
+    if len(names) > 4:  # no place without a curve is large enough
+        axes.figure.legend(handles, names, loc="outside lower center", ncols=3)
+    else:
+        axes.legend(handles, names, loc="best", **CLEAR)
+
+
+#: The least ratio of the ends of a logarithmic ordinate: there is a tick or two within.
+LEAST = 3
+
+
+def logarithmic(axes, radii, series):
+    """Make the ordinate logarithmic, with a range for all estimates and most of the curves."""
+    seen = [row["estimate"] or row.get("bound") for part in series for row in part.rows]
+    ends = radii[np.flatnonzero(np.isnan(radii)) - 1]
+    largest = ends[-1]
+    clear = (np.abs(radii[:, None] - ends) > 0.05 * largest).all(axis=1) & (radii > 0.1 * largest)
+    shown = [value for part in series for value in part.exact[clear] if value > 0]
+    shown += [value for value in seen if value]
+    low, high = min(shown, default=1.0), max(shown, default=1.0)
+    room = max((high / low) ** 0.06, (LEAST * low / high) ** 0.5)
+    axes.set_yscale("log")
+    axes.set_ylim(low / room, high * room)
+    label_decades(axes.yaxis, high / low)
+
+
+class _PlainNumbers(Formatter):
+    """Labels of ticks as numbers over 10^``power``, at the ticks that begin with a digit."""
+
+    def __init__(self, digits, power):
+        self.digits, self.power = digits, power
+
+    def __call__(self, x, pos=None):
+        return f"{x / 10.0**self.power:g}" if f"{x:e}"[0] in self.digits else ""
+
+    def get_offset(self):
+        return rf"$\times10^{{{self.power}}}$" if self.power else ""
+
+
+def label_decades(axis, ratio):
+    """Label a logarithmic ``axis``, between decades too if its ends have a ``ratio`` below 100.
+
+    These labels are at 2 and 5 or, below a ratio of 3, at every tick. A power of ten of small or
+    large numbers is at the end of the axis, as on linear axes.
+    """
+    if ratio >= 100:
+        axis.set_minor_formatter("")
+        return
+    digits = "25" if ratio >= 3 else "123456789"
+    power = math.floor(math.log10(max(axis.get_view_interval())))
+    low, high = rcParams["axes.formatter.limits"]
+    power = 0 if low < power < high else power
+    axis.set_major_formatter(_PlainNumbers("123456789", power))
+    axis.set_minor_formatter(_PlainNumbers(digits, power))

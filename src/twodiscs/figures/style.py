@@ -1,0 +1,196 @@
+"""The style of all figures: size, fonts, colours, looks of events, and files of the same bytes.
+
+The bytes of a file depend only on its content.
+
+Everything is drawn and saved inside ``context()``, which overrides the matplotlib settings of the
+machine. pyplot is not used: nothing here needs windows, and its import takes time.
+"""
+
+import logging
+import threading
+from contextlib import contextmanager
+from io import BytesIO
+from pathlib import Path
+
+import matplotlib
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.font_manager import findfont, fontManager
+
+from twodiscs.model.checks import InputError, writing_to
+from twodiscs.model.events import EVENTS
+
+#: Width of one column of a two-column journal, in inches.
+COLUMN = 3.4
+
+#: Dots per inch of the PNG files.
+DPI = 300
+
+# The palette of Okabe and Ito, distinguishable with any colour vision.
+BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
+BLUE, VERMILLION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"
+GREY = "#6E6E6E"
+
+#: (colour, marker) of the first, second, … series of a figure: all differ in both.
+SERIES = ((BLUE, "o"), (VERMILLION, "s"), (GREEN, "^"), (PURPLE, "D"))
+
+#: Sizes of the markers, in points: if two series coincide, both are visible.
+SIZES = {"o": 3.7, "s": 2.5, "^": 3.0, "D": 2.3, "v": 3.0, "P": 3.2}
+
+SETTINGS = {
+    # Computer Modern, the font of the manuscript; it has a minus sign only in formulas.
+    "font.family": ["cmr10", "STIXGeneral"],
+    "mathtext.fontset": "cm",
+    "axes.formatter.use_mathtext": True,
+    "axes.formatter.limits": [-3, 4],  # longer numbers would overlap on an abscissa
+    "font.size": 7.8,
+    "axes.labelsize": 7.8,
+    "axes.labelpad": 2,
+    "axes.linewidth": 0.6,
+    "axes.unicode_minus": True,
+    "axes.titlesize": 7.5,
+    "figure.constrained_layout.h_pad": 0.02,
+    "figure.constrained_layout.w_pad": 0.02,
+    "figure.constrained_layout.hspace": 0.0,
+    "figure.constrained_layout.wspace": 0.0,
+    "xtick.labelsize": 7.3,
+    "ytick.labelsize": 7.3,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.top": True,
+    "ytick.right": True,
+    "xtick.major.width": 0.5,
+    "ytick.major.width": 0.5,
+    "xtick.minor.width": 0.4,
+    "ytick.minor.width": 0.4,
+    "xtick.major.size": 3,
+    "ytick.major.size": 3,
+    "xtick.minor.size": 1.6,
+    "ytick.minor.size": 1.6,
+    "legend.fontsize": 7.3,
+    "legend.frameon": False,
+    "legend.borderpad": 0.2,
+    "legend.borderaxespad": 0.4,
+    "legend.handlelength": 1.6,
+    "legend.handletextpad": 0.5,
+    "legend.labelspacing": 0.25,
+    "lines.linewidth": 0.9,
+    "lines.markersize": 3.2,
+    "lines.markeredgewidth": 0.6,
+    "errorbar.capsize": 0,
+    "hatch.linewidth": 0.4,
+    "figure.dpi": DPI,
+    "savefig.dpi": DPI,
+    "pdf.fonttype": 42,
+    "svg.hashsalt": "twodiscs",
+}
+
+
+def _have_fonts():
+    """Add the fonts that come with matplotlib if its list of fonts in the user's home lacks them.
+
+    A partly removed installation leaves such a list, and texts would have different sizes.
+    """
+    try:
+        for family in SETTINGS["font.family"]:
+            findfont(family, fallback_to_default=False)
+    except ValueError:
+        for path in sorted(Path(matplotlib.get_data_path(), "fonts", "ttf").glob("*.ttf")):
+            fontManager.addfont(path)
+
+
+#: Settings of matplotlib and loggers belong to the process: one thread at a time changes them.
+_ONE_AT_A_TIME = threading.RLock()
+
+
+@contextmanager
+def context():
+    """Draw and save in the style of this package, and restore the user's settings afterwards."""
+    with _ONE_AT_A_TIME, matplotlib.rc_context():
+        _have_fonts()
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(SETTINGS)
+        # The files of Computer Modern have dates that fontTools warns about, once for each file.
+        logger = logging.getLogger("fontTools")
+        level = logger.level
+        logger.setLevel(logging.ERROR)
+        try:
+            yield
+        finally:
+            logger.setLevel(level)
+
+
+class StyledFigure(Figure):
+    """A figure that is also drawn and saved in the style of this package by its own methods."""
+
+    def draw(self, renderer):
+        with context():
+            super().draw(renderer)
+
+    def savefig(self, *args, **options):
+        with context():
+            super().savefig(*args, **options)
+
+    def settle(self):
+        """Place all parts for good: a layout that is computed again moves them by a pixel."""
+        if self.get_layout_engine() is not None:
+            self.draw_without_rendering()
+            self.set_layout_engine("none")
+
+    def _repr_png_(self):
+        """Return the picture that a notebook shows."""
+        stream = BytesIO()
+        self.savefig(stream, format="png", dpi=150)
+        return stream.getvalue()
+
+
+def new_figure(height, width=COLUMN, **options):
+    """Return an empty figure of ``width`` × ``height`` inches, with ``options`` of matplotlib."""
+    figure = StyledFigure(figsize=(width, height), **options)
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def save(figure, path, origin=None):
+    """Write ``figure`` to ``path`` (.pdf, .png or .svg) without dates or names of programs in it.
+
+    ``origin``, a line about its origin, goes into its metadata.
+
+    Raises ``InputError`` for a file name with another ending, and if it cannot be written.
+    """
+    kind = str(path).rpartition(".")[2]
+    metadata = {
+        "pdf": {"Creator": None, "Producer": None, "CreationDate": None, "Subject": origin},
+        "png": {"Software": None, "Description": origin},
+        "svg": {"Creator": None, "Date": None, "Description": origin},
+    }
+    if kind not in metadata:
+        raise InputError(f"path must be a .pdf, .png or .svg file, not {str(path)!r}")
+    if isinstance(figure, StyledFigure):
+        figure.settle()
+    with writing_to(path):
+        figure.savefig(path, format=kind, metadata=metadata[kind])
+
+
+#: (colour, marker) of the events in their order; all colours differ, and all markers.
+_LOOKS = (
+    (BLUE, "o"),
+    (VERMILLION, "s"),
+    (GREEN, "^"),
+    (PURPLE, "D"),
+    (ORANGE, "v"),
+    (SKY, "P"),
+    (PURPLE, "v"),
+    (GREEN, "D"),
+)
+if len(EVENTS) > len(_LOOKS):
+    raise TypeError(f"figures/style.py has {len(_LOOKS)} looks, too few for {len(EVENTS)} events")
+
+#: {event: (colour, marker)}
+LOOKS = dict(zip(EVENTS, _LOOKS, strict=False))
+
+
+def name_of(event):
+    """Return the name of an event for people: "vertical hops", "disc collisions", "right wall"."""
+    words = event.replace("_", " ")
+    return words if words.endswith("wall") else f"{words}s"

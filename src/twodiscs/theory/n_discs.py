@@ -1,0 +1,120 @@
+"""The exact numbers of N discs, as far as they are known, by the method for each scene.
+
+Two discs have the plain theory, and three the quadrature between kinks. Any number of discs has the
+transfer operator, if the channel is so low that they keep their order. For other scenes no exact
+value is known here; their events may be possible.
+"""
+
+import math
+from functools import lru_cache
+
+from twodiscs.model.checks import MOST_WITH_VOLUME
+from twodiscs.model.events import DECLARED, EVENTS, by_kind
+from twodiscs.model.many import is_ordered
+from twodiscs.model.scene import Scene
+from twodiscs.theory import channel, plain, three
+from twodiscs.theory.virial import Derivatives, flux_constant
+
+
+def method(scene):
+    """Return the theory for a ``Scene``: "plain", "three", "channel", or None."""
+    if scene.periodic:
+        return None
+    if scene.discs < 4:
+        return "plain" if scene.discs == 2 else "three"
+    return "channel" if is_ordered(scene) or is_ordered(scene.turned()) else None
+
+
+@lru_cache(maxsize=1024)
+def known_derivatives(scene, hops=True):
+    """Return the ``Derivatives`` of a ``Scene``, None if no exact value is known here.
+
+    ``hops`` False leaves out the hops in a channel, which take longest.
+    """
+    known = method(scene)
+    if known == "plain":
+        volume, areas = plain.volume_and_areas(Scene(scene.width, scene.height, scene.radius))
+        root = math.sqrt(2)
+        return Derivatives(
+            math.log(volume),
+            2 * areas["right_wall"] / volume,
+            2 * areas["top_wall"] / volume,
+            areas["disc_collision"] / root / volume,
+            areas["horizontal_hop"] / root / volume,
+            areas["vertical_hop"] / root / volume,
+        )
+    if known == "three":
+        return three.derivatives(scene)
+    if known == "channel":
+        if is_ordered(scene):
+            return channel.derivatives(scene, hops)
+        return channel.derivatives(scene.turned(), hops).turned()
+    return None
+
+
+@lru_cache(maxsize=1024)
+def volume_and_areas(scene):
+    """Return (volume, {event: area}) of a ``Scene`` of N > 2 discs, as ``theory.exact`` does.
+
+    The volume is in length^2N. Areas are for an event of any pair, or of one disc at one wall. An
+    area is 0.0 if the event is impossible or does not exist in the scene. If no exact value is
+    known, an area and the volume are None. Both are None for more than ``MOST_WITH_VOLUME`` discs,
+    whose volume a double may not hold.
+    """
+    areas = {event: None if scene.is_possible(event) else 0.0 for event in EVENTS}
+    if scene.discs > MOST_WITH_VOLUME or (known := known_derivatives(scene)) is None:
+        return None, areas
+    volume = math.exp(known.log_volume)
+    over_volume = surfaces(scene, known)
+    areas |= {e: volume * part for e, part in over_volume.items() if scene.is_possible(e)}
+    return volume, areas
+
+
+def surfaces(scene, known):
+    """Return {event: area over volume} of a ``Scene``, given its ``Derivatives``.
+
+    The metric is that of the 2N coordinates. For each axis with walls, all walls have 2N times the
+    area of one disc at one wall.
+    """
+    root, discs = math.sqrt(2), scene.discs
+    over = {
+        "hop": lambda event: (
+            root * (known.vertical_hops if event.axis == "y" else known.horizontal_hops)
+        ),
+        "collision": lambda event: root * known.per_contact,
+        "wall": lambda event: (known.per_width if event.axis == "x" else known.per_height) / discs,
+        "walls": lambda event: 2 * (known.per_width + known.per_height),
+    }
+    return by_kind("theory/n_discs.py", over)
+
+
+@lru_cache(maxsize=1024)
+def event_rates(scene):
+    """Return {event: rate} of a ``Scene`` of more than two discs; 0.0 if never, None if not known.
+
+    Rates are for a collision or a hop of any pair, for one disc at one wall, and for any disc at
+    any wall. They need only the logarithm of the volume, because the volume may underflow.
+    """
+    known = known_derivatives(scene)
+    if known is None:
+        return {event: None if scene.is_possible(event) else 0.0 for event in EVENTS}
+    c = flux_constant(scene.velocity_components)
+    return {
+        event: DECLARED[event].ways / 2 * c * part if scene.is_possible(event) else 0.0
+        for event, part in surfaces(scene, known).items()
+    }
+
+
+def volume(scene):
+    """Return the volume of a ``Scene``, None if no exact value is known."""
+    return volume_and_areas(scene)[0]
+
+
+def areas(scene):
+    """Return {event: area} of a ``Scene``, values None if not known."""
+    return volume_and_areas(scene)[1]
+
+
+def rate(scene, event):
+    """Return the rate of ``event``, None if no exact value is known."""
+    return event_rates(scene)[event]

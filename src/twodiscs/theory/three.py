@@ -1,0 +1,199 @@
+"""Three discs in any box, exact by quadrature between the kinks of the integrand.
+
+With centres x1 < x2 < x3 the discs i and j are at least d_ij = √(σ² − (y_i − y_j)²)₊ apart along x.
+For given heights the x fill a volume g(s) = (A − s)₊³/6, s = d12 + d23, if d13 ≤ s, and otherwise
+
+    h(s, d13) = ∫ (A − t)(t − s) dt from d13 to A = (A − s) m²/2 − m³/3,  m = (A − d13)₊
+
+The integrand depends only on the gaps between the sorted heights: a larger one P, a smaller one Q
+and their sum t, with weight B − t. With p, q, c = d(P), d(Q), d(t)
+
+    V = 24 ∫_0^B dt (B − t) ∫_{t/2}^t dP [g(p + q) + g(q + c) + h(p + c, q)]
+
+In it h is g unless q > p + c. The derivatives by A, B and σ are taken under the integral, and all
+their terms are positive. For pairs with the same x, at least σ apart in y,
+
+    Σ ∫ δ(x_i − x_j) = 12 ∫_0^B dt (B − t) ∫_{t/2}^t dP
+                       [A² 1(Q ≥ σ) + (A − q)₊² (1(P ≥ σ) + 1(t ≥ σ))]
+
+The integrands are smooth except at kinks: P, Q or t is σ; p + q, p + c, q + c or q is A; and
+q = p + c, at which the discs form an equilateral triangle. Closed forms give all of these P, and
+the t at which two of them meet. Between them the variables are angles: P, Q and t below σ are σ
+times a sine, so that the roots d are smooth too. Relative errors are some 1e-14, times
+r/(r_max − r) if the discs hardly fit.
+"""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+
+from twodiscs.model.checks import InputError
+from twodiscs.theory.quadrature import gauss_legendre
+from twodiscs.theory.virial import Derivatives
+
+#: Nodes between two kinks, for the sum of the gaps and for the larger gap.
+OUTER, INNER = 48, 32
+
+
+def _nodes(order):
+    rule = gauss_legendre(order)
+    return np.array([t for t, _, _ in rule]), np.array([weight for _, _, weight in rule])
+
+
+def _root(square):
+    return math.sqrt(square) if square > 0 else 0.0
+
+
+def _ends(a, b, sigma):
+    """Return the ascending sums of gaps at which two kinks in P meet, including 0 and B."""
+    level = _root(sigma**2 - a * a)  # the gap with q = A
+    values = [
+        sigma, 2 * sigma, math.sqrt(0.75) * sigma,
+        _root(4 * sigma**2 - a * a),  # p + q reaches A at P = Q
+        _root(sigma**2 - (a - sigma) ** 2),  # … and at Q = 0, like q + c
+        _root(sigma**2 - a * a / 4),  # p + c at Q = 0
+        level, 2 * level, sigma + level,
+    ]  # fmt: skip
+    if a < sigma:
+        # p + c = q = A.
+        values.append(sigma * math.sin(math.acos(a / sigma) + math.pi / 3))
+    return [0.0, *sorted({end for end in values if 0.0 < end < b}), b]
+
+
+def _sums(a, b, sigma):
+    """Return (t, weight, c) of the nodes of the outer integral."""
+    x, w = _nodes(OUTER)
+    # Powers of a half at the ends are smooth in the angle of a sine squared.
+    fraction, slope = np.sin(math.pi / 2 * x) ** 2, math.pi / 2 * np.sin(math.pi * x)
+    t, weight, c = [], [], []
+    ends = _ends(a, b, sigma)
+    for low, high in pairwise(ends):
+        if high <= sigma:
+            start = math.asin(low / sigma)
+            width = math.asin(min(high / sigma, 1.0)) - start
+            angle = start + width * fraction
+            t.append(sigma * np.sin(angle))
+            c.append(sigma * np.cos(angle))
+            weight.append(width * slope * w * c[-1])
+        else:
+            t.append(low + (high - low) * fraction)
+            c.append(np.zeros(OUTER))
+            weight.append((high - low) * slope * w)
+    return np.concatenate(t), np.concatenate(weight), np.concatenate(c)
+
+
+def _kinks(a, sigma, t, c):
+    """Return gaps (P, Q), each (n, t), of the kinks of the integrand and of both ends.
+
+    P ascends. Both gaps are kept, because the difference of t and the other gap has a rounding that
+    matters in the root if Q is exactly σ.
+    """
+    level = _root(sigma**2 - a * a)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        middle = np.arctan2(t, a)
+        apart = np.arccos(np.hypot(t, a) / (2 * sigma))
+        beside = np.where(a >= c, np.sqrt(sigma**2 - (a - c) ** 2), np.nan)
+        by_p = [
+            t / 2,
+            t,
+            np.full_like(t, sigma),
+            np.full_like(t, level),
+            np.where(middle + apart <= math.pi / 2, sigma * np.sin(middle + apart), np.nan),
+            beside,
+            np.where(c > 0, sigma * np.sin(2 * math.pi / 3 - np.arcsin(t / sigma)), np.nan),
+        ]
+        by_q = [np.full_like(t, sigma), np.full_like(t, level), beside]
+    p = np.array(by_p + [t - q for q in by_q])
+    q = np.array([t - p for p in by_p] + by_q)
+    # A kink outside of the range is replaced by an end of it.
+    p, q = np.clip(np.where(np.isnan(p), t, p), t / 2, t), np.clip(np.nan_to_num(q), 0.0, t / 2)
+    order = np.argsort(p, axis=0)
+    return np.take_along_axis(p, order, 0), np.take_along_axis(q, order, 0)
+
+
+def _gaps(a, sigma, t, c):
+    """Return (p, q, weight, P < σ, Q < σ) at the inner nodes, arrays (panels, nodes, t)."""
+    x, w = (part[:, None] for part in _nodes(INNER))
+    larger, smaller = _kinks(a, sigma, t, c)
+    low, high = larger[:-1, None, :], larger[1:, None, :]
+    most, least = smaller[:-1, None, :], smaller[1:, None, :]
+    near_p, near_q = low + high < 2 * sigma, most + least < 2 * sigma
+
+    def sines(start, stop):
+        """Return (gap, d(gap), weight) between two gaps, σ times the sines of their angles."""
+        start, stop = (np.arcsin(np.clip(gap / sigma, 0.0, 1.0)) for gap in (start, stop))
+        angle = start + (stop - start) * x
+        d = sigma * np.cos(angle)
+        return sigma * np.sin(angle), d, (stop - start) * d * w
+
+    # The larger gap is a sine, or above σ; then the smaller one is a sine, or above σ, too.
+    gap, p, weight_p = sines(low, high)
+    rest = t - gap
+    q_of_p = np.sqrt(np.maximum((sigma - rest) * (sigma + rest), 0.0))
+    _, q, weight_q = sines(least, most)
+    q = np.where(near_p, q_of_p, np.where(near_q, q, 0.0))
+    weight = np.where(near_p, weight_p, np.where(near_q, weight_q, (high - low) * w))
+    return np.where(near_p, p, 0.0), q, weight, near_p, near_q
+
+
+def derivatives(scene):
+    """Return the ``Derivatives`` of a ``Scene`` of three discs between walls, with both hops."""
+    if scene.discs != 3 or scene.periodic:
+        raise InputError("scene must have three discs between walls for this quadrature")
+    volume, per_width, per_height, per_contact, horizontal_hops = integrals(
+        scene.range_x, scene.range_y, scene.contact_distance
+    )
+    vertical_hops = integrals(scene.range_y, scene.range_x, scene.contact_distance)[4]
+    return Derivatives(
+        math.log(volume),
+        *(
+            part / volume
+            for part in (per_width, per_height, per_contact, horizontal_hops, vertical_hops)
+        ),
+    )
+
+
+def integrals(a, b, sigma):
+    """Return (V, ∂V/∂A, ∂V/∂B, −∂V/∂σ, Σ ∫ δ(x_i − x_j)) for ranges ``a`` and ``b`` of the centres.
+
+    They touch at the distance ``sigma``. V is in length⁶, the others in length⁵.
+    """
+    t, outer, c = _sums(a, b, sigma)
+    p, q, inner, near_p, near_q = _gaps(a, sigma, t, c)
+
+    def free(occupied):
+        return np.maximum(a - occupied, 0.0)
+
+    both, beside, across = free(p + q), free(q + c), free(p + c)
+    most = free(q)
+    bent = q > p + c
+    volume = both**3 / 6 + beside**3 / 6
+    volume += np.where(bent, across * most**2 / 2 - most**3 / 3, across**3 / 6)
+    slope = both**2 / 2 + beside**2 / 2
+    across_slope = np.where(bent, most**2 / 2, across**2 / 2)
+    far_slope = np.where(bent, across * most - most**2, 0.0)
+    slope += across_slope + far_slope
+
+    with np.errstate(divide="ignore"):
+        over_p = np.where(p > 0, sigma / p, 0.0)
+        over_q = np.where(q > 0, sigma / q, 0.0)
+        over_c = np.where(c > 0, sigma / c, 0.0)
+    contact = both**2 / 2 * (over_p + over_q) + beside**2 / 2 * (over_q + over_c)
+    contact += across_slope * (over_p + over_c) + far_slope * over_q
+
+    beyond_p, beyond_q, beyond_t = ~near_p, ~near_p & ~near_q, c == 0
+    level = a * a * beyond_q + most**2 * (1.0 * beyond_p + beyond_t)
+
+    def over_gaps(integrand):
+        return np.sum(inner * integrand, axis=(0, 1))
+
+    volume_at = over_gaps(volume)
+    weight = outer * (b - t)
+    return (
+        24 * float(weight @ volume_at),
+        24 * float(weight @ over_gaps(slope)),
+        24 * float(outer @ volume_at),
+        24 * float(weight @ over_gaps(contact)),
+        12 * float(weight @ over_gaps(level)),
+    )

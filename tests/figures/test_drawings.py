@@ -1,0 +1,94 @@
+"""Drawings are to scale: discs touch, lines end and shells are as wide as the theory says."""
+
+import math
+
+import numpy as np
+import pytest
+from figure_cases import BOXES, PAPER, draw
+from matplotlib.patches import Arc, Circle, Wedge
+
+from twodiscs.figures import style
+from twodiscs.model.box import Box
+from twodiscs.theory import exact
+
+UPRIGHT = BOXES["tall"]
+
+
+def drawn(name, box):
+    """Return the axes of a drawing."""
+    with style.context():
+        return draw(name, box, {}).axes
+
+
+@pytest.mark.parametrize("box", [PAPER, UPRIGHT, Box(3.0, 1.0)], ids=str)
+def test_the_largest_discs_touch_each_other_and_walls(box):
+    jammed, regimes = drawn("largest_radius", box)
+    discs = [patch for patch in jammed.patches if isinstance(patch, Circle)]
+    (one, two), radius = (np.array(disc.center) for disc in discs), discs[0].radius
+    assert radius == box.largest_radius
+    room = np.array([box.width, box.height]) / 2 - radius
+    np.testing.assert_allclose([-one, two], [room, room], rtol=1e-12)
+    longer = max(box.width, box.height) >= 2 * min(box.width, box.height)
+    assert longer or math.dist(one, two) == pytest.approx(2 * radius, rel=1e-12)
+    # The map: both limits at every shape, and this box.
+    _, passing, largest, *_ = (line.get_data() for line in regimes.lines)
+    high = box.width < box.height
+    for (shapes, radii), limit in (
+        (passing, lambda b: b.threshold("horizontal_hop" if high else "vertical_hop")),
+        (largest, lambda b: b.largest_radius),
+    ):
+        due = [limit(Box(1.0, x) if high else Box(x, 1.0)) for x in shapes]
+        np.testing.assert_allclose(radii, due, rtol=1e-12)
+    shape = max(box.width, box.height) / min(box.width, box.height)
+    marks = [line.get_data() for line in regimes.lines if line.get_marker() == "o"]
+    assert marks == [([shape], [radius / min(box.width, box.height)])]
+
+
+@pytest.mark.parametrize("box", [PAPER, UPRIGHT, Box(2.5, 1.0)], ids=str)
+def test_the_regimes_have_the_areas_of_their_hops(box):
+    """The coloured segments on the axes are A − σ and B − σ long; the arc ends on the rectangle."""
+    for axes in drawn("integration_regimes", box):
+        wide, high = axes.get_xlim()[1], axes.get_ylim()[1]
+        areas = exact.areas(box.scene((box.width - wide) / 2))
+        arc = next(patch for patch in axes.patches if isinstance(patch, Arc))
+        sigma = arc.width / 2
+        assert sigma == pytest.approx(box.width - wide, rel=1e-12)
+        for angle, along_x in ((arc.theta1, False), (arc.theta2, True)):
+            x, y = (sigma * f(math.radians(angle)) for f in (math.cos, math.sin))
+            assert (x if along_x else y) == pytest.approx(0, abs=1e-12) or (
+                y / high if along_x else x / wide
+            ) == pytest.approx(1, rel=1e-12)
+        segments = {style.BLUE: 0.0, style.VERMILLION: 0.0}
+        for line in axes.lines:
+            if line.get_color() in segments:
+                segments[line.get_color()] = np.ptp(line.get_data(), axis=1).max()
+        lengths = [
+            math.sqrt(areas[hop] / (math.sqrt(2) * across))
+            for hop, across in (("vertical_hop", high), ("horizontal_hop", wide))
+        ]
+        assert [*segments.values()] == pytest.approx(lengths, rel=1e-9)
+
+
+@pytest.mark.parametrize("box", [PAPER, UPRIGHT], ids=str)
+def test_both_shells_are_equally_thick(box):
+    hop, collision = drawn("surface_shell", box)
+    diagonal, *edges = sorted(
+        (line.get_xydata() for line in hop.lines), key=lambda ends: abs(ends[0] @ (1, -1))
+    )
+    rim, shell = (
+        next(p for p in collision.patches if isinstance(p, Wedge) and bool(p.width) == has_width)
+        for has_width in (False, True)
+    )
+    assert abs(diagonal[0] @ (1, -1)) < 1e-12
+    distances = [abs(ends @ (1, -1)) / math.sqrt(2) for ends in edges]
+    np.testing.assert_allclose(distances, shell.width, rtol=1e-12)
+    assert shell.r - shell.width == pytest.approx(rim.r, rel=1e-12)
+
+
+def test_the_discs_of_the_model_are_apart_and_inside():
+    (axes,) = drawn("model", PAPER)
+    one, two = [patch for patch in axes.patches if isinstance(patch, Circle)]
+    assert math.dist(one.center, two.center) > 2 * one.radius == 2 * two.radius
+    for disc in (one, two):
+        assert abs(disc.center[0]) < PAPER.width / 2 - disc.radius
+        assert abs(disc.center[1]) < PAPER.height / 2 - disc.radius

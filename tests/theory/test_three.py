@@ -1,0 +1,145 @@
+"""Three discs: the two orientations of the box agree, and so do other methods."""
+
+import math
+import random
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+from twodiscs.model.checks import InputError
+from twodiscs.model.many import largest_known_radius as largest_radius
+from twodiscs.model.scene import Scene
+from twodiscs.theory import n_discs, three
+from twodiscs.theory.virial import rates, virial_sum
+
+BOUND = 1e-12
+
+
+def boxes(number, seed):
+    """Yield sides and radii of all kinds, some of them at the radii where kinks meet."""
+    generator = random.Random(seed)
+    while number:
+        width = 10 ** generator.uniform(0, 1.2)
+        largest = largest_radius(3, width, 1.0)
+        radius = largest * generator.choice(
+            [generator.random(), 1 - 10 ** generator.uniform(-3, -1)]
+        )
+        if generator.random() < 0.4:
+            special = (1 / 4, width / 4, 1 / 6, width / 6, 1 / (2 + math.sqrt(3)), width / 3)
+            radius = generator.choice(special) * (
+                1 + generator.choice([-1, 0, 1]) * 10 ** generator.uniform(-12, -2)
+            )
+        if 1e-3 < radius < largest * (1 - 1e-3):
+            number -= 1
+            yield width, 1.0, radius
+
+
+def test_the_box_on_its_side_has_the_same_numbers():
+    """The integrals, their regions and their kinks are others then, the results the same."""
+    for width, height, radius in boxes(60, 1):
+        a, b, sigma = width - 2 * radius, height - 2 * radius, 2 * radius
+        volume, by_a, by_b, contact, _ = three.integrals(a, b, sigma)
+        turned = three.integrals(b, a, sigma)
+        assert turned[:4] == pytest.approx((volume, by_b, by_a, contact), rel=BOUND)
+        euler = a * by_a + b * by_b - sigma * contact
+        assert euler == pytest.approx(6 * volume, abs=BOUND * (volume + sigma * contact))
+
+
+@pytest.mark.parametrize("radius", [0.05, 0.15, 0.2, 0.24, 0.28, 0.3])
+def test_derivatives_are_those_of_the_volume(radius):
+    """Central differences of the fourth order: their error is (step)⁴."""
+    at = np.array([1.5 - 2 * radius, 1.0 - 2 * radius, 2 * radius])
+    found = three.integrals(*at)
+    room = largest_radius(3, 1.5, 1.0) - radius
+    for k, derivative in enumerate((found[1], found[2], -found[3])):
+        step = 2e-3 * min(room, radius) * np.eye(3)[k]
+        values = [three.integrals(*(at + n * step))[0] for n in (-2, -1, 1, 2)]
+        slope = (values[0] - 8 * values[1] + 8 * values[2] - values[3]) / (12 * step[k])
+        assert slope == pytest.approx(derivative, rel=1e-8)
+
+
+def hops_in_y(a, b, sigma):
+    """Return Σ ∫ δ(y_i − y_j) by its own formula: two discs level, the third one a gap away."""
+    with mp.workdps(20):
+        a, b, sigma = mpf(a), mpf(b), mpf(sigma)
+
+        def d(gap):
+            return mp.sqrt(max(sigma**2 - gap**2, 0))
+
+        def spans(gap):
+            c = d(gap)
+            # The third disc is beside the other two, or between them.
+            beside = max(a - sigma - c, 0) ** 3 / 6
+            middle = sigma
+            if 2 * c >= sigma:
+                return 2 * beside + max(a - 2 * c, 0) ** 3 / 6
+            m = max(a - middle, 0)
+            return 2 * beside + (a - 2 * c) * m**2 / 2 - m**3 / 3
+
+        cuts = {mpf(0), b, sigma, sigma * mp.sqrt(3) / 2}
+        if abs(a - sigma) < sigma:
+            cuts.add(mp.sqrt(sigma**2 - (a - sigma) ** 2))
+        if a < 2 * sigma:
+            cuts.add(mp.sqrt(sigma**2 - a**2 / 4))
+        cuts = sorted(cut for cut in cuts if cut <= b)
+        # Three pairs are level, either of the two on the left, the third above or below.
+        return 12 * mp.quad(lambda gap: (b - gap) * spans(gap), cuts)
+
+
+@pytest.mark.parametrize(
+    ("width", "radius"), [(1.5, 0.1), (1.5, 0.2), (1.5, 0.26), (1.0, 0.2), (3.0, 0.3), (4.0, 0.05)]
+)
+def test_hops_agree_with_an_integral_of_one_dimension(width, radius):
+    a, b, sigma = width - 2 * radius, 1 - 2 * radius, 2 * radius
+    for sides in ((a, b), (b, a)):
+        direct = hops_in_y(*sides[::-1], sigma)
+        found = three.integrals(*sides, sigma)[4]
+        assert found == pytest.approx(float(direct), rel=BOUND, abs=1e-300)
+
+
+@pytest.mark.parametrize("radius", [0.1, 0.2, 0.24])
+def test_volume_by_rejection(radius):
+    """Five sigma of a binomial count."""
+    rng, n = np.random.default_rng(3), 400_000
+    scene = Scene(1.5, 1.0, radius, discs=3)
+    x, y = scene.range_x * rng.random((3, n)), scene.range_y * rng.random((3, n))
+    free = np.ones(n, bool)
+    for i, j in ((0, 1), (0, 2), (1, 2)):
+        free &= (x[i] - x[j]) ** 2 + (y[i] - y[j]) ** 2 >= scene.contact_distance**2
+    true = math.exp(three.derivatives(scene).log_volume) / (scene.range_x * scene.range_y) ** 3
+    assert abs(free.mean() - true) < 5 * math.sqrt(true * (1 - true) / n)
+
+
+def test_the_value_of_another_derivation():
+    """Scrambled Sobol points, 2e-4 at worst."""
+    scene = Scene(1.5, 1.0, 0.15, discs=3)
+    known = three.derivatives(scene)
+    assert math.exp(known.log_volume) == pytest.approx(0.2455841, rel=2e-6)
+    found = rates(scene, known)
+    expected = {
+        "disc_collision": 1.3936, "right_wall": 1.10890, "top_wall": 1.85397,
+        "horizontal_hop": 0.57494,
+    }  # fmt: skip
+    assert {event: found[event] for event in expected} == pytest.approx(expected, rel=2e-4)
+    assert virial_sum(scene, found) == pytest.approx(1, rel=1e-13)
+
+
+def test_largest_radius_ends_the_volume():
+    """V goes like the room to the sixth power there, and to nothing."""
+    for width in (1.0, 1.1, 1.3, 1.5, 2.0):
+        largest = largest_radius(3, width, 1.0)
+        volumes = []
+        for room in (2e-4, 1e-4):
+            radius = largest * (1 - room)
+            volumes.append(three.integrals(width - 2 * radius, 1 - 2 * radius, 2 * radius)[0])
+        power = math.log2(volumes[0] / volumes[1])
+        assert power == pytest.approx(6, abs=0.02), width
+
+
+def test_only_three_between_walls():
+    with pytest.raises(InputError, match="three discs"):
+        three.derivatives(Scene(1.5, 1.0, 0.1, discs=4))
+    with pytest.raises(InputError, match="three discs"):
+        three.derivatives(Scene(1.5, 1.0, 0.1, discs=3, periodic="x"))
+    assert n_discs.known_derivatives(Scene(1.5, 1.0, 0.1, discs=4)) is None
