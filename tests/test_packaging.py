@@ -112,6 +112,51 @@ def test_the_first_half_of_the_tutorial_runs_from_a_wheel(installed):
     assert absent == "absent"
 
 
+@pytest.fixture(scope="module")
+def sdist(tmp_path_factory):
+    """Build the source distribution and return its path."""
+    folder = tmp_path_factory.mktemp("sdist")
+    subprocess.run(["git", "clone", "--quiet", REPOSITORY, folder / "source"], check=True)
+    build = "import setuptools.build_meta as build; print(build.build_sdist('..'))"
+    subprocess.run([sys.executable, "-c", build], cwd=folder / "source", check=True)
+    (built,) = folder.glob("*.tar.gz")
+    return built
+
+
+@pytest.mark.slow
+def test_the_source_distribution_makes_the_same_wheel(installed, sdist, tmp_path):
+    pip = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-index"]
+    command = [*pip, "--no-build-isolation", "--wheel-dir", tmp_path, sdist]
+    subprocess.run(command, check=True)
+    (again,), (built,) = tmp_path.glob("*.whl"), installed.parent.glob("*.whl")
+    names = [sorted(ZipFile(path).namelist()) for path in (again, built)]
+    assert names[0] == names[1]
+    with tarfile.open(sdist) as archive:
+        assert not any("/tests/" in name for name in archive.getnames())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("version", ["3.11", "3.12", "3.13", "3.14"])
+def test_the_lines_of_the_readme_run_in_an_empty_environment(version, sdist, tmp_path):
+    """With the versions of the lock, which need the network."""
+    made = subprocess.run(
+        ["uv", "venv", "--quiet", "--no-python-downloads", "--python", version, tmp_path / "venv"],
+        check=False,
+    )
+    if made.returncode:
+        pytest.skip(f"there is no Python {version} here")
+    python, lock = tmp_path / "venv/bin/python", REPOSITORY / "requirements.lock"
+    install = ["uv", "pip", "install", "--quiet", "--python", python, "--constraint", lock, sdist]
+    subprocess.run(install, check=True)
+    page = (REPOSITORY / "README.md").read_text(encoding="utf-8")
+    ((line, shown),) = re.findall(r"```console\n\$ (.*)\n((?:.*\n)*?)```", page)
+    command = [python.with_name("twodiscs"), *line.split()[1:]]
+    assert subprocess.check_output(command, text=True) == shown
+    (code,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    subprocess.run([python, "-c", code], cwd=tmp_path, check=True)
+    assert (tmp_path / "trajectory.png").exists()
+
+
 def test_the_lock_has_everything():
     lock = (REPOSITORY / "requirements.lock").read_text(encoding="utf-8")
     locked = set(re.findall(r"^([\w-]+)==", lock, re.MULTILINE))
