@@ -1,4 +1,4 @@
-"""A checkout to build in: the repository's files with a configuration of six radii."""
+"""A checkout to build in: the repository's files with a small configuration."""
 
 import atexit
 import gc
@@ -41,36 +41,24 @@ rule mine:
         "cp {{input}} {{output}}"
 """
 
-#: (File below studies, its text, its text in a checkout). The tests of a study measure; a build
-#: takes the rows of the default configuration. Of the parts of a table it makes one. Repetitions
-#: do not follow from the budget of a scene.
-QUICKER = (
-    (
-        "passages/study.py",
-        "rows = [row for part in tables.values() for row in part]",
-        "assert all(tables.values())\n"
-        "        names = {'paper': 'six', 'long': 'walls', None: None}\n"
-        "        rows = Passages.read('paper/expected/passages.csv')\n"
-        "        return [row | {'scene': names[row['scene']]} for row in rows]",
-    ),
-    (
-        "passages/study.py",
-        'return parts | {"in_the_limit"',
-        'return {"in_the_limit"',
-    ),
-    ("passages/measure.py", "LIMIT_BLOCKS = 512", "LIMIT_BLOCKS = 64"),
-    (
-        "more_discs/study.py",
-        "measure.rows(events, samples, seed)",
-        "MoreDiscs.read('paper/expected/more_discs.csv')",
-    ),
-    (
-        "stability/study.py",
-        "measure.rows(box, seed, ordinary, hard)",
-        "Stability.read('paper/expected/stability.csv')",
-    ),
-    ("accuracy_cost/measure.py", "REPETITIONS = 16", "REPETITIONS = 4"),
-)
+#: The last line of the script of studies, and the lines in a checkout. Tests of a study measure; a
+#: build takes the expected rows, none of tables with seconds. Tables made of other tables are made.
+STUDIED = "table.write(snakemake.output.table, work(**given))"
+KEPT = f"""
+from pathlib import Path
+
+kept = Path({str(REPOSITORY / "paper" / "expected")!r}, f"{{table.name()}}.csv")
+if table.name() in ("agreement", "effects", "effects_curves", "thresholds"):
+    rows = work(**given)
+else:
+    names = {{"paper": "full", "long": "walls"}}
+    rows = table.read(kept) if kept.exists() and not is_part else []
+    rows = [row | {{n: names.get(row[n], row[n]) for n in ("scene",) if n in row}} for row in rows]
+table.write(snakemake.output.table, rows)
+"""
+
+#: Of the parts of a table a build makes one.
+PARTED = 'return parts | {"in_the_limit"', 'return {"in_the_limit"'
 
 #: The rules that build nothing but lists of files: targets, and checksums of sources.
 AUXILIARY = r"all|default|(\w+_)?code"
@@ -207,10 +195,10 @@ def fresh(path):
         else:
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(source, target)
-    shutil.copy(Path(__file__).with_name("six_radii.yaml"), path / "config" / "config.yaml")
+    shutil.copy(Path(__file__).with_name("small.yaml"), path / "config" / "config.yaml")
     checkout = Checkout(path)
-    for file, *texts in QUICKER:
-        checkout.replace(f"src/twodiscs_paper/studies/{file}", *texts)
+    checkout.replace("workflow/scripts/study.py", STUDIED, KEPT)
+    checkout.replace("src/twodiscs_paper/studies/passages/study.py", *PARTED)
     return checkout
 
 

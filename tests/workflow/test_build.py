@@ -26,8 +26,8 @@ TIMED = (
 def test_everything_that_is_called_for_is_built(complete):
     results = complete.results()
     tables = ("grid", "theory", "volume", "areas", "mean_times", "hop_histogram", "check", "cost")
-    assert {f"six/{name}.csv" for name in (*tables, "trajectory")} <= set(results)
-    assert {f"six/figures/{name}.{kind}" for name in FIGURES for kind in ("pdf", "png")} <= set(
+    assert {f"full/{name}.csv" for name in (*tables, "trajectory")} <= set(results)
+    assert {f"full/figures/{name}.{kind}" for name in FIGURES for kind in ("pdf", "png")} <= set(
         results
     )
     walls = {name for name in results if name.startswith("walls/") and name.endswith(".csv")}
@@ -51,8 +51,8 @@ def test_the_manifest_is_one_of_sha256sum(complete):
     results = complete.path / "results"
     subprocess.run(["sha256sum", "--check", "--quiet", "manifest.sha256"], cwd=results, check=True)
     names = [line.split()[1] for line in (results / "manifest.sha256").read_text().splitlines()]
-    assert {"errata.csv", "six/areas.csv", "walls/check.csv", "six/figures/volume.pdf"} < {*names}
-    assert not {"six/cost.csv", "accuracy_cost.csv", "figures/accuracy_cost.pdf"} & {*names}
+    assert {"errata.csv", "full/areas.csv", "walls/check.csv", "full/figures/volume.pdf"} < {*names}
+    assert not {"full/cost.csv", "accuracy_cost.csv", "figures/accuracy_cost.pdf"} & {*names}
     assert sorted(names) == names
 
 
@@ -61,20 +61,20 @@ def test_on_one_core_and_by_snakemakes_other_memory_the_bytes_are_the_same(
     complete, tmp_path_factory
 ):
     again = fresh(tmp_path_factory.mktemp("again") / "checkout")
-    tables = [f"results/six/{name}.csv" for name in ("grid", "areas", "mean_times", "trajectory")]
-    point = "results/six/points/dynamics/0.2.json"
+    tables = [f"results/full/{name}.csv" for name in ("grid", "areas", "mean_times", "trajectory")]
+    point = "results/full/points/dynamics/0.2.json"
     words = ("--persistence-backend", "db", "check", "volume", "hop_histogram", point, *tables)
     again.snakemake("--cores", "1", *words)
     assert again.jobs(*words) == []
     known = read_json(again.path / point)
     (again.path / point).unlink()
-    assert ("dynamics", ("scene=six", "stage=dynamics", "radius=0.2")) in again.jobs(*words)
+    assert ("dynamics", ("scene=full", "stage=dynamics", "radius=0.2")) in again.jobs(*words)
     again.snakemake("--cores", "1", *words)
     assert read_json(again.path / point) == known
     assert again.jobs(*words) == []
     first, second = complete.results(), again.results()
     names = {name for name in second if not any(mark in name for mark in TIMED)}
-    assert {"check.passed", "six/check.csv", "six/figures/hop_histogram.pdf"} <= names
+    assert {"check.passed", "full/check.csv", "full/figures/hop_histogram.pdf"} <= names
     assert [name for name in sorted(names) if first[name] != second[name]] == []
 
 
@@ -88,46 +88,46 @@ def test_a_formula_off_by_one_percent_fails_the_check_and_is_named(built):
     said = run.stdout + run.stderr
     assert "mean_time, quantity disc_collision_time, method dynamics, radius 0.2 has z" in said
     assert "Traceback" not in said
-    with open(built.path / "results" / "six" / "check.csv", newline="") as file:
+    with open(built.path / "results" / "full" / "check.csv", newline="") as file:
         failed = [row["quantity"] for row in csv.DictReader(file) if row["passed"] == "false"]
     assert "disc_collision_time" in failed
     assert not (built.path / "results" / "check.passed").exists()
 
 
 def test_what_is_deleted_comes_back(built):
-    lost = "six/figures/volume.pdf", "paper.pdf", "six/mean_times.csv"
+    lost = "full/figures/volume.pdf", "paper.pdf", "full/mean_times.csv"
     for name in lost:
         (built.path / "results" / name).unlink()
     made = {
-        ("figure", ("scene=six", "figure=volume")),
+        ("figure", ("scene=full", "figure=volume")),
         ("paper", ()),
-        ("table", ("scene=six", "table=mean_times")),
+        ("table", ("scene=full", "table=mean_times")),
     }
     assert made <= {*built.jobs(*(f"results/{name}" for name in lost))}
 
 
 def test_a_deleted_point_comes_back(built):
-    point = built.path / "results/six/points/monte_carlo/0.2.json"
+    point = built.path / "results/full/points/monte_carlo/0.2.json"
     content = read_json(point)
     point.unlink()
-    assert ("monte_carlo", ("scene=six", "stage=monte_carlo", "radius=0.2")) in built.jobs()
-    built.snakemake("--cores", "1", "results/six/points/monte_carlo/0.2.json")
+    assert ("monte_carlo", ("scene=full", "stage=monte_carlo", "radius=0.2")) in built.jobs()
+    built.snakemake("--cores", "1", "results/full/points/monte_carlo/0.2.json")
     assert read_json(point) == content
 
 
 def test_an_edited_point_is_refused(built):
-    point = built.path / "results/six/points/dynamics/0.2.json"
+    point = built.path / "results/full/points/dynamics/0.2.json"
     point.write_text(point.read_text().replace("1", "2", 1))
-    run = built.snakemake("--cores", "1", "results/six/mean_times.csv", passes=False)
+    run = built.snakemake("--cores", "1", "results/full/mean_times.csv", passes=False)
     assert run.returncode != 0
-    log = (built.path / "results/logs/six/mean_times.log").read_text()
+    log = (built.path / "results/logs/full/mean_times.log").read_text()
     assert log.endswith("0.2.json is not what its job wrote; delete it, and it is made again\n")
 
 
 def test_verify_builds_nothing_and_names_what_differs(built):
     built.snakemake("--cores", "1", "renew")
-    (built.path / "results/six/theory.csv").unlink()
-    path = built.path / "results/six/points/dynamics/0.2.json"
+    (built.path / "results/full/theory.csv").unlink()
+    path = built.path / "results/full/points/dynamics/0.2.json"
     content = json.loads(path.read_text())
     (blocks, (counts, _)), *_ = content["parts"]["all"]["sums"].items()
     counts[0] += 1
@@ -137,8 +137,8 @@ def test_verify_builds_nothing_and_names_what_differs(built):
     assert run.returncode == 1
     log = (built.path / "results/logs/verify.log").read_text().splitlines()
     assert log[:-1] == [
-        "six/theory.csv: is missing",
-        f"six/points/dynamics/0.2.json: parts all sums {blocks} 0 0 is {counts[0]}, expected "
+        "full/theory.csv: is missing",
+        f"full/points/dynamics/0.2.json: parts all sums {blocks} 0 0 is {counts[0]}, expected "
         f"{counts[0] - 1}",
     ]
     assert log[-1].endswith("files, 2 differ")
@@ -157,7 +157,7 @@ def test_what_only_looks_changes_nothing_and_lint_is_clean_and_every_rule_says_w
             if path.is_file() and not {"log", "iocache"} & {*path.parts}
         }
 
-    (built.path / "results/six/points/dynamics/0.2.json").unlink()
+    (built.path / "results/full/points/dynamics/0.2.json").unlink()
     before = everything()
     built.snakemake("--dry-run", "--forceall")
     built.snakemake("--lint")
@@ -172,6 +172,6 @@ def test_the_explorer_is_made_when_asked_for(built):
     assert "explorer.html" not in built.results()
     built.snakemake("--cores", "1", "explorer")
     page = (built.path / "results" / "explorer.html").read_text(encoding="utf-8")
-    assert '"name": "six"' in page
+    assert '"name": "full"' in page
     assert '"dynamics": [[' in page
     assert built.jobs("explorer") == []

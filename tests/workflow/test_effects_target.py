@@ -34,9 +34,7 @@ def test_edit_of_a_scene_counts_that_one_again(built):
     built.replace("config/scenes/torus.yaml", "accuracy: draft", "accuracy: 2e-2")
     jobs = built.jobs()
     counted = [wildcards for rule, wildcards in jobs if rule == "dynamics"]
-    assert sorted(counted) == [
-        ("scene=effects/torus", "stage=dynamics", f"radius={r}") for r in (0.1, 0.3)
-    ]
+    assert counted == [("scene=effects/torus", "stage=dynamics", "radius=0.3")]
     assert {rule for rule, _ in jobs} == {
         *("dynamics", "table", "study_table", "manifest"),
         *FOLLOWING,

@@ -3,7 +3,7 @@
 import os
 import re
 
-SIX, WALLS = "scene=six", "scene=walls"
+FULL, WALLS = "scene=full", "scene=walls"
 
 
 def expected(*jobs):
@@ -29,7 +29,7 @@ def test_one_more_radius_runs_one_job_of_each_kind(built):
     built.configure(lambda mapping: mapping["scenes"][0]["radii"].append(0.1234))
     jobs = built.jobs()
     assert [job for job in jobs if any("radius=" in part for part in job[1])] == expected(
-        *((stage, SIX, f"stage={stage}", "radius=0.1234") for stage in ("monte_carlo", "dynamics"))
+        *((stage, FULL, f"stage={stage}", "radius=0.1234") for stage in ("monte_carlo", "dynamics"))
     )
     assert not [job for job in jobs if WALLS in job[1]]
     assert {rule for rule, _ in jobs} == {
@@ -126,7 +126,7 @@ def test_edit_of_the_physics_reruns_all_points_and_what_follows_and_is_named(bui
 def test_results_are_kept_after_an_edit_that_does_not_matter(built):
     """By ``--touch``, and the next edit is noticed."""
     path = "src/twodiscs/dynamics/law.py"
-    point = built.path / "results/six/points/dynamics/0.2.json"
+    point = built.path / "results/full/points/dynamics/0.2.json"
     content = point.read_bytes()
     built.edit(path, "# a remark\n")
     built.snakemake("--cores", "1", "--touch")
@@ -140,7 +140,7 @@ def test_tighter_accuracy_reruns_dynamics_of_that_scene(built):
     built.configure(lambda mapping: mapping["scenes"][0].update(accuracy=9e-4))
     jobs = built.jobs()
     rules = {rule for rule, _ in jobs}
-    assert len([job for job in jobs if job[0] == "dynamics"]) == 6
+    assert len([job for job in jobs if job[0] == "dynamics"]) == 3
     assert not {"monte_carlo", "intervals", "trajectory", "exact"} & rules
     assert not [job for job in jobs if WALLS in job[1]]
 
@@ -175,7 +175,7 @@ def test_a_scene_that_watches_wall_times_runs_nothing_else(planned):
 
 
 def test_a_figure_is_a_target_by_its_name(unbuilt):
-    scenes = {"volume": [SIX], "model": [SIX, WALLS], "mean_wall_time": [SIX, WALLS]}
+    scenes = {"volume": [FULL], "model": [FULL, WALLS], "mean_wall_time": [FULL, WALLS]}
     drawn = [job for job in unbuilt.jobs(*scenes) if job[0] == "figure"]
     assert drawn == expected(
         *(("figure", scene, f"figure={name}") for name in scenes for scene in scenes[name])
@@ -183,7 +183,7 @@ def test_a_figure_is_a_target_by_its_name(unbuilt):
 
 
 def test_a_drawing_needs_no_simulation(unbuilt):
-    jobs = unbuilt.jobs("results/six/figures/model.pdf")
+    jobs = unbuilt.jobs("results/full/figures/model.pdf")
     assert [rule for rule, _ in jobs] == ["figure"]
 
 

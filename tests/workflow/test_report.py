@@ -138,7 +138,7 @@ def test_nothing_goes_wrong_and_nothing_is_asked_for(front):
 
 def test_the_report_opens_on_verdict_agreement_and_animation(front, complete):
     assert front["title"] == front["heading"] == "Two discs in a box"
-    tables = {name: rows(complete, f"{name}/check.csv") for name in ("six", "walls")}
+    tables = {name: rows(complete, f"{name}/check.csv") for name in ("full", "walls")}
     compared = {n: [r for r in some if r["passed"]] for n, some in tables.items()}
     largest = {n: max(abs(float(r["z"])) for r in some) for n, some in compared.items()}
     total = sum(map(len, compared.values()))
@@ -147,14 +147,14 @@ def test_the_report_opens_on_verdict_agreement_and_animation(front, complete):
     assert said in plain(front["verdict"])
     said = f"largest deviation is {max(largest.values()):.3g} standard"
     assert said in plain(front["verdict"])
-    six, walls = front["rows"][1:]
-    counts = [str(len(compared["six"])), str(single["six"])]
-    assert six[:5] == ["six, 1.5 × 1", "6", *counts, f"{largest['six']:.3g}"]
-    assert walls[:2] == ["walls, 3 × 1", "2"]
+    full, walls = front["rows"][1:]
+    counts = [str(len(compared["full"])), str(single["full"])]
+    assert full[:5] == ["full, 1.5 × 1", "3", *counts, f"{largest['full']:.3g}"]
+    assert walls[:2] == ["walls, 3 × 1", "1"]
     events = sum(
-        int(r["events"]) for r in rows(complete, "six/cost.csv") if r["stage"] == "dynamics"
+        int(r["events"]) for r in rows(complete, "full/cost.csv") if r["stage"] == "dynamics"
     )
-    assert six[5] == "{} × 10{}".format(*re.fullmatch(r"(.*)e\+0?(.*)", f"{events:.1e}").groups())
+    assert full[5] == "{} × 10{}".format(*re.fullmatch(r"(.*)e\+0?(.*)", f"{events:.1e}").groups())
 
 
 def test_key_figures_have_their_captions_beneath_them(front, complete):
@@ -162,7 +162,9 @@ def test_key_figures_have_their_captions_beneath_them(front, complete):
     assert first["title"] == f"{ANIMATION.title}."
     key = [figure for figure in others if figure["key"]]
     titles = {f"{entry.title}.": entry for entry in (FIGURES | STUDY_FIGURES).values()}
-    assert len({figure["title"] for figure in key}) == 2 + 2 + 5  # of the scenes six, walls, of all
+    assert (
+        len({figure["title"] for figure in key}) == 2 + 2 + 5
+    )  # of the scenes full, walls, of all
     for figure in front["figures"]:
         assert figure["loaded"] > 300
         assert figure["beneath"]
@@ -178,13 +180,13 @@ def test_key_figures_have_their_captions_beneath_them(front, complete):
 
 
 def test_a_section_a_scene_and_thumbnails_of_the_rest(front, complete):
-    names = ["Scene six", "Scene walls", "Studies, over all scenes", "How it was made"]
+    names = ["Scene full", "Scene walls", "Studies, over all scenes", "How it was made"]
     assert front["sections"] == names
     drawn = {*(complete.path / "results").glob("*/figures/*.png")}
     drawn |= {*(complete.path / "results" / "figures").glob("*.png")}
     assert len(front["thumbnails"]) + len(front["figures"]) == len(drawn)
     assert all(width > 100 and len(text) > 20 for width, text in front["thumbnails"])
-    assert {"six/figures/volume.pdf", "six/figures/volume.png"} <= {*front["links"]}
+    assert {"full/figures/volume.pdf", "full/figures/volume.png"} <= {*front["links"]}
 
 
 def test_the_animation_can_be_paused(front):
@@ -192,8 +194,8 @@ def test_the_animation_can_be_paused(front):
 
 
 def test_it_begins_with_all_mean_times_and_its_contents(front, complete):
-    # Six events at each of six radii, two at each of two.
-    assert front["numbers"] == [[1 + 6] * 6, [1 + 2] * 2]
+    # Six events at each of three radii, two at one.
+    assert front["numbers"] == [[1 + 6] * 3, [1 + 2]]
     assert front["opened"] == 2
     assert front["anchors"] == sorted(front["anchors"])
     assert len(front["anchors"]) == 5  # mean times, two scenes, studies, how it was made
@@ -216,4 +218,4 @@ def test_links_of_the_report_lead_to_files(front, complete):
     results = complete.path / "results"
     files = {link for link in front["links"] if not link.startswith("#")}
     assert [link for link in files if not (results / link).is_file()] == []
-    assert {"paper.pdf", "six/check.csv"} <= files
+    assert {"paper.pdf", "full/check.csv"} <= files

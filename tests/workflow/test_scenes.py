@@ -103,7 +103,7 @@ def test_scenes_with_effects_call_for_what_has_a_place(unbuilt, tmp_path):
     scenes = [block["scenes"][0] for block in BLOCKS.values()]
     assert [scene["name"] for scene in scenes] == list(BLOCKS)
     assert {*CALLED} <= {*BLOCKS}
-    found = jobs(unbuilt, tmp_path / "six.yaml", scenes)
+    found = jobs(unbuilt, tmp_path / "all.yaml", scenes)
     shared = {rule for rule, wildcards in found if "scene" not in repr(wildcards)}
     assert shared == ALWAYS
     for request in load({"scenes": scenes}).scenes:
