@@ -42,23 +42,30 @@ rule mine:
 """
 
 #: The last line of the script of studies, and the lines in a checkout. Tests of a study measure; a
-#: build takes the expected rows, none of tables with seconds. Tables made of other tables are made.
+#: build takes the expected rows. Tables with seconds, and those of other tables, are made.
+EXPECTED = "errata", "distributions", "more_discs", "passages", "stability", "tails"
 STUDIED = "table.write(snakemake.output.table, work(**given))"
 KEPT = f"""
 from pathlib import Path
 
 kept = Path({str(REPOSITORY / "paper" / "expected")!r}, f"{{table.name()}}.csv")
-if table.name() in ("agreement", "effects", "effects_curves", "thresholds"):
-    rows = work(**given)
-else:
+if is_part:
+    rows = []
+elif table.name() in {EXPECTED}:
     names = {{"paper": "full", "long": "walls"}}
-    rows = table.read(kept) if kept.exists() and not is_part else []
-    rows = [row | {{n: names.get(row[n], row[n]) for n in ("scene",) if n in row}} for row in rows]
+    rows = [row | {{k: names.get(row[k], row[k]) for k in ("scene",) if k in row}}
+            for row in table.read(kept)]
+else:
+    rows = work(**given)
 table.write(snakemake.output.table, rows)
 """
 
-#: Of the parts of a table a build makes one.
-PARTED = 'return parts | {"in_the_limit"', 'return {"in_the_limit"'
+#: (File below studies, its text, its text in a checkout). Of the parts of a table one is made.
+#: Repetitions do not follow from the budget of a scene.
+QUICKER = (
+    ("passages/study.py", 'return parts | {"in_the_limit"', 'return {"in_the_limit"'),
+    ("accuracy_cost/measure.py", "REPETITIONS = 16", "REPETITIONS = 4"),
+)
 
 #: The rules that build nothing but lists of files: targets, and checksums of sources.
 AUXILIARY = r"all|default|(\w+_)?code"
@@ -198,7 +205,8 @@ def fresh(path):
     shutil.copy(Path(__file__).with_name("small.yaml"), path / "config" / "config.yaml")
     checkout = Checkout(path)
     checkout.replace("workflow/scripts/study.py", STUDIED, KEPT)
-    checkout.replace("src/twodiscs_paper/studies/passages/study.py", *PARTED)
+    for file, *texts in QUICKER:
+        checkout.replace(f"src/twodiscs_paper/studies/{file}", *texts)
     return checkout
 
 
