@@ -1,4 +1,8 @@
-"""Bad input: every public function raises an error whose one sentence says why."""
+"""Bad input: one sentence with the key, the value and what is allowed, from the face and the shell.
+
+Without these tests a check could be lost, or end in a traceback; ``configuration/test_mistakes.py``
+has the sentences about configurations.
+"""
 
 import itertools
 import math
@@ -7,32 +11,41 @@ import re
 import subprocess
 import sys
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import command
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import twodiscs as td
-from twodiscs import arguments
+from twodiscs import arguments, cli
 from twodiscs.comparison import scores
 from twodiscs.dynamics import counting, intervals, trajectory
 from twodiscs.model import checks, effects, radii
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
-from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.base import read_json
 from twodiscs.sampling import montecarlo
+from twodiscs.sampling.starts import components
 from twodiscs.theory import exact, laws, virial
-from twodiscs_paper.configuration import load
 
 BOX = Box(1.5, 1.0)
 PAPER = BOX.scene(0.2)
+RING, FIELD = Scene(1.5, 1.0, 0.2, periodic="x"), Scene(1.5, 1.0, 0.2, field=0.4)
 NAN, INF = math.nan, math.inf
 POINT = {"scene": PAPER, "quantities": ["volume"], "samples": 1, "shell": 0.02, "seed": 1}
+COUNTED, NAMED = {"events": ["any_wall"], "budget": 1}, {"seed": 1, "name": "a"}
+START = dict(zip(components(PAPER), (-0.5, 0.0, 0.5, 0.0, 1.0, 0.0, 0.0, 0.0), strict=True))
+
+
+def x1(start, now):
+    return now["x1"]
+
 
 #: Public functions with arguments that are right.
 CALLS = [
@@ -42,7 +55,7 @@ CALLS = [
     (Box, {"width": 1.5, "height": 1.0, "effects": {"field": 0.1}}),
     (BOX.scene, {"radius": 0.2}),
     (BOX.threshold, {"event": "any_wall"}),
-    (checks.check_length, {"name": "side", "value": 1.0}),
+    (partial(checks.check_length, "side"), {"value": 1.0}),
     (radii.radii, {"width": 1.5, "height": 1.0, "smallest": 0.01, "count": 8}),
     (radii.even_radii, {"smallest": 0.1, "largest": 0.2, "count": 8}),
     (radii.stream_seed, {"seed": 1, "scene": "paper", "method": "dynamics", "key": "0.2"}),
@@ -78,6 +91,17 @@ CALLS = [
     (scores.bonferroni_bound, {"comparisons": 10, "alarm": 0.1}),
     (scores.z_mean, {"z": [1.0]}),
     (scores.z_spread, {"z": [1.0]}),
+    (td.exact_table, {"width": 1.5, "height": 1.0, "radii": [0.2]}),
+    (td.scan, {"width": 1.5, "height": 1.0, "radii": [0.2], "error": 0.5, **COUNTED}),
+    (td.simulate, {"scene": PAPER, "error": 0.5, **COUNTED, **NAMED}),
+    (td.sample, POINT | NAMED),
+    (td.intervals, {"scene": PAPER, "hop": "vertical_hop", "number": 1, **NAMED}),
+    (td.transmission, {"scene": PAPER, "hop": "vertical_hop", "hops": 1, **NAMED}),
+    (td.starts, {"scene": PAPER, "number": 1, **NAMED}),
+    (td.trajectory, {"scene": PAPER, "start": [*START.values()], "duration": 1.0, **NAMED}),
+    (td.observe, {"scene": PAPER, "function": x1, "times": [1], "replicas": 1, **NAMED}),
+    (td.diffusion, {"scene": RING, "times": [1], "replicas": 1, **NAMED}),
+    (td.plot, {"result": PAPER, "path": None}),
 ]  # fmt: skip
 
 #: Wrong values for each of these arguments, one of each kind.
@@ -112,7 +136,12 @@ WRONG = (
     | {"stderr": [*REAL, -0.1], "t": REAL, "probability": [*REAL, 1.1], "target": TARGET}
     | {"scene": [1.0, "scene", (1.5, 1.0, 0.2), Scene], "method": EVENT, "event": EVENT}
     | {"hop": [*EVENT, "any_wall"], "quantities": [[], ["mass"], [None], ["any_wall"]]}
-    | {"values": [[], [1.0], [NAN, 1.0]], "z": NUMBERS}
+    | {"values": [[], [1.0], [NAN, 1.0]], "z": NUMBERS, "hops": COUNT, "number": COUNT}
+    | {"error": [0.0, 1.1, -0.5, True, "rough", {}, {"hop": 0.1}], "name": [3, b"a"]}
+    | {"events": [["hop"], {"any_wall": 0.1}, b"any_wall", 5], "radii": [[], [0.9], [None]]}
+    | {"start": [[], [1.0] * 8, "x", [None] * 8], "times": [[-1], [1, 1], [1e9], [INF]]}
+    | {"function": [1, lambda start, now: None, lambda start, now: "x1"], "path": [3.5, "a.txt"]}
+    | {"result": [1, "scene", [PAPER, 1], {}]}
 )
 
 #: Right values that are wrong elsewhere: any finite value, any text for the name of a scene.
@@ -136,6 +165,9 @@ INSIDE = {
     "quantities": ["quantity"],
     "replicas": ["n"],
     "target": ["event"],
+    "error": ["event"],
+    "events": ["event"],
+    "radii": ["radius"],
 }
 
 
@@ -167,14 +199,6 @@ def test_junk_is_refused(call, data):
         refused(function, good, name, [value] if name in LISTS else value)
 
 
-def test_swapped_arguments_are_refused():
-    for function in (exact.rate, laws.threshold_time):
-        with pytest.raises(InputError, match="scene must be a Scene, not 'any_wall'"):
-            function("any_wall", PAPER)
-    with pytest.raises(InputError, match="does not fit"):
-        Scene(0.2, 1.0, 1.5)
-
-
 @pytest.mark.parametrize("kind", [int, np.float64, np.float32, Fraction, np.int64])
 def test_other_kinds_of_numbers_are_taken(kind):
     assert Scene(kind(4), kind(3), 0.5) == Scene(4.0, 3.0, 0.5)
@@ -191,13 +215,132 @@ def test_beyond_the_largest_radius_there_is_no_scene(sides):
             box.scene(radius)
 
 
-@pytest.mark.parametrize("mapping", [{}, {"scenes": []}, {"scenes": [{}]}])
-def test_a_configuration_that_makes_no_sense(mapping):
-    with pytest.raises(InputError, match=r"\w"):
-        load.load(mapping)
+#: Calls of the face, and what their sentences say.
+SENTENCES = [
+    *(
+        (lambda values=values: Scene(**{"width": 1.5, "height": 1.0, "radius": 0.1} | values), said)
+        for values, said in (
+            ({"discs": 1}, "discs must be an integer from 2 to 1024, not 1"),
+            ({"discs": 1025}, "discs must be an integer from 2 to 1024, not 1025"),
+            ({"discs": 3.0}, "discs must be an integer of at least 2, not 3.0"),
+            ({"discs": True}, "discs must be an integer of at least 2, not True"),
+            ({"discs": 3, "field": 1.0}, "field must be left out with 3 discs"),
+            ({"discs": 3, "depth": 1.0}, "depth must be left out with 3 discs"),
+            (
+                {"discs": 3, "moment_of_inertia": 0.5, "periodic": "xy"},
+                "moment_of_inertia must be left out in a box without walls",
+            ),
+            ({"discs": 3, "periodic": "xy"}, "periodic must be left out or x for more than two"),
+            ({"discs": 3, "periodic": "y"}, "periodic must be left out or x for more than two"),
+            ({"discs": 3, "radius": 0.31}, "radius 0.31 does not fit: 3 discs in a box of 1.5 × 1"),
+            ({"discs": 4, "radius": 0.376, "periodic": "x"}, "radius 0.376 does not fit"),
+            ({"discs": 20, "radius": 0.2}, "20 discs in a box of 1.5 × 1.0 need a "),
+            ({"discs": 64, "width": 1e5}, "width and height must be in a unit of length in which"),
+            ({"width": 0.2, "radius": 1.5}, "radius 1.5 does not fit"),
+            ({"field": -1}, "field must be a positive, finite number, or 0, not -1.0"),
+            ({"periodic": "x,y"}, "periodic must be some of the axes x and y (z needs a depth), "),
+            ({"gravity": 1}, "unexpected keyword argument 'gravity'"),
+            ({"n_discs": 3}, "'n_discs'; did you mean discs?"),
+            *(
+                ({name: np.array([0.1, 0.2])}, f"{name} must be ")
+                for name in ("discs", "width", "radius", "field", "periodic")
+            ),
+        )
+    ),
+    (lambda: Scene(1.5, 1.0, 0.1, discs=3, periodic="x").turned(), "periodic must be left out or"),
+    (lambda: Scene(1.5, 1.0, 0.2, 1.0), "positional arguments but 5 were given"),
+    (lambda: Scene(1.5, 1.0), "missing 1 required positional argument: 'radius'"),
+    (lambda: Box(1.5), "missing 1 required positional argument: 'height'"),
+    (lambda: Box.of(3), "scene must be a Scene, not 3"),
+    (lambda: exact.rate("any_wall", PAPER), "scene must be a Scene, not 'any_wall'"),
+    (lambda: td.simulate(PAPER, evnets=["any_wall"]), "'evnets'; did you mean events?"),
+    (lambda: td.simulate(PAPER, 0.5, 7), "simulate() takes from 1 to 2 positional arguments"),
+    (lambda: td.simulate(), "missing 1 required positional argument: 'scene'"),
+    (lambda: td.simulate(PAPER, scene=PAPER), "got multiple values for argument 'scene'"),
+    (lambda: td.load("a", "b"), "load() takes 1 positional argument but 2 were given"),
+    (lambda: td.scan(1.5, 1, [0.1], gravity=1), "gravity is no effect; effects must be some of "),
+    (lambda: td.scan(1.5, 1, []), "radii must have at least one radius"),
+    (lambda: td.scan(1.5, 1, [0.2, 0.2]), "radii must differ, because one radius has the same "),
+    (lambda: td.simulate(PAPER, events="any wall"), "; did you mean any_wall?"),
+    (
+        lambda: td.simulate(PAPER, events={"any_wall": 1e-9}),
+        "events must be some of vertical_hop, ",
+    ),
+    (lambda: td.simulate(PAPER, 0.5, progress=1), "progress must be True, False or None, not 1"),
+    (lambda: td.simulate(PAPER, 0.1, duration=10), "error and duration must not both be given"),
+    (lambda: td.simulate(PAPER, duration=1e9, budget=1e6), "duration must be below "),
+    (lambda: td.simulate(RING, events="right_wall"), "the periodic axis x has no walls"),
+    (lambda: td.simulate(RING, events="horizontal_hop"), "x two discs have no order that a hop "),
+    (lambda: td.sample(PAPER, 1e6, quantities="any_wall"), "did you mean any_wall_area?"),
+    (lambda: td.sample(PAPER, 1).save("\0"), "path must be a file to write, not '\\x00': it has a"),
+    (lambda: td.load_result("\0"), "path must be the path of a file, not '\\x00'"),
+    (lambda: td.load("src"), "folder must hold tables of results, but 'src' has none"),
+    (lambda: td.load("nothere"), "tables of results, but 'nothere' does not exist"),
+    *(
+        (partial(call, path), "path must be a file to write, not")
+        for call, path in (
+            (partial(td.plot, BOX), "no/a.png"),
+            (partial(td.animate, td.trajectory(PAPER)), "no/a.gif"),
+            (td.sample(PAPER, 1).save, "no/a.json"),
+        )
+    ),
+    # States
+    *(
+        (lambda given=given: td.trajectory(PAPER, start=[*(START | given).values()]), said)
+        for given, said in (
+            ({"x1": 0.2}, "have the discs apart, with 0.4 or more between their centres, not 0.3"),
+            ({"x1": -0.6}, "disc 1 inside the box, with x1 between -0.55 and 0.55, not -0.6"),
+            ({"y2": 0.31}, "disc 2 inside the box, with y2 between -0.3 and 0.3, not 0.31"),
+            ({"u1": 2.0}, "start must have a total energy of 0.5, not 2.0"),
+            ({"v2": NAN}, "start must be the numbers x1, y1, x2, y2, u1, v1, u2, v2, not "),
+        )
+    ),
+    *(
+        (
+            lambda given=given: td.observe(
+                **{"scene": PAPER, "function": x1, "times": [1]} | given
+            ),
+            said,
+        )
+        for given, said in (
+            ({"times": {1: 0, 0: 0}}, "times must be ascending numbers from 0 on, not [1, 0]"),
+            ({"times": [1e9]}, "where 1e7 events are due, not 1e9"),
+            ({"function": 1}, "function must take two arrays of states, not be 1"),
+            ({"function": lambda a, b: 1.0}, "function must return a real number, or the same"),
+            ({"function": lambda a, b: None}, "4096 replicas, not None: is its return missing?"),
+            ({"function": lambda a, b: b}, "an array with the fields x1, y1, x2, y2, u1, v1"),
+            ({"function": lambda a, b: [b["x1"], [0.0]]}, "4096 replicas, not [array("),
+            ({"function": lambda a, b: b["x1"].astype(str)}, "of shape (4096,) and kind <U"),
+            ({"function": lambda a, b: b["x1"] + 1j}, "real and imaginary part as two columns"),
+        )
+    ),
+    (lambda: td.trajectory(PAPER).states_at([1e9]), "times must be numbers from 0.0 to "),
+    (
+        lambda: td.trajectory(PAPER, duration=3)[["time", "x1"]].states_at([1]),
+        "rows and lacks y1, x2, y2, u1, v1, u2, v2",
+    ),
+    # Figures
+    (lambda: td.plot(td.sample(PAPER, 1), figure="mean_times"), "figure must be one of volume, "),
+    (lambda: td.plot([td.sample(PAPER, 1), 1]), "result must be a scene, a trajectory, results"),
+    (lambda: td.plot(FIELD), "scene must be two plain discs for a drawing, but it has field"),
+    (lambda: td.plot(Box(1.5, 1.0, discs=3)), "for a drawing, but it has discs 3"),
+    (lambda: td.animate(PAPER, "a.gif"), "trajectory must be a result of trajectory()"),
+    (lambda: td.animate(td.trajectory(PAPER, 0.01), "a.gif"), "trajectory must last two frames"),
+]
 
 
-# The face ---------------------------------------------------------------------------------------
+@pytest.mark.parametrize(("call", "said"), SENTENCES, ids=[said for _, said in SENTENCES])
+def test_a_mistake_in_a_call_is_one_sentence(call, said, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "src").mkdir()
+    with pytest.raises(InputError) as caught:
+        call()
+    assert said in str(caught.value)
+    assert "\n" not in str(caught.value)
+    assert isinstance(caught.value, TypeError) == bool(
+        re.search("argument|mean (events|discs)", said)
+    )
+    assert [path.name for path in tmp_path.iterdir()] == ["src"]
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
@@ -217,33 +360,9 @@ def test_what_a_function_returns_is_finite_or_its_time_and_replica_are_named(val
         td.observe(PAPER, seen, [0.25, 1.5], replicas=5000)
 
 
-@pytest.mark.parametrize("events", [{"vertical_hop": 1e-9}, {}, b"vertical_hop", 5])
-def test_events_with_numbers_are_refused(events):
-    """The relative errors of events are a mapping; ``events`` would ignore the numbers of one."""
-    with pytest.raises(InputError, match=r"^events must be some of vertical_hop, "):
-        td.simulate(PAPER, error=0.5, events=events)
-    with pytest.raises(InputError, match=r"^quantities must be some of volume, "):
-        td.sample(PAPER, 10, quantities=events)
-
-
 def test_errors_of_events_are_a_mapping():
     found = td.simulate(PAPER, error={"any_wall": 0.5}, events=None, budget=1)
     assert [*found.settings["events"]] == ["any_wall"]
-
-
-def test_a_null_character_makes_no_path(tmp_path):
-    with pytest.raises(InputError, match=r"^path must be the path of a file, not '\\x00'$"):
-        td.load_result("\0")
-    with pytest.raises(
-        InputError, match=r"^path must be a file to write, not '\\x00': it has a null"
-    ):
-        td.sample(PAPER, 1).save("\0")
-
-
-@pytest.mark.parametrize("name", ["discs", "width", "radius", "field", "periodic"])
-def test_arrays_are_no_numbers(name):
-    with pytest.raises(InputError, match=rf"^{name} must be .*, not array\(\[0\.1, 0\.2\]\)$"):
-        td.Scene(**{"width": 1.5, "height": 1.0, "radius": 0.2} | {name: np.array([0.1, 0.2])})
 
 
 def test_a_result_as_deep_as_no_result_is_refused(tmp_path):
@@ -255,7 +374,7 @@ def test_a_result_as_deep_as_no_result_is_refused(tmp_path):
         read_json(path)
 
 
-# One sentence for each mistake ------------------------------------------------------------------
+# Plain arguments --------------------------------------------------------------------------------
 
 #: Plain arguments: {check: (arguments after the name "x", what follows "x must " in the sentence)}.
 CHECKED = [
@@ -303,48 +422,48 @@ def test_a_plain_argument_is_named_with_what_is_allowed(check, arguments, senten
         check("x", *arguments)
 
 
-#: Scenes 1.5 × 1 with a radius of 0.1, and the start of the sentence.
-SCENES = [
-    ({"discs": 1}, "discs must be an integer from 2 to 1024, not 1"),
-    ({"discs": 1025}, "discs must be an integer from 2 to 1024, not 1025"),
-    ({"discs": 3.0}, "discs must be an integer of at least 2, not 3.0"),
-    ({"discs": True}, "discs must be an integer of at least 2, not True"),
-    ({"discs": 3, "field": 1.0}, "field must be left out with 3 discs"),
-    ({"discs": 3, "depth": 1.0}, "depth must be left out with 3 discs"),
-    (
-        {"discs": 3, "moment_of_inertia": 0.5, "periodic": "xy"},
-        "moment_of_inertia must be left out in a box without walls",
-    ),
-    ({"discs": 3, "periodic": "xy"}, "periodic must be left out or x for more than two discs"),
-    ({"discs": 3, "periodic": "y"}, "periodic must be left out or x for more than two discs"),
-    ({"discs": 3, "radius": 0.31}, "radius 0.31 does not fit: 3 discs in a box of 1.5 × 1.0"),
-    ({"discs": 4, "radius": 0.4}, "radius 0.4 does not fit: 4 discs"),
-    ({"discs": 4, "radius": 0.376, "periodic": "x"}, "radius 0.376 does not fit"),
-    ({"discs": 64, "width": 1e5}, "width and height must be in a unit of length in which"),
+# The shell --------------------------------------------------------------------------------------
+
+SIDES = ["--width", "1.5", "--height", "1"]
+WORDS = [*SIDES, "--radius", "0.1"]
+
+MISTAKES = [
+    (["exact", *SIDES, "--radius", "0.5"], "radius 0.5 does not fit"),
+    (["exact", *SIDES, "--radius", "x"], "argument --radius: must be a number, not 'x'"),
+    (["exact", *SIDES, "--radius", "0,2"], "not '0,2'; decimals follow a point, 0.2"),
+    (["exact", *SIDES], "the following arguments are required: --radius"),
+    (["exact", *SIDES, "--radious", "1"], "unrecognized arguments: --radious; did you mean --radi"),
+    (["exact", *WORDS, "--rad", "2"], "unrecognized arguments: --rad 2"),
+    (["exact", *WORDS, "--mass_ratio=2"], "=2; did you mean --mass-ratio?"),
+    (["exact", *WORDS, "--height", "1e99"], "height must lie between"),
+    (["exact", *WORDS, "--width", "nan"], "width must be"),
+    (["exact", *WORDS, "--mass-ratio", "two"], "argument --mass-ratio: must be a number"),
+    (["exact", *WORDS, "volume"], "unrecognized arguments: volume"),
+    (["simulate", *WORDS, "--error", "rough"], "must be a number or one of draft, paper"),
+    (["simulate", *WORDS, "--error", "2"], "error must be a number above 0 and at most 1"),
+    (["simulate", *WORDS, "--budget", "1.5"], "--budget: must be "),
+    (["simulate", *WORDS, "--events", "hop"], "event must be one of vertical_hop"),
+    (["sample", *WORDS, "--quantities", "mass"], "quantity must be one of volume"),
+    (["sample", *WORDS, "--samples", "-1"], "samples must be"),
+    (["sample", *WORDS, "--shell", "1"], "shell must"),
+    (["sample", *WORDS, "--seed", "x"], "argument --seed: must be"),
+    (["trajectory", *WORDS, "--start", "1", "2"], "start must be the numbers x1"),
+    (["trajectory", *WORDS, "--duration", "inf"], "duration must be"),
+    (["run", "my.yaml", "--core", "2"], "unrecognized arguments: --core"),
 ]
 
 
-@pytest.mark.parametrize(("values", "sentence"), SCENES)
-def test_a_scene_that_cannot_be_is_refused(values, sentence):
-    with pytest.raises(InputError, match=f"^{re.escape(sentence)}"):
-        Scene(**{"width": 1.5, "height": 1.0, "radius": 0.1} | values)
+@pytest.mark.parametrize(("words", "said"), MISTAKES, ids=[said for _, said in MISTAKES])
+def test_a_mistake_on_the_command_line_is_one_sentence(monkeypatch, capsys, words, said):
+    assert command(monkeypatch, cli, *words) == 2
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert shown.err.startswith("error: ")
+    assert said in shown.err
+    assert shown.err.count("\n") == 1
 
 
-def test_a_ring_is_not_turned():
-    with pytest.raises(InputError, match="periodic must be left out or x"):
-        Scene(1.5, 1.0, 0.1, discs=3, periodic="x").turned()
-
-
-# Jobs -------------------------------------------------------------------------------------------
-
-
-def test_exact_numbers_of_nonsense_are_refused():
-    words = ("--width", "nan", "--height", "1", "--radius", "0.2")
-    program = [sys.executable, "-m", "twodiscs.cli", "exact", *words, "--json"]
-    run = subprocess.run(program, capture_output=True, text=True)
-    assert (run.returncode, run.stdout) == (2, "")
-    assert run.stderr.startswith("error: ")
-    assert run.stderr.count("\n") == 1
+# The process --------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("wrong", ["optimized", "another file of the name"])
@@ -371,7 +490,3 @@ def test_a_mistake_in_the_program_keeps_its_traceback(error):
 
     with pytest.raises(error, match="colour"):
         arguments.run(mistaken)
-
-
-def test_every_event_has_an_exact_answer():
-    assert set(exact.mean_times(PAPER)) == set(EVENTS)
