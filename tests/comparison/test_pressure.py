@@ -91,7 +91,9 @@ def test_two_discs_have_the_published_pressure():
     assert td.free_energy(PAPER) == pytest.approx(-math.log(volume / (w * h) ** 2), rel=1e-13)
 
 
-@pytest.mark.parametrize("name", ["plain", "blocked", "rough", "three"])
+@pytest.mark.parametrize(
+    "name", ["plain", "blocked", pytest.param("rough", marks=pytest.mark.slow), "three"]
+)
 def test_measured_pressures_are_the_exact_ones(name):
     """20 scores at 5 sigma: one false alarm in 87,000."""
     scene = EXACT[name]
@@ -122,6 +124,7 @@ def test_errors_of_pressures_are_those_of_independent_runs():
     assert abs(spread / stated - 1) < 5 / math.sqrt(118)
 
 
+@pytest.mark.slow
 def test_some_events_tell_some_pressures():
     found = td.pressure(td.simulate(PAPER, 0.5, budget=1, events="right_wall"))
     assert list(found) == ["right_wall_pressure", "ideal_pressure"]
@@ -182,6 +185,17 @@ def test_squared_displacements_begin_ballistically(name):
         "squared_displacement", "diffusion", "squared_displacement_stderr", "diffusion_stderr",
     ]  # fmt: skip
     assert found.mean[0, 1] == pytest.approx(found.mean[0, 0] / 2e-3)
+
+
+@pytest.mark.parametrize(("mass_ratio", "discs"), [(1.0, (1, 2)), (3.0, (1,))])
+def test_displacements_are_of_disc_1_unless_all_are_equal(mass_ratio, discs):
+    ring = td.Scene(1.5, 1.0, 0.2, periodic="x", mass_ratio=mass_ratio)
+
+    def moved(start, now):
+        return np.mean([(now[f"x{n}"] - start[f"x{n}"]) ** 2 for n in discs], axis=0)
+
+    found = td.diffusion(ring, [1.0], 1, seed=2).mean[:, 0]
+    assert np.allclose(found, td.observe(ring, moved, [1.0], 1, seed=2).mean, rtol=1e-12)
 
 
 def test_slopes_know_that_their_ends_are_of_the_same_replicas():

@@ -37,7 +37,7 @@ def same_sizes(counts, other):
     ("hop", "effects"),
     [
         (HOP, {}),
-        (HOP, {"friction": 20.0}),
+        pytest.param(HOP, {"friction": 20.0}, marks=pytest.mark.slow),
         ("vertical_hop", {}),
         pytest.param(HOP, {"moment_of_inertia": 0.5}, marks=pytest.mark.slow),
         pytest.param(HOP, {"moment_of_inertia": 0.5, "friction": 1.0}, marks=pytest.mark.slow),
@@ -185,3 +185,12 @@ def test_what_cannot_be_followed_is_refused_in_a_sentence(scene, hop, said, monk
     monkeypatch.setattr(passages, "PROPOSALS", 2**16)
     with pytest.raises(passages.InputError, match=said):
         passages.require_coefficient(scene, hop)
+
+
+@pytest.mark.parametrize("periodic", ["", "x"])
+def test_neighbours_share_as_many_hops_as_pairs_have_a_disc_in_common(periodic, monkeypatch):
+    monkeypatch.setattr(passages, "hop_rate", lambda scene, hop: 2.0)
+    scene = Scene(4.0, 1.0, 0.2, discs=5, periodic=periodic)
+    pairs = [{n, (n + 1) % 5} for n in range(5 if periodic else 4)]
+    shared = [sum(len(one & other) == 1 for other in pairs) for one in pairs]
+    assert passages.neighbours(scene, HOP) == (len(pairs) / 2.0, np.mean(shared))

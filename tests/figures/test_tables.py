@@ -298,6 +298,13 @@ def test_what_passages_leave_falls_at_twice_their_rate():
         np.testing.assert_allclose(values, expected, rtol=1e-12)
 
 
+def test_the_laws_of_passages_with_friction_are_one_and_three_quarters_over_x():
+    dashed = [line for line in drawn("friction")["kappa"].lines if line.get_linestyle() == "--"]
+    one, diffusive = (line.get_xydata() for line in dashed)
+    assert np.all(one[:, 1] == 1)
+    np.testing.assert_allclose(diffusive[:, 0] * diffusive[:, 1], 0.75, rtol=1e-12)
+
+
 def test_residuals_are_those_of_the_table():
     for name, looks in (("transmission", transmission), ("diffusion", diffusion)):
         for quantity, (colour, marker, _) in looks.RESIDUAL_LOOKS.items():

@@ -17,6 +17,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from twodiscs.dynamics.law import law_of
+from twodiscs.model.checks import InputError
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.model.two import ENERGY
@@ -252,3 +253,9 @@ def test_the_motion_has_the_lengths_of_the_theory(scene):
         halves = [getattr(law, f"half_{axis}{disc}") for disc in "12"]
         reach = halves[0] + (halves[0] if halves[1] is None else halves[1])
         assert reach == pytest.approx(float(scene.reach(axis)), rel=1e-15)
+
+
+def test_friction_is_limited_by_the_time_along_the_shortest_side():
+    assert Scene(1.5, 1.0, 0.2, friction=9.9e5).friction == 9.9e5
+    with pytest.raises(InputError, match=r"the shortest side, which is 1000000\.0, not 1010000\.0"):
+        Scene(1.5, 1.0, 0.2, friction=1.01e6)

@@ -22,6 +22,14 @@ def test_dynamics_agrees_with_what_is_known(rows):
     assert max(row["dynamics_stderr"] for row in virial) < 0.1
 
 
+def test_scores_of_monte_carlo_are_deviations_over_its_own_error(rows):
+    compared = [row for row in rows if row["monte_carlo_z"] is not None]
+    assert len(compared) > 10
+    for row in compared:
+        due = (row["monte_carlo"] - row["exact"]) / row["monte_carlo_stderr"]
+        assert row["monte_carlo_z"] == pytest.approx(due, rel=1e-9)
+
+
 def test_no_exact_value_is_not_impossible(rows):
     """Four discs that pass each other have a time, but no exact one; in a channel there is none."""
     at = {(row["discs"], row["radius"], row["event"]): row for row in rows}
