@@ -357,7 +357,7 @@ def exact_of(*scenes):
 
 
 #: Each compiles a kernel of its own.
-SLOW = ("unequal", "channel")
+SLOW = ("unequal", "channel", "field", "rough")
 
 
 @pytest.mark.parametrize(

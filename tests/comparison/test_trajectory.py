@@ -13,7 +13,13 @@ KINDS = {name: SCENES[name] for name in ("unequal", "combination", "channel")}
 KINDS |= {"plain": td.Scene(1.5, 1.0, 0.2), "three": td.Scene(1.5, 1.0, 0.15, discs=3)}
 
 
-@pytest.fixture(scope="module", params=KINDS)
+@pytest.fixture(
+    scope="module",
+    params=[
+        pytest.param(kind, marks=pytest.mark.slow) if kind == "combination" else kind
+        for kind in KINDS
+    ],
+)
 def path(request):
     return td.trajectory(KINDS[request.param], 6, seed=2)
 

@@ -86,6 +86,7 @@ def pressure_on_a_ring(packing, events, seed):
     return large + (large - small) / 3, math.hypot(4 * error, its_error) / 3
 
 
+@pytest.mark.slow
 def test_pressure_of_64_and_256_discs_on_a_ring():
     value, error = pressure_on_a_ring(0.3, 1.5e6, 1)
     assert compare("ring", value, error, 0.3) < 0.01

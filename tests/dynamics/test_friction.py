@@ -74,7 +74,7 @@ def momenta_and_energy(scene, state):
 
 
 @pytest.mark.parametrize(
-    "name", ["friction", "all", *slow("torus", "field", "rough", "combination")]
+    "name", ["friction", *slow("all", "torus", "field", "rough", "combination")]
 )
 def test_a_kick_keeps_places_energy_and_conserved_momenta(name):
     """The momentum along a periodic axis stays what it is, 0 in the ensemble and not 0 here."""
@@ -137,6 +137,7 @@ def test_no_mean_time_changes(scene, rate):
     check_rates(both[1], seed=6, blocks=16)
 
 
+@pytest.mark.slow
 def test_rare_hops_have_their_exact_rate():
     """In a strip, with kicks before and after a start: none, one or several hops."""
     for rate in (3.0, 100.0):

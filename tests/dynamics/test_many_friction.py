@@ -24,9 +24,8 @@ CHANNEL = Scene(8.75, 0.6, 0.18, discs=20, friction=4.0)
 RING = Scene(3.0, 1.0, 0.15, discs=3, periodic="x", friction=4.0)
 
 
-@pytest.mark.parametrize(
-    "scene", [pytest.param(FEW, marks=pytest.mark.slow), CHANNEL], ids=["few", "channel"]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("scene", [FEW, CHANNEL], ids=["few", "channel"])
 def test_no_mean_time_changes(scene):
     """Kicks come several times in a replica, in both kernels."""
     duration, replicas = many.replica_duration(scene, 256), 2048

@@ -91,7 +91,7 @@ def test_two_discs_are_those_of_the_engine_of_two(periodic):
         assert state[order] == pytest.approx(known, abs=1e-8)
 
 
-@pytest.mark.parametrize("scene", [BOX, RING], ids=repr)
+@pytest.mark.parametrize("scene", [BOX, pytest.param(RING, marks=pytest.mark.slow)], ids=repr)
 def test_reversed_discs_come_back(scene):
     """Velocities and spins are reversed after some events of each disc, in both kernels."""
     start, laps = initial.states(scene, 20, 3), np.zeros((scene.discs, 20))
@@ -110,7 +110,7 @@ def test_reversed_discs_come_back(scene):
         (replace(BOX, discs=5, radius=0.1), 0.0),
         pytest.param(replace(BOX, discs=5, radius=0.1), 2.0, marks=pytest.mark.slow),
         (RING, 0.0),
-        (RING, 2.0),
+        pytest.param(RING, 2.0, marks=pytest.mark.slow),
     ],
 )
 def test_velocities_and_spins_are_on_a_sphere(scene, friction):

@@ -34,7 +34,12 @@ def five(found, due, error):
 
 @pytest.mark.parametrize(
     ("periodic", "inertia"),
-    [("", None), ("", 0.5), ("x", None), pytest.param("x", 0.5, marks=pytest.mark.slow)],
+    [
+        ("", None),
+        ("x", None),
+        pytest.param("", 0.5, marks=pytest.mark.slow),
+        pytest.param("x", 0.5, marks=pytest.mark.slow),
+    ],
 )
 def test_correlations_are_those_of_another_program(inertia, periodic):
     for radius in (0.218, NARROW):
@@ -282,6 +287,7 @@ def test_blocks_are_what_results_depend_on():
     np.testing.assert_array_equal(whole, passages.hop_sums(turned, "vertical_hop", TIMES, 6, 11)[0])
 
 
+@pytest.mark.slow
 def test_hops_in_a_field_are_those_along_y():
     """The field is so weak that the results do not change, but it has another kernel."""
     plain, weak = Scene(1.0, 1.5, 0.24), Scene(1.0, 1.5, 0.24, field=1e-9)

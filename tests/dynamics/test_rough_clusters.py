@@ -32,6 +32,7 @@ BOXES = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("scene", "asked"), RINGS)
 @pytest.mark.parametrize("seed", [0, 1, 2, 3, 1380])
 def test_crowds_that_no_run_sees_leave_no_error_bar(scene, asked, seed):

@@ -13,10 +13,15 @@ from twodiscs.model.box import Box
 TABLED = ("paper", "square", "long", "ten", "nearly square", "tiny", "large")
 
 
+#: Those that differ most.
+QUICK = ("paper", "square", "long", "tiny")
+
+
 def pairs():
     """Yield (figure, box): drawings in all boxes, the others in some."""
     for name, entry in FIGURES.items():
-        yield from ((name, box) for box in (TABLED if entry.tables else BOXES))
+        for box in TABLED if entry.tables else BOXES:
+            yield pytest.param(name, box, marks=[] if box in QUICK else pytest.mark.slow)
     yield from ((name, "tall") for name in ("hopping_trajectory", "wall_area"))
 
 

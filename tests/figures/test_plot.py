@@ -144,8 +144,8 @@ def test_a_returned_figure_is_saved_as_plot_saves_it(tmp_path):
 def test_plots_in_threads_leave_the_settings_of_matplotlib_alone():
     found, before = scan(HOPS), dict(matplotlib.rcParams)
     expected = td.plot(found)._repr_png_()
-    with ThreadPoolExecutor(4) as pool:
-        figures = [*pool.map(lambda _: td.plot(found), range(8))]
+    with ThreadPoolExecutor(2) as pool:
+        figures = [*pool.map(lambda _: td.plot(found), range(3))]
     assert dict(matplotlib.rcParams) == before
     assert all(figure._repr_png_() == expected for figure in figures)
 

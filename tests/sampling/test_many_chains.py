@@ -92,13 +92,18 @@ def test_states_are_allowed(scene):
 @pytest.mark.parametrize(
     "scene",
     [
-        box(20, 0.1),
         box(20, 0.55),
         box(20, 0.5, "x"),
-        Scene(0.54, 5.0, 0.13, discs=20, periodic="x"),
-        Scene(0.7, 3.0, 0.1, discs=24, periodic="x"),
-        pytest.param(box(32, 0.6), marks=pytest.mark.slow),
         Scene(9.6, 0.75, 0.18, discs=24),
+        *(
+            pytest.param(scene, marks=pytest.mark.slow)
+            for scene in (
+                box(20, 0.1),
+                Scene(0.54, 5.0, 0.13, discs=20, periodic="x"),
+                Scene(0.7, 3.0, 0.1, discs=24, periodic="x"),
+                box(32, 0.6),
+            )
+        ),
     ],
     ids=repr,
 )
@@ -116,11 +121,8 @@ def test_much_longer_chains_of_single_moves_agree(scene):
     check(one, moments(scene, drawn(scene, 24, 2, chain=one_by_one(scene, 16_000))))
 
 
-@pytest.mark.parametrize(
-    "scene",
-    [box(20, 0.1), *(pytest.param(box(n, 0.6), marks=pytest.mark.slow) for n in (32, 64, 256))],
-    ids=repr,
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("scene", [box(20, 0.1), *(box(n, 0.6) for n in (32, 64, 256))], ids=repr)
 def test_longer_event_chains_are_no_different(scene, monkeypatch):
     number = 2**14 // scene.discs
     one = moments(scene, drawn(scene, number, 1))

@@ -193,6 +193,7 @@ def test_weighted_blocks_add_up(name):
     assert not np.array_equal(whole, other)
 
 
+@pytest.mark.slow
 def test_only_what_is_watched_is_sampled_with_effects():
     scene = SCENES["combination"]
     for event in ("vertical_hop", "any_wall"):

@@ -234,6 +234,7 @@ def test_order_changes_by_exchanges_alone():
     assert walk == pytest.approx([2 / 9])
 
 
+@pytest.mark.slow
 def test_a_long_file_with_kicks_has_the_law_of_its_density(monkeypatch):
     """F and, where discs pass, D: within five standard errors of theory and of Monte Carlo."""
     for name, value in {
