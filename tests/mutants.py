@@ -255,9 +255,23 @@ def is_test(path):
     return Path(path).name.startswith("test_")
 
 
-@cache
-def nearest(path):
-    """Return the test files of a source, the nearest first: by imports in between, and by name."""
+def names_in(text, mutated):
+    """Return the names of the function or class of a ``text`` that holds the mutated text, or all.
+
+    A private one is tested through others, so that all names of the file count.
+    """
+    place = text.count("\n", 0, text.index(mutated)) + 1
+    named = [node for node in ast.parse(text).body if hasattr(node, "name")]
+    own = [node.name for node in named if node.lineno <= place <= node.end_lineno]
+    return [n for n in own if n[0] != "_"] or [n.name for n in named if n.name[0] != "_"]
+
+
+def nearest(mutated):
+    """Return the test files of a mutated text of the sources, the nearest first.
+
+    By name, then by the imports in between, then by how often a file names what is mutated.
+    """
+    path = file_of(mutated)
     for beginning, files in READERS.items():
         if path.startswith(beginning):
             return [file for file in files if (REPOSITORY / file).exists()]
@@ -267,17 +281,13 @@ def nearest(path):
             {user for one in border for user in users().get(module_of(one), ())} - distance.keys()
         )
         distance |= dict.fromkeys(border, max(distance.values()) + 1)
-    here = Path(path)
+    here, names = Path(path), names_in(sources()[path], mutated)
 
     def order(test):
-        other = Path(test)
-        named = other.stem.startswith((f"test_{here.stem}", f"test_{here.parent.name}"))
-        return (
-            not named,
-            distance[test],
-            other.parent.name not in here.parts,
-            (REPOSITORY / test).stat().st_size,
-        )
+        text = (REPOSITORY / test).read_text(encoding="utf-8")
+        named = Path(test).stem.startswith((f"test_{here.stem}", f"test_{here.parent.name}"))
+        spoken = sum(len(re.findall(rf"\b{name}\b", text)) for name in names)
+        return not named, distance[test], -spoken, len(text)
 
     return sorted(filter(is_test, distance), key=order)
 
@@ -328,7 +338,7 @@ def main(words, most):
             text = sources()[file]
             (folder / file).write_text(text.replace(old, new), encoding="utf-8")
             try:
-                failed = failure(folder, nearest(file)[:most])
+                failed = failure(folder, nearest(old)[:most])
             finally:
                 (folder / file).write_text(text, encoding="utf-8")
                 copies.put(folder)
@@ -351,6 +361,6 @@ if __name__ == "__main__":
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("words", nargs="*", metavar="FILE")
-    parser.add_argument("--most", type=int, default=8, help="test files for a mutant (8)")
+    parser.add_argument("--most", type=int, default=5, help="test files for a mutant (5)")
     options = parser.parse_args()
     main(options.words, options.most)

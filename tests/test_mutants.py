@@ -8,4 +8,4 @@ import pytest
 def test_a_mutant_is_in_the_sources_and_has_tests(mutant):
     _, old, new = mutant
     assert old != new
-    assert mutants.nearest(mutants.file_of(old))
+    assert mutants.nearest(old)
