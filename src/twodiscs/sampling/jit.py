@@ -85,11 +85,13 @@ SOURCES = {"twodiscs": _FLOORS, "twodiscs_paper": [*_FLOORS, _ROOT / "twodiscs_p
 def cache_folder(package):
     """Return the folder for compiled code of a ``package``, None if no code can be kept.
 
-    Its name changes with the path, size and time of each file in ``SOURCES``.
+    Its name changes with the path below the packages, the size and the time of each file in
+    ``SOURCES``, so a copy of the sources elsewhere has the same folder.
     """
     digest = blake2b(digest_size=8)
     for path in sorted(path for folder in SOURCES[package] for path in folder.rglob("*.py")):
-        digest.update(f"{path} {path.stat().st_size} {path.stat().st_mtime_ns}\n".encode())
+        name, status = path.relative_to(_ROOT), path.stat()
+        digest.update(f"{name} {status.st_size} {status.st_mtime_ns}\n".encode())
     try:
         home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
         kept = Path(numba.config.CACHE_DIR or Path(home, "twodiscs"), digest.hexdigest())
