@@ -1,0 +1,312 @@
+"""First passages in Brownian dynamics, a long run: counts, and the rows that follow from them.
+
+The motion is that of ``models.brownian``, with σ as the unit of length and a step as that of time.
+Transition state theory has the rate s ε²/(√π V) of crossings from one side to the other, with the
+volume V of the allowed (u, y₁, y₂) on one side. It is exact for reflected discs. κ is the rate of
+passages over that rate, so the mean time between passages of a pair is √π V/(κ s ε²).
+
+If the separation u diffuses with the coefficient s², the rate of passages is s²/(V ∫ du/ρ(u)), with
+the integral from one end of the ring to the other. Close to the threshold it is π/√2 ε^(−3/2), and
+κ = √(2/π) s/√ε. This holds for steps that are short against the neck and, if they may be rejected,
+also against its width ε.
+"""
+
+import math
+import operator
+from collections import Counter
+from itertools import groupby, pairwise
+
+import numpy as np
+from scipy.integrate import quad
+
+from twodiscs.comparison.transmission import by_clusters
+from twodiscs.model.radii import stream_seed
+from twodiscs.points.estimates import Estimate, LinearFit
+from twodiscs_paper.studies.passages.models import brownian
+from twodiscs_paper.study import row
+
+#: {program: its number in ``models.brownian``}.
+PROGRAMS = {
+    "reflected": brownian.REFLECTED, "kicked": brownian.KICKED, "together": brownian.TOGETHER,
+    "singly": brownian.SINGLY,
+}  # fmt: skip
+
+#: {program that rejects moves: the standard deviation of a move of u over s}.
+REJECTING = {"together": math.sqrt(2), "singly": 1.0}
+
+#: {program: its flights or moves in a step, if they are not one}.
+MOVES = {"kicked": 2, "singly": 2}
+
+#: Half of the length of the ring, in σ: the box 1.5 × 1 has this length close to h/4.
+HALF = 1.5
+
+#: Exponents are fitted where the neck is ``LONG`` steps or more, or ``SHORT`` steps or less.
+LONG, SHORT = 8.0, 0.125
+
+
+def side_volume(room):
+    """Return the volume of the allowed (u, y₁, y₂) on one side, for a neck of the width ``room``.
+
+    It is the integral of L² over 0 < u < ``HALF``, with L of ``models.brownian``.
+    """
+    breadth = 1 + room
+    return breadth**2 * HALF - math.pi / 2 * breadth + 2 / 3
+
+
+def resistance(room):
+    """Return ∫ du/ρ(u) over the whole ring."""
+
+    def inverse(u):
+        return (1 + room - math.sqrt(1 - u * u)) ** -2.0
+
+    near, _ = quad(inverse, 0, 1, points=[math.sqrt(room)], epsabs=0, epsrel=1e-10)
+    return 2 * (near + (HALF - 1) / (1 + room) ** 2)
+
+
+def crossing_rate(step, room):
+    """Return the rate of crossings from one side, per step, of discs with thermal velocities."""
+    return step / math.sqrt(math.pi) * room**2 / side_volume(room)
+
+
+def diffusive(step, room):
+    """Return κ of a separation that diffuses."""
+    return step**2 / (side_volume(room) * resistance(room)) / crossing_rate(step, room)
+
+
+def neck(step, halvings):
+    """Return the length √(εσ) of the neck over the length of a step."""
+    return math.sqrt(2.0**-halvings) / step
+
+
+# Counts -----------------------------------------------------------------------------------------
+
+
+def points(groups):
+    """Yield (program, step, halvings of ε, samples) of the ``groups`` of a configuration."""
+    for group in groups:
+        for halvings in group["halvings"]:
+            yield group["program"], 2.0 ** -group["step"], halvings, group["samples"]
+
+
+def crossing_counts(seed, program, step, halvings, crossings):
+    """Return the counts of a number of random ``crossings`` as plain values for JSON."""
+    stream = _stream(seed, "crossings", program, step, halvings)
+    sizes, tried, steps = brownian.cluster_sizes(
+        PROGRAMS[program], step, 2.0**-halvings, HALF, stream, 0,
+        -(-crossings // brownian.CROSSINGS),
+    )  # fmt: skip
+    pairs = [[n, int(number)] for n, number in enumerate(sizes) if number]
+    return {"tried": int(tried), "steps": int(steps), "sizes": pairs}
+
+
+def passage_counts(seed, program, step, halvings, pairs):
+    """Return the counts of the first passages of ``pairs`` as plain values for JSON."""
+    stream = _stream(seed, "passages", program, step, halvings)
+    found = brownian.first_passages(PROGRAMS[program], step, 2.0**-halvings, HALF, stream, 0, pairs)
+    columns = dict(zip(("first", "passage", "crossings"), found.T.tolist(), strict=True))
+    sums = {name: [sum(own), sum(n * n for n in own)] for name, own in columns.items()}
+    both = sum(map(operator.mul, columns["passage"], columns["crossings"]))
+    return {"pairs": pairs, **sums, "passage*crossings": both}
+
+
+def _stream(seed, what, program, step, halvings):
+    """Return the seed of the streams of one point."""
+    point = f"{step!r} {2.0**-halvings!r}"
+    return np.uint64(stream_seed(seed, f"brownian {program} {what}", "passages", point))
+
+
+def counted(seeds, crossings, passages):
+    """Return {"crossings": points, "passages": points}: the counts at each point, by seed."""
+    found = {"crossings": [], "passages": []}
+    for kind, groups, count in (
+        ("crossings", crossings, crossing_counts),
+        ("passages", passages, passage_counts),
+    ):
+        for program, step, halvings, samples in points(groups):
+            point = {"program": program, "step": step, "halvings": halvings}
+            counts = [count(seed, program, step, halvings, samples) for seed in seeds]
+            found[kind].append(point | {"seeds": counts})
+    return found
+
+
+# Rows -------------------------------------------------------------------------------------------
+
+
+def joined(counts):
+    """Return the sums of the ``counts`` of several seeds."""
+    total = {}
+    for name, first in counts[0].items():
+        values = [one[name] for one in counts]
+        if name == "sizes":
+            sizes = Counter()
+            for pairs in values:
+                sizes.update(dict(pairs))
+            total[name] = [[n, sizes[n]] for n in sorted(sizes)]
+        elif isinstance(first, list):
+            total[name] = [sum(own) for own in zip(*values, strict=True)]
+        else:
+            total[name] = sum(values)
+    return total
+
+
+def of_crossings(point, counts):
+    """Return {quantity: ``Estimate``} from the ``counts`` of random crossings at a ``point``."""
+    sizes = np.zeros(brownian.LARGEST + 2, np.int64)
+    for n, number in counts["sizes"]:
+        sizes[n] = number
+    number = int(sizes.sum())
+    kappa, found = by_clusters(sizes), {}
+    if point["program"] in REJECTING:
+        step, room = point["step"], 2.0 ** -point["halvings"]
+        length = REJECTING[point["program"]] * step
+        farthest = min(brownian.LONGEST * length, 1.0)
+        area = (1 + room - math.sqrt(1 - farthest**2)) ** 2
+        tried = length / math.sqrt(2 * math.pi) * area / side_volume(room)
+        tried *= MOVES.get(point["program"], 1)
+        share = number / counts["tried"]
+        ratio = tried / crossing_rate(step, room) * share
+        spread = math.sqrt((1 - share) / number)
+        found["crossing_rate"] = Estimate(ratio, ratio * spread, number)
+        error = math.hypot(kappa.stderr / kappa.value, spread)
+        kappa = Estimate(ratio * kappa.value, ratio * kappa.value * error, number)
+    return {"coefficient": kappa} | found
+
+
+def of_passages(point, counts):
+    """Return {quantity: ``Estimate``} from the ``counts`` of first passages at a ``point``."""
+    pairs, moves = counts["pairs"], MOVES.get(point["program"], 1)
+    means = {name: counts[name][0] / pairs for name in ("first", "passage", "crossings")}
+    squares = {name: counts[name][1] / pairs for name in means}
+
+    def time(name):
+        error = math.sqrt((squares[name] - means[name] ** 2) / (pairs - 1))
+        return Estimate(means[name] / moves, error / moves, pairs)
+
+    passage = time("passage")
+    own = crossing_rate(point["step"], 2.0 ** -point["halvings"])
+    kappa = 1 / (own * passage.value)
+    ratio = means["crossings"] / means["passage"]
+    spread = (
+        squares["crossings"]
+        - 2 * ratio * counts["passage*crossings"] / pairs
+        + ratio**2 * squares["passage"]
+    )
+    error = math.sqrt(spread / (pairs - 1)) / means["passage"]
+    return {
+        "coefficient": Estimate(kappa, kappa * passage.stderr / passage.value, pairs),
+        "passage_time": passage,
+        "first_time": time("first"),
+        "crossing_rate": Estimate(ratio * moves / own, error * moves / own, pairs),
+    }
+
+
+#: {method: (function of a point and its counts, count of a sample)}.
+METHODS = {"crossings": of_crossings, "passages": of_passages}
+
+
+def rows(counts):
+    """Yield the rows of brownian.csv from what ``counted`` returns."""
+    known = {}
+    for method, estimates in METHODS.items():
+        for point in counts[method]:
+            seeds = [estimates(point, one) for one in point["seeds"]]
+            both = joined(point["seeds"])
+            for quantity, found in estimates(point, both).items():
+                cells = _cells(point, method, quantity)
+                place = (point["program"], point["step"], point["halvings"], quantity)
+                reference = _reference(known, *place)
+                if reference is not None:
+                    cells |= compared(found, reference)
+                if quantity == "coefficient" and method == "crossings":
+                    known[place] = found
+                if len(seeds) == 2:
+                    one, other = (seed[quantity] for seed in seeds)
+                    cells["seeds_z"] = compared(one, other)["z"]
+                steps = both["passage"][0] if method == "passages" else both["steps"]
+                yield row(cells, found, samples=found.n, steps=steps)
+    yield from exponents(counts)
+
+
+def _cells(point, method, quantity):
+    room = 2.0 ** -point["halvings"]
+    return {
+        "program": point["program"],
+        "step": point["step"],
+        "room": room,
+        "neck": neck(point["step"], point["halvings"]),
+        "quantity": quantity,
+        "method": method,
+        "diffusive": diffusive(point["step"], room) if quantity == "coefficient" else None,
+    }
+
+
+def _reference(known, program, step, halvings, quantity):
+    """Return what a quantity is compared with: an ``Estimate``, or None."""
+    if quantity == "crossing_rate" and program == "reflected":
+        return Estimate(1.0, 0.0, 1)
+    if program == "kicked":
+        program = "reflected"
+    return known.get((program, step, halvings, quantity))
+
+
+def compared(found, reference):
+    """Return the cells of a comparison of two independent ``Estimate``."""
+    z = (found.value - reference.value) / math.hypot(found.stderr, reference.stderr)
+    return {
+        "reference": reference.value, "reference_stderr": reference.stderr or None, "z": z,
+    }  # fmt: skip
+
+
+def exponents(counts):
+    """Yield the rows of exponents of the time between passages over V, as powers of ε.
+
+    Local exponents are between neighbouring widths of the neck, of all seeds together. Fitted ones
+    are of reflected discs, for each seed and for all seeds.
+    """
+    for method, estimates in METHODS.items():
+        for (program, step), group in groupby(
+            counts[method], key=operator.itemgetter("program", "step")
+        ):
+            own = sorted(group, key=operator.itemgetter("halvings"))
+            start = {"program": program, "step": step, "method": method}
+            times = [_time(point, estimates(point, joined(point["seeds"]))) for point in own]
+            for one, other in pairwise(times):
+                cells = start | {"room": math.sqrt(one[0] * other[0]), "quantity": "local_exponent"}
+                cells["neck"] = math.sqrt(cells["room"]) / step
+                yield row(cells, _slope([one, other]), samples=2)
+            if program != "reflected":
+                continue
+            for where in (lambda x: x >= LONG, lambda x: x <= SHORT):
+                chosen = [point for point in own if where(neck(step, point["halvings"]))]
+                if len(chosen) > 2:
+                    cells = start | {"quantity": "exponent"}
+                    cells["room"] = 2.0 ** -chosen[-1]["halvings"]
+                    cells["neck"] = neck(step, chosen[-1]["halvings"])
+                    yield from _fits(cells, chosen, estimates)
+
+
+def _fits(cells, chosen, estimates):
+    """Yield the fitted exponents of some points: of all seeds together, and of each seed."""
+    together = _slope([_time(point, estimates(point, joined(point["seeds"]))) for point in chosen])
+    seeds = [
+        _slope(
+            [_time(point, estimates(point, one)) for point, one in zip(chosen, own, strict=True)]
+        )
+        for own in zip(*(point["seeds"] for point in chosen), strict=True)
+    ]
+    agree = {"seeds_z": compared(*seeds)["z"]} if len(seeds) == 2 else {}
+    yield row(cells | agree, together, samples=together.n)
+    for number, slope in enumerate(seeds, 1):
+        yield row(cells, slope, seed=number, samples=slope.n)
+
+
+def _time(point, found):
+    """Return (ε, ln of the time between passages over V, its error)."""
+    kappa, room = found["coefficient"], 2.0 ** -point["halvings"]
+    return room, -math.log(kappa.value * room**2), kappa.stderr / kappa.value
+
+
+def _slope(times):
+    """Return the exponent of some ``times`` as an ``Estimate``."""
+    room, time, error = zip(*times, strict=True)
+    return LinearFit(np.log(room), time, error).slope

@@ -1,0 +1,174 @@
+"""Brownian dynamics of two discs in a ring: laws that can be solved, and two ways to a number.
+
+Comparisons are held to five standard errors: false alarms in fewer than one of a million each.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.stats import norm
+
+from twodiscs_paper.studies.passages import brownian as study
+from twodiscs_paper.studies.passages.models import brownian
+
+SIGMA = 5
+every_program = pytest.mark.parametrize("program", study.PROGRAMS)
+
+
+def deviation(found, other):
+    """Return by how many standard errors two independent estimates differ."""
+    return abs(found.value - other.value) / math.hypot(found.stderr, other.stderr)
+
+
+def estimates(method, program, step, halvings, samples, seed=1):
+    """Return the estimates of one ``method`` at one point."""
+    count = {"crossings": study.crossing_counts, "passages": study.passage_counts}[method]
+    point = {"program": program, "step": step, "halvings": halvings}
+    return study.METHODS[method](point, count(seed, program, step, halvings, samples))
+
+
+# Laws that can be solved ------------------------------------------------------------------------
+
+
+def test_volume_and_resistance_are_integrals_of_the_density():
+    for room in (0.3, 2.0**-10):
+
+        def density(u, room=room):
+            return (1 + room - math.sqrt(max(1 - u * u, 0.0)) * (abs(u) < 1)) ** 2
+
+        volume, _ = quad(density, 0, study.HALF, points=[1.0])
+        assert study.side_volume(room) == pytest.approx(volume, rel=1e-8)
+        flow, _ = quad(
+            lambda u: 1 / density(u), -study.HALF, study.HALF,
+            points=[-1, -math.sqrt(room), 0, math.sqrt(room), 1], limit=200,
+        )  # fmt: skip
+        assert study.resistance(room) == pytest.approx(flow, rel=1e-7)
+
+
+def test_a_separation_that_diffuses_has_the_limit_of_long_necks():
+    # The next term is of the order of ε.
+    for n in (12, 16):
+        limit = math.sqrt(2 / math.pi) / study.neck(0.001, n)
+        assert study.diffusive(0.001, 2.0**-n) == pytest.approx(limit, rel=2 * 2.0**-n)
+
+
+def times_of_a_walk(length):
+    """Return the mean numbers of steps of a walk from H to the first u < 0, and to u ≤ −H.
+
+    Steps are normal with the standard deviation ``length``, and reflected at u = H.
+    """
+    half, nodes = study.HALF, 400
+    x, weights = np.polynomial.legendre.leggauss(nodes)
+
+    def solve(end):
+        at = (half + end) / 2 + (half - end) / 2 * x
+        weight = (half - end) / 2 * weights
+
+        def kernel(u):
+            return norm.pdf(at, u, length) + norm.pdf(2 * half - at, u, length)
+
+        matrix = np.array([kernel(u) for u in at]) * weight
+        times = np.linalg.solve(np.eye(nodes) - matrix, np.ones(nodes))
+        return 1 + float((kernel(half) * weight) @ times)
+
+    return solve(0.0), solve(-half)
+
+
+@pytest.mark.parametrize("program", ["reflected", "together", "singly"])
+def test_first_passages_in_a_wide_channel_are_those_of_a_random_walk(program):
+    """The discs meet on one side of a million: the channel is 2^20 high."""
+    step = 0.25
+    counts = study.passage_counts(3, program, step, -20, 4000)
+    length = step if program == "singly" else math.sqrt(2) * step
+    for name, due in zip(("first", "passage"), times_of_a_walk(length), strict=True):
+        total, square = counts[name]
+        error = math.sqrt((square / 4000 - (total / 4000) ** 2) / 4000)
+        assert abs(total / 4000 - due) < SIGMA * error, (name, total / 4000, due)
+
+
+# Two ways to each number ------------------------------------------------------------------------
+
+
+def test_reflected_discs_cross_at_the_exact_rate():
+    for step, halvings in ((0.25, 3), (0.125, 4), (1 / 16, 3)):
+        found = estimates("passages", "reflected", step, halvings, 600)["crossing_rate"]
+        assert abs(found.value - 1) < SIGMA * found.stderr, (step, halvings, found)
+
+
+@every_program
+def test_both_methods_agree(program):
+    """Of pairs that start far apart, and of crossings followed in both directions of time."""
+    far = estimates("passages", program, 0.125, 3, 1000)
+    near = estimates("crossings", program, 0.125, 3, 2**13)
+    for quantity, found in near.items():
+        assert deviation(found, far[quantity]) < SIGMA, (quantity, found, far[quantity])
+
+
+def test_clusters_hold_each_crossing_once():
+    counts = study.crossing_counts(1, "reflected", 0.125, 4, 100)
+    assert sum(number for _, number in counts["sizes"]) == 2 * brownian.CROSSINGS
+    assert counts["tried"] == 2 * brownian.CROSSINGS  # none is rejected
+
+
+def test_seeds_are_joined_as_one_run_is():
+    one, two = (study.passage_counts(seed, "singly", 0.25, 2, 8) for seed in (1, 2))
+    both = study.joined([one, two])
+    assert both["pairs"] == 16
+    assert both["passage"] == [a + b for a, b in zip(one["passage"], two["passage"], strict=True)]
+    clusters = [study.crossing_counts(seed, "singly", 0.125, 3, 64) for seed in (1, 2)]
+    sizes = dict(study.joined(clusters)["sizes"])
+    assert sum(sizes.values()) == 128
+    assert sizes[1] == sum(dict(one["sizes"])[1] for one in clusters)
+
+
+# The motion -------------------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+def test_a_flight_keeps_energy_and_room_and_goes_back():
+    stream, breadth = np.random.default_rng(5), 1.02
+    for _ in range(300):
+        state = np.zeros(7)
+        state[0], state[1] = 0.3 * stream.normal(), 0.01 * stream.random()
+        state[2] = breadth - 0.005 * stream.random()
+        if np.hypot(state[0], state[2] - state[1]) < 1:
+            continue
+        state[3:6] = stream.normal(size=3)
+        start = state.copy()
+
+        def energy(state):
+            return state[3] ** 2 / 2 + state[4] ** 2 + state[5] ** 2
+
+        crossings = brownian.fly(state, 0.2, study.HALF, breadth)
+        assert energy(state) == pytest.approx(energy(start), rel=1e-12)
+        assert np.hypot(state[0], state[2] - state[1]) > 1 - 1e-12
+        assert 0 <= min(state[1:3]) <= max(state[1:3]) <= breadth
+        state[3:6] *= -1
+        assert brownian.fly(state, 0.2, study.HALF, breadth) == crossings
+        state[3:6] *= -1
+        np.testing.assert_allclose(state[:6], start[:6], atol=1e-6)
+
+
+@pytest.mark.slow
+@every_program
+def test_positions_stay_uniform(program):
+    """Steps keep the means of functions of the positions, if states are drawn uniformly."""
+    stream, room, number = np.random.default_rng(6), 0.2, 20_000
+    states = np.zeros((4 * number, 7))
+    states[:, 0] = study.HALF * (2 * stream.random(4 * number) - 1)
+    states[:, 1:3] = (1 + room) * stream.random((4 * number, 2))
+    allowed = states[:, 0] ** 2 + (states[:, 1] - states[:, 2]) ** 2 >= 1
+    states = states[allowed][:number]
+    before = states.copy()
+    bits = brownian.open_stream(np.uint64(7), 0)
+    for state in states:
+        for _ in range(8):
+            brownian.advance(state, study.PROGRAMS[program], 0.15, study.HALF, 1 + room, bits)
+    for value in (
+        lambda s: s[:, 0] ** 2, lambda s: s[:, 1], lambda s: s[:, 1] * s[:, 2],
+        lambda s: abs(s[:, 0]) < 0.3, lambda s: abs(s[:, 1] - s[:, 2]),
+    ):  # fmt: skip
+        change = value(states).astype(float) - value(before)
+        assert abs(change.mean()) < SIGMA * change.std() / math.sqrt(len(change))
