@@ -157,7 +157,7 @@ def test_errors_that_are_not_given_and_presets_are_those_of_the_pages():
     assert td.simulate(SCENE, budget=1).settings["error"] == 1e-3
     found = td.simulate(SCENE, "draft", events=["any_wall"])
     assert found.settings["error"] == PRESETS["draft"]
-    assert td.simulate(SCENE, 1, budget=1)["any_wall"].status == "reached"
+    assert td.simulate(SCENE, 1, budget=1)["any_wall_time"].status == "reached"
 
 
 # Shown --------------------------------------------------------------------------------------------
@@ -178,7 +178,7 @@ def test_a_scan_is_a_sequence_a_table_and_a_figure(tmp_path):
     assert scan.radii == [0.1, 0.2]
     assert scan[1].rows == td.simulate(scan[1].scene, 0.3).rows
     assert scan[0].scene == td.Scene(1.5, 1.0, 0.1, **effects)
-    assert scan.frame().loc[(0.1, "any_wall_time"), "estimate"] == scan[0]["any_wall"].value
+    assert scan.frame().loc[(0.1, "any_wall_time"), "estimate"] == scan[0]["any_wall_time"].value
     td.plot(scan, tmp_path / "scan.png")
     assert (tmp_path / "scan.png").stat().st_size > 5000
 
@@ -186,7 +186,7 @@ def test_a_scan_is_a_sequence_a_table_and_a_figure(tmp_path):
 def test_a_scan_goes_on_to_a_larger_budget():
     asked = {"error": 1e-3, "seed": 5, "events": ["any_wall"]}
     less, more = (td.scan(1.5, 1.0, [0.1, 0.2], budget=budget, **asked) for budget in (1e5, 2e7))
-    assert [result["any_wall"].status for result in less] == ["budget", "budget"]
+    assert [result["any_wall_time"].status for result in less] == ["budget", "budget"]
     assert bits(less.more(budget=2e7)) == bits(more) != bits(less)
 
 

@@ -105,4 +105,4 @@ def test_rates_that_insertions_do_not_see_are_guessed(scene, seed):
 def test_dense_discs_of_which_insertions_see_no_collision_are_followed(scene, seed):
     found = td.simulate(scene, error=3e-2, budget=1.5e6, seed=seed)
     assert all(row.count > 0 for row in found.values() if row.status != "impossible")
-    assert found["disc_collision"].status in ("reached", "budget", "too-few")
+    assert found["disc_collision_time"].status in ("reached", "budget", "too-few")

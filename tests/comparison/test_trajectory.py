@@ -24,27 +24,6 @@ def path(request):
     return td.trajectory(KINDS[request.param], 6, seed=2)
 
 
-def test_velocities_have_two_names(path):
-    scene = path.scene
-    for axis, name in zip(scene.axes, "uvw", strict=False):
-        for disc in range(1, scene.discs + 1):
-            column = path[f"v{axis}{disc}"]
-            assert column.name == f"v{axis}{disc}"
-            assert [*column] == [*path[f"{name}{disc}"]]
-    some = path[["time", "vx1", "event"]]
-    assert [*some] == ["time", "vx1", "event"]
-    assert [*some["vx1"]] == [*path["u1"]]
-    for wrong in ("vz1" if len(scene.axes) == 2 else "vq1", "vx9", "vx", "v", ""):
-        with pytest.raises(KeyError):
-            path[wrong]
-    for states in (path.states_at([1, 2]), td.starts(scene, 3)):
-        assert states.dtype.names == td.starts(scene, 1).dtype.names
-        assert [*states["vy2"]] == [*states["v2"]]
-    seen = []
-    td.observe(scene, lambda a, b: seen.append((b["vx2"] == b["u2"]).all()) or a["vx1"], [1], 1)
-    assert seen == [True]
-
-
 def test_positions_and_velocities_are_arrays(path):
     scene, times = path.scene, [0.3, 4.0, 1.5]
     shape = (scene.discs, len(scene.axes))

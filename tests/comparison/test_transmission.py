@@ -141,7 +141,7 @@ def test_the_face_has_the_coefficient_and_the_curve():
     kappa, passage = found.coefficient, found.passage_time
     # A trial by a scalar program: 0.797(2) at this radius, without what later passages take.
     assert abs(kappa.value - 0.797) < 0.02
-    assert passage.value == pytest.approx(td.mean_times(scene)["horizontal_hop"] / kappa.value)
+    assert passage.value == pytest.approx(td.mean_times(scene)["horizontal_hop_time"] / kappa.value)
     assert passage.relative_stderr == pytest.approx(kappa.relative_stderr)
     frame = found.frame()
     assert list(frame.columns) == ["kappa", "stderr"]

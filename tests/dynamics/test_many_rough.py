@@ -168,8 +168,8 @@ def test_bursts_in_a_neck_need_initial_states_in_it():
     )
     assert replicas_needed(replace(near, moment_of_inertia=None), "top_wall", 0.01) == 0
     found = td.simulate(near, 0.02, budget=1e6, seed=1)
-    assert found["disc_collision"].status == "too-few"
-    assert found["right_wall"].status == "reached"
+    assert found["disc_collision_time"].status == "too-few"
+    assert found["right_wall_time"].status == "reached"
 
 
 def test_a_start_needs_the_energy_of_its_spins():

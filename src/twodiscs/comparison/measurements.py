@@ -249,7 +249,7 @@ def table_of(measurements):
 class Measurements(Result, Mapping[str, Measurement]):
     """{quantity: ``Measurement``} of one scene; prints as a table.
 
-    ``simulate`` and ``sample`` return one. The name of an event is short for its quantity.
+    ``simulate`` and ``sample`` return one.
 
     Parameters
     ----------
@@ -274,8 +274,6 @@ class Measurements(Result, Mapping[str, Measurement]):
     Examples
     --------
     >>> md = td.simulate(scene, error=0.02, seed=1)
-    >>> md["vertical_hop_time"] == md["vertical_hop"]
-    True
     >>> md.frame().index[0], md.settings["seed"]
     ('vertical_hop_time', 1)
     """

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from twodiscs.comparison.result import note_of_number, progress_bar, seed_of
-from twodiscs.comparison.states import with_aliases
 from twodiscs.dynamics.counting import engine_of
 from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, kicks_of, new_wraps, unwrap
 from twodiscs.model.checks import (
@@ -261,13 +260,13 @@ def averages(
         """Yield (states at time 0, states at a time) of a block, for all ``times``."""
         filled, wraps = states(scene, each, stream, block), new_wraps(scene, each)
         kicks = kicks_of(scene, each, stream, block)
-        start = with_aliases(as_records(scene, filled))
+        start = as_records(scene, filled)
         for step in steps:
             if step:
                 advance_all(scene, filled, wraps, step, kicks)
             now = as_records(scene, filled)
             unwrap(scene, now, wraps)
-            yield start, with_aliases(now)
+            yield start, now
 
     def moments(block, first, found, before):
         """Return the last values of a block, and the means and sums of squares at some times."""

@@ -29,37 +29,11 @@ if TYPE_CHECKING:
 
 
 class Quantities(dict):
-    """{quantity: value} with at most one quantity of each event, whose name is short for it.
+    """{quantity: value}; any other key raises a ``KeyError`` that lists the quantities."""
 
-    Any other key raises a ``KeyError`` that lists the quantities.
-    """
-
-    def __getitem__(self, name):
-        if (known := spelled(name, self)) not in self:
-            raise unknown_key(name, self)
-        return super().__getitem__(known)
-
-    def __contains__(self, name):
-        return super().__contains__(spelled(name, self))
-
-    def get(self, name, default=None):
-        """Return the value of a quantity, ``default`` if there is none."""
-        return super().get(spelled(name, self), default)
-
-
-def spelled(name, quantities):
-    """Return the name of a quantity, given its name or its event; ``quantities`` are the names."""
-    if name in EVENTS:
-        for kind in ("time", "area"):
-            if f"{name}_{kind}" in quantities:
-                return f"{name}_{kind}"
-    return name
-
-
-def unknown_key(name, quantities):
-    """Return the ``KeyError`` for a ``name`` that is none of ``quantities``."""
-    hint = did_you_mean(name, quantities) if isinstance(name, str) else ""
-    return KeyError(f"{quote(name)} is none of {', '.join(quantities)}{hint}")
+    def __missing__(self, name):
+        hint = did_you_mean(name, self) if isinstance(name, str) else ""
+        raise KeyError(f"{quote(name)} is none of {', '.join(self)}{hint}")
 
 
 def areas(scene: Scene) -> dict[str, float]:
@@ -73,12 +47,11 @@ def areas(scene: Scene) -> dict[str, float]:
     Returns
     -------
     dict
-        {"<event>_area": area} in the order of ``EVENTS``; the name of an event is short for it.
-        Areas are in length³ for two discs, length⁵ for balls. An area is exactly 0.0 if the event
-        is impossible or does not exist in the scene, and None if no exact value is known, for more
-        than two discs. The area of all walls is 4 (right + top) in a plain scene. Areas have a
-        factor 1/√mass (1 for disc 1), and the weight (1 − U/E)₊^((D − 1)/2) in a field (see
-        ``volume``, also for the accuracy).
+        {"<event>_area": area} in the order of ``EVENTS``. Areas are in length³ for two discs,
+        length⁵ for balls. An area is exactly 0.0 if the event is impossible or does not exist in
+        the scene, and None if no exact value is known, for more than two discs. The area of all
+        walls is 4 (right + top) in a plain scene. Areas have a factor 1/√mass (1 for disc 1), and
+        the weight (1 − U/E)₊^((D − 1)/2) in a field (see ``volume``, also for the accuracy).
 
     Raises
     ------
@@ -110,9 +83,9 @@ def mean_times(scene: Scene) -> dict[str, float | None]:
     Returns
     -------
     dict
-        {"<event>_time": mean time} in the order of ``EVENTS``; the name of an event is short for
-        it. Times are lengths over unit speed. A time is None if the event is impossible, or if no
-        exact value is known, for more than two discs. The accuracy is that of ``volume``.
+        {"<event>_time": mean time} in the order of ``EVENTS``. Times are lengths over unit speed. A
+        time is None if the event is impossible, or if no exact value is known, for more than two
+        discs. The accuracy is that of ``volume``.
 
     Raises
     ------

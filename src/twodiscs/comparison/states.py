@@ -1,4 +1,4 @@
-"""States of the invariant measure, whose velocities have two names: "u1" and "vx1"."""
+"""States of the invariant measure."""
 
 from __future__ import annotations
 
@@ -15,22 +15,6 @@ if TYPE_CHECKING:
 
 #: The velocity along each axis.
 VELOCITIES = {"x": "u", "y": "v", "z": "w"}
-
-
-def component(name):
-    """Return "u1" for the velocity "vx1", and so on; any other ``name`` is returned unchanged."""
-    is_velocity = name[:1] == "v" and name[1:2] in VELOCITIES and name[2:].isdigit()
-    return VELOCITIES[name[1]] + name[2:] if is_velocity else name
-
-
-def with_aliases(states):
-    """Return an array of states whose velocities have the names "vx1" and so on, too."""
-    axes = {velocity: axis for axis, velocity in VELOCITIES.items()}
-    fields = [
-        ((f"v{axes[name[0]]}{name[1:]}", name) if name[0] in axes else name, float)
-        for name in states.dtype.names
-    ]
-    return states.view(np.dtype(fields))
 
 
 @answering
@@ -60,9 +44,8 @@ def starts(
     -------
     structured array, shape (number,)
         Fields x1, y1, x2, y2 are the centres, from the centre of the box; u1, v1, u2, v2 are the
-        velocities, which vx1, vy1, vx2, vy2 give, too. Balls also have z1, z2, w1, w2 (vz1, vz2),
-        and rough discs s1, s2, the speeds of their surfaces. N discs have x1 … xN, then y, u, v
-        and, if they are rough, s.
+        velocities. Balls also have z1, z2, w1, w2, and rough discs s1, s2, the speeds of their
+        surfaces. N discs have x1 … xN, then y, u, v and, if they are rough, s.
 
     Raises
     ------
@@ -74,8 +57,6 @@ def starts(
     >>> states = td.starts(scene, 1000, seed=1)
     >>> bool(abs(states["x1"].mean()) < 5 * 0.32 / 1000**0.5)  # the centre of the box is the mean
     True
-    >>> bool((states["vx1"] == states["u1"]).all())
-    True
     """
     from twodiscs.sampling.starts import MOST_NUMBERS, components, records
 
@@ -84,4 +65,4 @@ def starts(
     seed = seed_of(scene, "trajectory", seed, name)
 
     with progress_bar(progress, f"starts r = {scene.radius:g}") as progress:
-        return with_aliases(records(scene, number, seed, progress))
+        return records(scene, number, seed, progress)

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from twodiscs.comparison.result import progress_bar, seed_of
-from twodiscs.comparison.states import VELOCITIES, component, with_aliases
+from twodiscs.comparison.states import VELOCITIES
 from twodiscs.dynamics.trajectory import DISCS, columns, followed
 from twodiscs.model.box import parameters_of, scene_of
 from twodiscs.model.checks import (
@@ -36,8 +36,8 @@ class Trajectory(pd.DataFrame):
     - time; x1, y1, …, xN, yN: the centres, from the centre of the box; z1, z2 for balls. On
       periodic axes they go on beyond the cell.
     - event; first and second, the discs of the event
-    - u1, v1, …, uN, vN: the velocities along x and y, which vx1, vy1 and so on give, too; w1, w2
-      (vz1, vz2) for balls; s1, s2: the speeds of the surfaces of rough discs
+    - u1, v1, …, uN, vN: the velocities along x and y; w1, w2 along z for balls; s1, s2: the speeds
+      of the surfaces of rough discs
 
     Parameters
     ----------
@@ -53,8 +53,6 @@ class Trajectory(pd.DataFrame):
     Examples
     --------
     >>> path = td.trajectory(scene, 10, seed=1)
-    >>> bool((path["vx1"] == path["u1"]).all())
-    True
     >>> path.positions([0.5, 1, 2]).shape  # time, disc, axis
     (3, 2, 2)
     """
@@ -72,17 +70,6 @@ class Trajectory(pd.DataFrame):
                 "together keep it only if it is the same"
             )
         return scene_of(self.attrs["scene"])
-
-    def __getitem__(self, key):
-        if isinstance(key, str) and key not in self.columns and component(key) in self.columns:
-            return super().__getitem__(component(key)).rename(key)
-        if isinstance(key, list) and any(
-            isinstance(name, str) and component(name) != name and name not in self.columns
-            for name in key
-        ):
-            names = [component(name) if isinstance(name, str) else name for name in key]
-            return super().__getitem__(names).set_axis(key, axis=1)
-        return super().__getitem__(key)
 
     def states_at(self, times: float | Iterable[float]) -> np.ndarray:
         """Return the states at some times, exactly.
@@ -126,7 +113,7 @@ class Trajectory(pd.DataFrame):
         for name in names:
             states[name] = self[name].to_numpy()[row]
         _fly(scene, states, at - known[row])
-        return with_aliases(states)
+        return states
 
     def positions(self, times: float | Iterable[float] | None = None) -> np.ndarray:
         """Return the centres of all discs as a plain array.
