@@ -184,6 +184,20 @@ def test_python_runs(name, tmp_path):
         assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.slow
+def test_python_has_the_types_that_are_declared(tmp_path):
+    """As a type checker reads the pages, of which each is one program."""
+    for number, name in enumerate(NAMES):
+        program = "".join(body for kind, body in blocks(name) if kind == "python")
+        (tmp_path / f"page_{number}.py").write_text(program, encoding="utf-8")
+    options = ["--ignore-missing-imports", "--follow-imports", "silent", "--scripts-are-modules"]
+    checked = subprocess.run(
+        [sys.executable, "-m", "mypy", *options, *sorted(tmp_path.glob("*.py"))],
+        cwd=tmp_path, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert checked.returncode == 0, checked.stdout
+
+
 # Commands ---------------------------------------------------------------------------------------
 
 

@@ -547,9 +547,7 @@ def test_differences_of_seeds_scatter_as_their_errors_say():
     """χ² of 15 differences is within its 1e-6 and 1 − 1e-6 quantiles."""
     hit = "disc_collision"
     found = [
-        td.simulate(SCENE, duration=1e5, seed=seed, events="disc_collision")[
-            "disc_collision_time"
-        ].u
+        td.simulate(SCENE, duration=1e5, seed=seed, events=hit)[f"{hit}_time"].u
         for seed in range(30)
     ]
     scores = [

@@ -21,13 +21,11 @@ from twodiscs.points.base import digest, read_json, with_arrays
 
 if TYPE_CHECKING:
     from os import PathLike
+    from typing import Any
 
     import pandas as pd
 
-    from twodiscs.comparison.intervals import Intervals
     from twodiscs.comparison.measurements import Measurements
-    from twodiscs.comparison.scan import Scan
-    from twodiscs.comparison.transmission import Transmission
 
 
 @answering
@@ -138,11 +136,8 @@ def from_dict(content):
 @answering
 def load_result(
     path: str | PathLike[str],
-) -> Measurements | Intervals | Transmission | Scan:
+) -> Measurements | Any:
     """Read a result that ``save(path)`` wrote, or a point of a build; ``more`` goes on from it.
-
-    A type checker needs to know its class before you use it:
-    ``assert isinstance(result, td.Measurements)``.
 
     Parameters
     ----------

@@ -33,6 +33,8 @@ from twodiscs.points.estimates import normal_quantile
 from twodiscs.points.monte_carlo import WALL_AREAS
 
 if TYPE_CHECKING:
+    from typing import Any
+
     import pandas as pd
     from uncertainties import UFloat
 
@@ -106,15 +108,15 @@ class Measurement:
     """
 
     quantity: str
-    value: float | None
-    stderr: float | None
-    exact: float | None
-    z: float | None
+    value: float | Any
+    stderr: float | Any
+    exact: float | Any
+    z: float | Any
     count: int
     status: str
     unit: str
-    expectation: float | None = None
-    bound: float | None = None
+    expectation: float | Any = None
+    bound: float | Any = None
     source: Measurements | UFloat | None = field(default=None, compare=False)
 
     def __post_init__(self):
@@ -123,7 +125,7 @@ class Measurement:
             object.__setattr__(self, "z", None)
 
     @property
-    def relative_stderr(self) -> float | None:
+    def relative_stderr(self) -> float | Any:
         """The standard error over the size of the value, or None."""
         return self.stderr / abs(self.value) if self.stderr and self.value else None
 
@@ -169,7 +171,7 @@ class Measurement:
         return round(float(self), digits)
 
     @property
-    def u(self) -> UFloat:
+    def u(self) -> Any:  # a UFloat, whose operators have no types
         """The value with its error, a number of the package uncertainties.
 
         Numbers of one result of ``simulate`` are correlated as their counts are, and numbers of one
@@ -408,7 +410,7 @@ def simulate(
     *,
     duration: float | None = None,
     budget: float = 2e9,
-    events: Event | Iterable[Event] | None = None,
+    events: Event | Iterable[Event] | Iterable[str] | None = None,
     seed: int = 1,
     name: str | None = None,
     cores: int = 1,
@@ -555,7 +557,7 @@ def sample(
     scene: Scene,
     samples: float = 10**7,
     *,
-    quantities: Quantity | Iterable[Quantity] | None = None,
+    quantities: Quantity | Iterable[Quantity] | Iterable[str] | None = None,
     shell: float = 0.02,
     seed: int = 1,
     name: str | None = None,

@@ -23,6 +23,7 @@ from twodiscs.theory import exact, virial
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from typing import Any
 
 
 class Pressures(dict):
@@ -86,7 +87,7 @@ def terms(scene):
 
 
 @overload
-def pressure(of: Scene) -> dict[str, float | None]: ...
+def pressure(of: Scene) -> dict[str, float | Any]: ...
 @overload
 def pressure(of: Measurements) -> Mapping[str, Measurement]: ...
 def pressure(of):
@@ -179,7 +180,7 @@ def _measured(result, rows, name, constant, factors):
 
 
 @overload
-def free_energy(of: Scene) -> float | None: ...
+def free_energy(of: Scene) -> float | Any: ...
 @overload
 def free_energy(of: Measurements) -> Measurement: ...
 def free_energy(of):

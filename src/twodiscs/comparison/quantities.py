@@ -19,7 +19,7 @@ from twodiscs.model.events import EVENTS
 from twodiscs.theory import exact as theory
 
 if TYPE_CHECKING:
-    from typing import Unpack
+    from typing import Any, Unpack
 
     import pandas as pd
 
@@ -66,7 +66,7 @@ def areas(scene: Scene) -> dict[str, float]:
     return Quantities((f"{event}_area", area) for event, area in theory.areas(scene).items())
 
 
-def mean_times(scene: Scene) -> dict[str, float | None]:
+def mean_times(scene: Scene) -> dict[str, float | Any]:
     """Return the mean times between two events of each kind.
 
     Disc 1 has mass 1 and the total energy is 1/2. Wall times are times of disc 1 on the

@@ -145,7 +145,7 @@ def scan(
     duration: float | None = None,
     seed: int = 1,
     budget: float = 2e9,
-    events: Event | Iterable[Event] | None = None,
+    events: Event | Iterable[Event] | Iterable[str] | None = None,
     name: str | None = None,
     cores: int = 1,
     progress: bool | None = None,
