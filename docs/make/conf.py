@@ -5,6 +5,7 @@
 ``made.py`` has what is added to some pages while they are read.
 """
 
+import os
 import sys
 from pathlib import Path
 from shutil import copyfile
@@ -36,6 +37,13 @@ smartquotes = False
 myst_enable_extensions = ["html_image"]
 myst_fence_as_directive = ["math", "mermaid"]
 myst_heading_anchors = 4
+# A picture for those who pass the address on; it needs the address of the site.
+html_baseurl = os.environ.get("SITE_URL", "")
+myst_html_meta = {
+    "description": "Exact times between hops and collisions of two hard discs in a box",
+    "property=og:title": project,
+    "property=og:image": f"{html_baseurl}/_images/mean_hop_time.png",
+}
 
 # The script that draws diagrams is a part of the site, see docs.yml. Without it a page shows their
 # text: no page asks another server for anything.

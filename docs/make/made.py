@@ -25,9 +25,27 @@ EXPECTED = ROOT / "paper" / "expected"
 PAPER = {"name": SCENE, "width": BOX.width, "height": BOX.height, "effects": {}}
 
 
-def contents(text, site):
-    """Return the first page with the table of contents of the site, which its margin shows."""
-    return text + Path(__file__).with_name("contents.md").read_text(encoding="utf-8")
+#: What the first page of the site shows beside the text of README.md. Pages have these pictures.
+FRONT = """## See it
+
+<iframe src="explorer-page.html" title="The explorer" loading="lazy"
+    style="width: 100%; height: 54rem; border: 0"></iframe>
+
+<p><img src="_images/mean_hop_time.png" width="32%" alt="Mean time between hops against the radius">
+<img src="_images/tails.png" width="32%" alt="Probability of an interval longer than t">
+<img src="_images/passages.png" width="32%" alt="The fraction of hops that are passages"></p>
+
+[The explorer](docs/explorer.md), [the results](docs/results.md) and [the gallery](docs/gallery.md)
+have more.
+
+"""
+
+
+def front(text, site):
+    """Return the first page with the explorer, figures, and the contents that its margin shows."""
+    before, heading, after = text.partition("## From Python\n")
+    contents = Path(__file__).with_name("contents.md").read_text(encoding="utf-8")
+    return before + FRONT + heading + after + contents
 
 
 def tutorial(text, site):
@@ -158,7 +176,7 @@ def live_explorer():
 
 
 PAGES = {
-    "README": contents,
+    "README": front,
     "docs/python": tutorial,
     "docs/reference": reference,
     "docs/gallery": gallery,
