@@ -140,9 +140,18 @@ def test_files_of_something_else_are_refused(content, said, tmp_path):
     assert said in str(caught.value)
     with pytest.raises(td.InputError, match="path must be a file to read"):
         td.load_result(tmp_path / "absent.json")
-    write_json(path, {"twodiscs": "0"})
-    with pytest.raises(td.InputError, match=r"the result must be of version .*, not of '0'"):
-        td.load_result(path)
+    first, second, _ = td.__version__.split(".")
+    for other in ("0", f"{first}.{int(second) + 1}.0", f"{first}.{second}0.0"):
+        write_json(path, {"twodiscs": other})
+        with pytest.raises(td.InputError, match=f"the result must be of version .*'{other}'"):
+            td.load_result(path)
+
+
+def test_a_result_of_another_third_digit_goes_on(tmp_path, monkeypatch):
+    found, path = td.simulate(SCENE, 0.5, budget=1, seed=3), tmp_path / "result.json"
+    found.save(path)
+    monkeypatch.setattr(td, "__version__", f"{td.__version__}1")
+    assert td.load_result(path).rows == found.rows
 
 
 def test_a_result_goes_on_by_its_own_settings_alone():

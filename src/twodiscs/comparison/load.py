@@ -142,7 +142,7 @@ def load_result(
     Parameters
     ----------
     path : path-like
-        The file. Only the version of the package that wrote it can read it.
+        The file. A version of the package with other first two digits cannot read it.
 
     Returns
     -------
@@ -173,9 +173,11 @@ def load_result(
         raise InputError(
             f"path must be a file that save() wrote, or a point of a build, not {str(path)!r}"
         ) from None
-    if (version := content.get("twodiscs")) != twodiscs.__version__:
+    # Numbers may change with the second digit of a version, not with the third.
+    known, version = twodiscs.__version__.rpartition(".")[0], content.get("twodiscs")
+    if not str(version).startswith(f"{known}."):
         raise InputError(
-            f"the result must be of version {twodiscs.__version__}, so that its numbers are the "
-            f"same, not of {quote(version)}"
+            f"the result must be of version {known}.x, so that its numbers are the same, not of "
+            f"{quote(version)}"
         )
     return from_dict(content)
