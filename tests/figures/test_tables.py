@@ -76,11 +76,20 @@ def cases():
             yield "tails", "ratio", *look, [(t, y / law, s / law) for t, y, s, law in own]
         else:
             yield "tails", "exponential", *look, [(t, y, s) for t, y, s, _ in own]
-    rows = [row for row in table("more_discs") if row["dynamics"] and row["dynamics"] < 1000]
+    rows = [row for row in table("more_discs") if row["dynamics"]]
     for radius in sorted({row["radius"] for row in rows}):
         for event, look in LOOKS.items():
             own = of(rows, radius=radius, event=event)
-            due = [(row["discs"], row["dynamics"], row["dynamics_stderr"]) for row in own]
+            pairs = [
+                {"vertical_hop": n * (n - 1) / 2, "right_wall": 1 / n, "top_wall": 1}.get(
+                    event, n - 1
+                )
+                for n in (row["discs"] for row in own)
+            ]
+            due = [
+                (row["discs"], n * row["dynamics"], n * row["dynamics_stderr"])
+                for row, n in zip(own, pairs, strict=True)
+            ]
             yield "more_discs", f"radius {radius}", *look, due
     rows = [row for row in table("effects") if row["quantity"] != "never_met_share"]
     for k, scene in enumerate(dict.fromkeys(row["scene"] for row in rows)):

@@ -4,10 +4,16 @@ from twodiscs.figures import panels
 from twodiscs.figures.style import BLACK, GREY, LOOKS, name_of
 
 #: Inches: heights of a panel of one radius and of the residuals.
-PANEL, RESIDUALS = 1.6, 1.3
+PANEL, RESIDUALS = 1.5, 1.3
 
-#: Times longer than this are not drawn: hops that almost never happen.
-LONGEST = 1e3
+#: {event: (how many pairs or discs share its times among N discs, the same in mathtext)}.
+SHARED = {
+    "vertical_hop": (lambda n: n * (n - 1) / 2, r"$\times N(N-1)/2$"),
+    "horizontal_hop": (lambda n: n - 1, r"$\times(N-1)$"),
+    "disc_collision": (lambda n: n - 1, r"$\times(N-1)$"),
+    "right_wall": (lambda n: 1 / n, r"$/N$"),
+    "top_wall": (lambda n: 1, ""),
+}
 
 #: Residuals of one number of discs stand side by side, from radius to radius.
 APART = 1.035
@@ -18,7 +24,9 @@ DOTTED = (0, (1, 1.5))
 def draw(box, tables):
     """Draw more_discs.csv: full lines are exact values, dotted lines Monte Carlo without them.
 
-    Open symbols are dynamics, with their standard errors. Residuals are beneath.
+    Times are per pair of discs that has the event, or per disc at the right wall, so that they
+    depend little on the number of discs. Open symbols are dynamics, with their standard errors.
+    Residuals are beneath.
     """
     rows = tables["more_discs"]
     radii = sorted({row["radius"] for row in rows})
@@ -26,7 +34,10 @@ def draw(box, tables):
     figure, (*upper, lower) = panels.stacked(**heights, residuals=RESIDUALS)
     for axes, radius in zip(upper, radii, strict=True):
         _times(axes, [row for row in rows if row["radius"] == radius])
-        axes.set(yscale="log", ylabel=f"mean time, $r={panels.math_of(radius)}$")
+        axes.set(yscale="log", ylabel=f"time, $r={panels.math_of(radius)}$")
+        low, high = axes.get_ylim()
+        axes.set_ylim(low / 1.05, high * 1.05)
+        panels.label_decades(axes.yaxis, high / low)
         axes.tick_params(labelbottom=False)
     _legend(upper[0])
     _residuals(lower, rows, radii)
@@ -36,36 +47,37 @@ def draw(box, tables):
     for axes in (*upper, lower):
         axes.set(xscale="log", xlim=(numbers[0] / 1.15, numbers[-1] * 1.15))
         axes.set_xticks(numbers, [str(number) for number in numbers])
-        axes.minorticks_off()
+        axes.set_xticks([], minor=True)
     return figure
 
 
 def _times(axes, rows):
     for event, (colour, marker) in LOOKS.items():
-        own = [
-            row for row in rows
-            if row["event"] == event and row["dynamics"] and row["dynamics"] < LONGEST
-        ]  # fmt: skip
+        own = [row for row in rows if row["event"] == event and row["dynamics"]]
         if not own:
             continue
+        share, name = SHARED[event]
         numbers = [row["discs"] for row in own]
-        due = [(row["discs"], row["exact"] or row["monte_carlo"]) for row in own]
-        due = [(number, time) for number, time in due if time]
-        axes.plot(*zip(*due, strict=True), color=colour, lw=0.7, ls=DOTTED)
-        known = [row for row in own if row["exact"]]
-        axes.plot([r["discs"] for r in known], [r["exact"] for r in known], color=colour)
+        times = {
+            column: [row[column] and row[column] * share(row["discs"]) for row in own]
+            for column in ("exact", "monte_carlo", "dynamics", "dynamics_stderr")
+        }
+        either = [a or b for a, b in zip(times["exact"], times["monte_carlo"], strict=True)]
+        for due, style in ((either, {"lw": 0.7, "ls": DOTTED}), (times["exact"], {})):
+            known = [(number, time) for number, time in zip(numbers, due, strict=True) if time]
+            if known:
+                axes.plot(*zip(*known, strict=True), color=colour, **style)
         axes.errorbar(
-            numbers, [row["dynamics"] for row in own], [row["dynamics_stderr"] for row in own],
-            ls="", elinewidth=0.6, label=name_of(event), **panels.open_symbol(colour, marker),
+            numbers, times["dynamics"], times["dynamics_stderr"], ls="", elinewidth=0.6,
+            label=f"{name_of(event)} {name}".strip(), **panels.open_symbol(colour, marker),
         )  # fmt: skip
 
 
 def _legend(axes):
     axes.plot([], [], color=GREY, label="exact")
     axes.plot([], [], color=GREY, lw=0.7, ls=DOTTED, label="Monte Carlo")
-    # The legend stands above all symbols.
-    axes.set_ylim(top=50 * axes.get_ylim()[1])
-    axes.legend(loc="upper right", ncols=3, columnspacing=0.8)
+    handles, names = axes.get_legend_handles_labels()
+    axes.figure.legend(handles, names, loc="outside upper center", ncols=2)
 
 
 def _residuals(axes, rows, radii):

@@ -8,7 +8,6 @@ import math
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import kernels
 from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.events import DECLARED, SHELLS
@@ -23,12 +22,12 @@ from twodiscs_paper.study import row
 WIDTH_PER_DISC, HEIGHT = 0.75, 1.0
 
 #: Numbers of discs, and radii: dilute, dense with both hops, and a channel of ordered discs.
-DISCS, RADII = (2, 3, 4, 8, 64), (0.1, 0.2, 0.28)
+DISCS, RADII = (2, 3, 4, 8, 16, 32, 64), (0.1, 0.2, 0.28)
 
 #: Numbers of discs whose initial states take longer than their motion, and their replicas: fewer
 #: ones, which are followed for longer. They have an eighth of the events, and no insertions, which
 #: take too long.
-FEWER, SHARE = {64: 48}, 1 / 8
+FEWER, SHARE = {16: 128, 32: 96, 64: 48}, 1 / 8
 
 
 def counted(scene, events, seed):
@@ -42,7 +41,7 @@ def counted(scene, events, seed):
     blocks = max(2, math.ceil(events / many.simulated_events(first[0])))
     rest = kernels.run_blocks(scene, seed, 1, blocks, duration)
     sums, products = (one + more for one, more in zip(first, rest, strict=True))
-    return sums, products, blocks * REPLICAS, duration
+    return sums, products, blocks * many.replicas_of(scene), duration
 
 
 def dynamics_rates(scene, events, seed):

@@ -32,8 +32,8 @@ class MoreDiscs(Table):
             "exact mean time over all initial conditions; empty if none is known",
         ),
         "monte_carlo": AS_EXACT(
-            "mean time from volume and area by insertion; empty for 64 discs, for which it takes "
-            "long"
+            "mean time from volume and area by insertion; empty for 16 discs and more, for which "
+            "it takes long"
         ),
         "monte_carlo_stderr": AS_EXACT("its standard error"),
         "monte_carlo_z": NUMBER(
@@ -78,13 +78,13 @@ STUDY = Study(
                 """
                 Mean times of N discs in a box of 0.75 N × 1, at the energy per disc of two discs:
                 exact if a theory is known (lines), by Monte Carlo (dotted) and by event-driven
-                molecular dynamics (symbols). Error bars are one standard error; they are hidden if
-                they are smaller than the symbols. Collisions and hops count for any pair of discs,
-                wall hits for one disc at one wall. Two discs have the theory of the box, three
-                discs an exact quadrature; at r = 0.28 only neighbours touch, and a transfer
-                operator gives every N. Insertions take too long for 64 discs. Times beyond 1000 are
-                not shown. (d) Residuals z of the dynamics in standard errors, from exact values, or
-                from Monte Carlo if no exact value is known; radii stand side by side.
+                molecular dynamics (symbols). Times are per pair of discs, per pair of neighbours or
+                per disc, as the legend says, so that they depend little on N. Error bars are one
+                standard error; they are hidden if they are smaller than the symbols. At r = 0.28
+                only neighbours touch, and a transfer operator gives every N. (d) Residuals z of the
+                dynamics in standard errors, from exact values, or from Monte Carlo if no exact
+                value is known; radii stand side by side. From 16 discs on, insertions take too long
+                and only the virial theorem tests dynamics where no exact value is known.
                 """
             ),
             tables=("more_discs",),
