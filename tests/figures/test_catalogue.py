@@ -52,7 +52,7 @@ def test_a_caption_has_the_sentences_of_its_scene():
     assert caption.of() == "A. P."
 
 
-@pytest.mark.parametrize(("note", "count"), [(SHELLS, 4), (SIMULATED, 4)])
+@pytest.mark.parametrize(("note", "count"), [(SHELLS, 5), (SIMULATED, 4)])
 def test_figures_over_the_radius_share_a_note(note, count):
     own = [entry for entry in FIGURES.values() if entry.note is note]
     assert len(own) == count

@@ -6,6 +6,9 @@ because the Snakefile imports it.
 
 from dataclasses import dataclass, field
 
+from twodiscs.model.effects import EFFECTS
+from twodiscs.model.events import HOPS
+
 # A report lists categories in alphabetical order.
 GEOMETRY, SPACE, DYNAMICS = "1 Geometry", "2 Volume and areas", "3 Mean times and hopping"
 
@@ -121,9 +124,9 @@ SIMULATED = Caption(
 # The figures --------------------------------------------------------------------------------------
 
 
-def _sampled(title, table, *quantities, own, note=SHELLS):
+def _sampled(title, table, *quantities, own, note=SHELLS, **more):
     """Return the entry of a figure of ``quantities`` of a ``table`` over the radius."""
-    return Entry(title, SPACE, own, note, tables=(table,), needs=frozenset(quantities))
+    return Entry(title, SPACE, own, note, tables=(table,), needs=frozenset(quantities), **more)
 
 
 def _mean_times(title, *quantities, own, **more):
@@ -237,6 +240,20 @@ FIGURES = {
             same in a square box.
             """,
         ),
+    ),
+    "all_areas": _sampled(
+        "Areas of all events",
+        "areas",
+        *(f"{event}_area" for event in (*HOPS, "disc_collision", "right_wall", "top_wall")),
+        own=Caption(
+            """
+            Areas of surfaces in configuration space: exact (lines) and from thin shells (symbols).
+            (a) Collisions of the discs. (b) Hits of walls. (c), (d) Square roots of the areas of
+            hops: if an area ends quadratically, its root ends as a straight line. A symbol at zero
+            means that no sample was in the shell of a blocked hop.
+            """
+        ),
+        without=frozenset({*EFFECTS, "discs"}),
     ),
     "mean_hop_time": _mean_times(
         "Mean times between hops",

@@ -6,6 +6,7 @@ from twodiscs.figures import configuration_space, geometry, motion, radius
 
 #: {figure: function of a ``Box`` and of the rows of its table}
 FROM_ROWS = {name: partial(radius.draw, name) for name in radius.OVER_RADIUS} | {
+    "all_areas": radius.draw_areas,
     "pressure": radius.draw_pressure,
     "hop_histogram": motion.draw_hop_histogram,
     "hopping_trajectory": motion.draw_trajectory,

@@ -91,8 +91,8 @@ def plot(
 
     - mean times: ``mean_times`` (all events), ``mean_hop_time``, ``mean_collision_time``,
       ``mean_wall_time``, ``pressure``
-    - volume and areas: ``volume``, ``areas`` (all events), ``vertical_hop_area``,
-      ``horizontal_hop_area``, ``collision_area``, ``wall_area``
+    - volume and areas: ``volume``, ``areas`` (all events), ``all_areas`` (the same, a panel each),
+      ``vertical_hop_area``, ``horizontal_hop_area``, ``collision_area``, ``wall_area``
     - a scene or a box: ``model``, ``configuration_space``, ``largest_radius``,
       ``integration_regimes``, ``surface_shell``
     - ``hop_histogram``, ``hopping_trajectory``, ``transmission`` and ``observed``

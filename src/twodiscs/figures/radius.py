@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from twodiscs.figures import curves, panels
-from twodiscs.figures.curves import hop_ends
-from twodiscs.figures.style import BLACK, LOOKS, SERIES, name_of
+from twodiscs.figures.curves import hop_ends, limits
+from twodiscs.figures.style import BLACK, LOOKS, SERIES, name_of, new_figure
 from twodiscs.model.checks import InputError
 from twodiscs.theory import virial
 from twodiscs.theory.exact import mean_times, rate
@@ -130,6 +130,51 @@ def draw(name, box, rows):
     panels.legend(main, series, shown.single, laws)
     if beneath:
         _approach(approach, box, by_quantity)
+    return figure
+
+
+#: The figures that ``draw_areas`` shows beside and beneath each other, and inches.
+AREAS, WIDE, TALL = (
+    ("collision_area", "wall_area", "vertical_hop_area", "horizontal_hop_area"),
+    7.0,
+    5.4,
+)
+
+
+def draw_areas(box, rows):
+    """Draw the areas of all events of a plain ``Box``, each with its residuals beneath.
+
+    The panels are those of the figures of single areas. Raises ``InputError`` if the table has no
+    areas.
+    """
+    names = {q: name for figure in AREAS for q, name in OVER_RADIUS[figure].names.items()}
+    radii, found = series_of(box, rows, names, {})
+    if not found:
+        raise InputError("the table of all_areas has no row of an area")
+    figure = new_figure(TALL, WIDE, layout="constrained")
+    heights = [panels.MAIN, panels.LOWER]
+    axes = figure.subplots(4, 2, height_ratios=heights * 2, squeeze=False)
+    for i, name in enumerate(AREAS):
+        main, lower = axes[2 * (i // 2) : 2 * (i // 2) + 2, i % 2]
+        shown = OVER_RADIUS[name]
+        series = [part for quantity, part in found.items() if quantity in shown.names]
+        if shown.rooted:
+            series = [_rooted(part) for part in series]
+        main.set_label(name)
+        lower.set_label(f"residuals of {name}")
+        panels.draw_series(main, lower, radii, series, bool(shown.single))
+        if shown.rooted:
+            main.set_ylim(0, None)
+        elif series:
+            panels.logarithmic(main, radii, series)
+        panels.scale_residuals(lower)
+        panels.mark([main, lower], limits(box))
+        panels.legend(main, series, shown.single)
+        # The name of a root is too long beside a panel of this height.
+        main.set_ylabel(shown.label.rpartition(", ")[2])
+        main.tick_params(labelbottom=False)
+        lower.set(xlabel="radius $r$", ylabel="residual $z$")
+        panels.title(main, "abcd"[i], box if i == 0 else None, up=panels.ABOVE)
     return figure
 
 
