@@ -67,7 +67,6 @@ SIZE = re.compile(
 TYPED_SIZES = {
     "are above one third": "the exponent of the law",
     "in a thousand": "the level of a test",
-    "last two fifths": "which bins are late, by definition",
     "it to thirteen": "the tolerance of a test",
     "of a hundred": "two digits at the power one half",
     "last four octaves": "which distances are fitted, by definition",
