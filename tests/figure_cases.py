@@ -8,11 +8,10 @@ import numpy as np
 from matplotlib.text import Text
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
-from twodiscs.dynamics.intervals import wide_edges
+from twodiscs.dynamics.runs import wide_edges
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.draw import draw as draw_figure
-from twodiscs.model import radii
-from twodiscs.model.box import Box
+from twodiscs.model.box import Box, radii
 from twodiscs.theory import exact
 
 BOXES = {
@@ -50,7 +49,7 @@ def tables_of(name):
     """
     rng, box, relative = np.random.default_rng(20), BOXES[name], 3e-3
     found = {name: [] for name in ("volume", "areas", "mean_times", "hop_histogram")}
-    for radius in radii.radii(box.width, box.height, 0.02 * box.shortest, 18):
+    for radius in radii(box.width, box.height, 0.02 * box.shortest, 18):
         scene = box.scene(radius)
         found["volume"].append(sampled(rng, radius, "volume", exact.volume(scene), relative))
         for event, area in exact.areas(scene).items():

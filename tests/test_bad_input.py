@@ -23,9 +23,9 @@ from hypothesis import strategies as st
 import twodiscs as td
 from twodiscs import arguments, cli
 from twodiscs.comparison import scores
-from twodiscs.dynamics import counting, intervals, trajectory
-from twodiscs.model import checks, effects, radii
-from twodiscs.model.box import Box
+from twodiscs.dynamics import runs, trajectory
+from twodiscs.model import checks, effects
+from twodiscs.model.box import Box, even_radii, radii, stream_seed
 from twodiscs.model.checks import InputError
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
@@ -56,12 +56,12 @@ CALLS = [
     (BOX.scene, {"radius": 0.2}),
     (BOX.threshold, {"event": "any_wall"}),
     (partial(checks.check_length, "side"), {"value": 1.0}),
-    (radii.radii, {"width": 1.5, "height": 1.0, "smallest": 0.01, "count": 8}),
-    (radii.even_radii, {"smallest": 0.1, "largest": 0.2, "count": 8}),
-    (radii.stream_seed, {"seed": 1, "scene": "paper", "method": "dynamics", "key": "0.2"}),
+    (radii, {"width": 1.5, "height": 1.0, "smallest": 0.01, "count": 8}),
+    (even_radii, {"smallest": 0.1, "largest": 0.2, "count": 8}),
+    (stream_seed, {"seed": 1, "scene": "paper", "method": "dynamics", "key": "0.2"}),
     *((f, {"scene": PAPER}) for f in (exact.volume, exact.areas, exact.mean_times, exact.exact)),
     *((f, {"scene": PAPER}) for f in (exact.event_rate, laws.closed_form)),
-    (counting.replica_duration, {"scene": PAPER}),
+    (runs.replica_duration, {"scene": PAPER}),
     *((f, {"scene": PAPER, "event": "any_wall"}) for f in (exact.rate, laws.threshold_time)),
     (exact.shell_expectation, {"scene": PAPER, "event": "top_wall", "epsilon": 0.01}),
     (laws.small_radius_time, {"box": BOX, "event": "any_wall", "radius": 0.1}),
@@ -71,8 +71,8 @@ CALLS = [
     (montecarlo.sample_point, POINT),
     (montecarlo.conditioned_point, POINT),
     (montecarlo.shell_thickness, {"scene": PAPER, "event": "top_wall", "fraction": 0.02}),
-    (counting.count_events, {"scene": PAPER, "target": {"any_wall": 0.1}, "budget": 1, "seed": 1}),
-    (intervals.hop_intervals, {"scene": PAPER, "event": "vertical_hop", "intervals": 1, "seed": 1}),
+    (runs.count_events, {"scene": PAPER, "target": {"any_wall": 0.1}, "budget": 1, "seed": 1}),
+    (runs.hop_intervals, {"scene": PAPER, "event": "vertical_hop", "intervals": 1, "seed": 1}),
     (trajectory.trajectory, {"scene": PAPER, "seed": 1}),
     (estimates.Estimate, {"value": 1.0, "stderr": 0.1, "n": 10}),
     (estimates.normal_quantile, {"confidence": 0.95}),
@@ -149,7 +149,7 @@ RIGHT = {
     (estimates.Estimate, "value"): [-1.0, 0.0, 1e-61, 1e61],
     (estimates.Estimate, "stderr"): [None],
     (laws.small_radius_time, "radius"): [0.0],
-    (radii.stream_seed, "scene"): ["scene"],
+    (stream_seed, "scene"): ["scene"],
 }
 
 #: No argument may be such a thing, or hold it where it is a list.

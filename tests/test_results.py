@@ -19,7 +19,7 @@ from twodiscs.dynamics import runs
 from twodiscs.model.checks import PRESETS
 from twodiscs.model.effects import EFFECTS
 from twodiscs.points.base import content_of, pieces_of, reached, write_json
-from twodiscs.sampling.blocks.rounds import all_at_once, joined
+from twodiscs.sampling.rounds import all_at_once, joined
 
 SCENE = td.Scene(1.5, 1.0, 0.2)
 NARROW = td.Scene(1.5, 1.0, 0.249)

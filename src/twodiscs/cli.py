@@ -19,9 +19,9 @@ from twodiscs.arguments import (
     whole_number,
     write,
 )
+from twodiscs.comparison.load import plugin
 from twodiscs.model.checks import PRESETS, InputError, decimal_hint
 from twodiscs.model.events import EVENTS
-from twodiscs.model.plugins import plugin
 
 #: The scene of the examples in ``--help``.
 EXAMPLE = "--width 1.5 --height 1 --radius 0.2"

@@ -16,11 +16,10 @@ from statistics import median
 
 import numpy as np
 
-from twodiscs.dynamics import counting
+from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.intervals import hop_intervals
-from twodiscs.dynamics.many import kernels
-from twodiscs.dynamics.many import lockstep as many
+from twodiscs.dynamics.many import engine
+from twodiscs.dynamics.runs import hop_intervals
 from twodiscs.model.events import EVENTS, SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import mean_of
@@ -45,22 +44,22 @@ from twodiscs_paper.studies.effects.cost import rows as cost_rows
 def lockstep_of_many(discs, blocks=BLOCKS // 8):
     """Count all events of ``discs`` discs with the kernel of N discs, which also takes two."""
     scene = Scene(SCENE.width, SCENE.height, SCENE.radius / 2, discs=discs)
-    duration = many.replica_duration(scene)
-    counted, seconds = timed(lambda: kernels.run_blocks(scene, 1, 0, blocks, duration))
-    return many.simulated_events(counted[0]), seconds
+    duration = engine.duration_of(scene)
+    counted, seconds = timed(lambda: engine.run_classes(scene, 1, 0, blocks, duration))
+    return engine.simulated_events(counted[0]), seconds
 
 
 def in_long_box(discs, hops, events=1_000_000):
     """Count about ``events`` of N discs in a box of 0.75 N × 1, without initial states."""
     scene = Scene(0.75 * discs, 1.0, SCENE.radius / 2, discs=discs)
-    each = many.replicas_of(scene)
-    duration = many.replica_duration(scene, max(256, events / each))
+    each = engine.block_replicas(scene)
+    duration = engine.duration_of(scene, max(256, events / each))
 
     def counted(time):
-        return timed(lambda: kernels.run_blocks(scene, 1, 0, 1, time, hops=hops))
+        return timed(lambda: engine.run_classes(scene, 1, 0, 1, time, hops=hops))
 
     (sums, _), seconds = counted(duration)
-    return many.simulated_events(sums), seconds - counted(duration / 2**20)[1]
+    return engine.simulated_events(sums), seconds - counted(duration / 2**20)[1]
 
 
 def lockstep_intervals(intervals=5_000_000):
@@ -71,7 +70,7 @@ def lockstep_intervals(intervals=5_000_000):
 
 def scalar_engine(blocks=BLOCKS // 8):
     """Do the same as ``lockstep``, one trajectory after the other."""
-    duration = counting.replica_duration(SCENE)
+    duration = runs.replica_duration(SCENE)
     draw = draw_constants(SCENE)
     arguments = (REPLICAS, duration, SCENE.contact_distance, draw, (0, 0))
     counted, seconds = timed(lambda: scalar.count_blocks(np.uint64(1), 0, blocks, *arguments))
@@ -81,7 +80,7 @@ def scalar_engine(blocks=BLOCKS // 8):
 def plain_python(replicas=200):
     """Do the same without a compiler."""
     starts = [tuple(map(float, state)) for state in states(SCENE, replicas, 1)[:8].T]
-    end = counting.replica_duration(SCENE), SCENE.range_x / 2, SCENE.range_y / 2, 0.4
+    end = runs.replica_duration(SCENE), SCENE.range_x / 2, SCENE.range_y / 2, 0.4
     counts, seconds = timed(lambda: [scalar.count_replica.py_func(*s, *end) for s in starts])
     return sum(map(scalar.simulated_events, counts)), seconds
 
@@ -124,9 +123,7 @@ def numpy_sampler(chunks=1000, chunk=16384):
 
 def count_until(error):
     """Return (events, processor seconds) until counting gives the mean hop time to ``error``."""
-    result, seconds = timed(
-        lambda: counting.count_events(SCENE, {"vertical_hop": error}, 10**11, 1)
-    )
+    result, seconds = timed(lambda: runs.count_events(SCENE, {"vertical_hop": error}, 10**11, 1))
     return result.events, seconds
 
 

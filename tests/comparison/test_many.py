@@ -13,9 +13,10 @@ import twodiscs as td
 from twodiscs.comparison.measurements import Measurements
 from twodiscs.comparison.scene_tables import SCENE_TABLES, Check, Theory
 from twodiscs.comparison.scores import FALSE_ALARM, bonferroni_bound
-from twodiscs.dynamics import counting, intervals
-from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
-from twodiscs.dynamics.many import lockstep as many
+from twodiscs.dynamics import runs
+from twodiscs.dynamics.ensemble import REPLICAS
+from twodiscs.dynamics.many import engine
+from twodiscs.dynamics.runs import relative_errors
 from twodiscs.figures.motion import colours
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
@@ -23,8 +24,7 @@ from twodiscs.model.events import AXIS, EVENTS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.base import content_of, with_arrays
-from twodiscs.sampling import montecarlo, starts
-from twodiscs.sampling.blocks import rounds
+from twodiscs.sampling import montecarlo, rounds, starts
 from twodiscs.theory import exact, virial
 
 #: With an exact value, and without; between walls, and on a ring.
@@ -76,7 +76,7 @@ def measured(request):
     target = dict.fromkeys(scene.events, 5e-3)
     quantities = ["volume", *(f"{event}_area" for event in scene.events)]
     points = {
-        "dynamics": [counting.count_events(scene, target, 2 * 10**7, 3)],
+        "dynamics": [runs.count_events(scene, target, 2 * 10**7, 3)],
         "monte_carlo": [montecarlo.SamplingRun(scene, quantities, 400_000, 0.02, 4).run()],
     }
     box = Box.of(scene)
@@ -138,8 +138,8 @@ def test_a_wrong_rate_is_found_without_an_exact_value(measured):
 def test_another_program_has_the_same_rates(name):
     """Time averages of one trajectory by textbook formulas; Bonferroni over all comparisons."""
     scene = SCENES[name]
-    duration, blocks = counting.replica_duration(scene), 3
-    sums, products = counting.run_blocks(scene, scene.events, 5, 0, blocks, duration)
+    duration, blocks = runs.replica_duration(scene), 3
+    sums, products = runs.run_blocks(scene, scene.events, 5, 0, blocks, duration)
     replicas = blocks * REPLICAS
     counted = sums / replicas / duration
     errors = counted * np.where(sums > 0, relative_errors(sums, products, replicas), 0.0)
@@ -154,7 +154,7 @@ def test_another_program_has_the_same_rates(name):
 
 
 def test_hits_of_all_walls_are_those_of_the_axes():
-    sums, products = counting.run_blocks(SCENES["three"], EVENTS, 1, 0, 1, 8.0)
+    sums, products = runs.run_blocks(SCENES["three"], EVENTS, 1, 0, 1, 8.0)
     right, top, all_walls = (EVENTS.index(e) for e in ("right_wall", "top_wall", "any_wall"))
     assert sums[all_walls] == sums[right] + sums[top]
     assert products[all_walls, all_walls] == (
@@ -169,9 +169,9 @@ def test_hits_of_all_walls_are_those_of_the_axes():
 def test_expected_rates_are_near_what_is_counted():
     for name in ("four", "four on a ring"):
         scene = SCENES[name]
-        duration = counting.replica_duration(scene)
-        sums, _ = counting.run_blocks(scene, scene.events, 8, 0, 2, duration)
-        for event, rate in many.expected_rates(scene).items():
+        duration = runs.replica_duration(scene)
+        sums, _ = runs.run_blocks(scene, scene.events, 8, 0, 2, duration)
+        for event, rate in engine.expected_rates(scene).items():
             seen = sums[EVENTS.index(event)] / duration / 2 / REPLICAS
             assert rate == pytest.approx(seen, rel=0.05), (name, event)
 
@@ -181,7 +181,7 @@ def test_shards_add_up_to_the_point(measured):
     _, scene, points, _ = measured
     quantities = [*points["monte_carlo"][0].quantities]
     run = montecarlo.SamplingRun(scene, quantities, 20_000, 0.02, 4)
-    counting_run = counting.CountingRun(scene, {"disc_collision": 0.02}, 10**6, 3)
+    counting_run = runs.CountingRun(scene, {"disc_collision": 0.02}, 10**6, 3)
     for work in (run, counting_run):
         (part,) = work.parts.values()
         ends = [(0, 1), (1, part.planned)] if part.planned > 1 else [(0, 1)]
@@ -275,7 +275,7 @@ def test_a_trajectory_is_that_of_another_program(name):
     scene = SCENES[name]
     n, ring = scene.discs, scene.width if scene.periodic else 0.0
     box = scene.range_x / 2, scene.range_y / 2, scene.contact_distance, ring
-    duration = many.replica_duration(scene, 16)
+    duration = engine.duration_of(scene, 16)
     for state in starts.states(scene, 20, 11).T:
         frame = td.trajectory(scene, start=state, duration=1.1 * duration)
         parts = [np.array(part) for part in state.reshape(4, n)]
@@ -407,7 +407,7 @@ def test_intervals_have_a_result_a_table_and_a_figure(name, tmp_path):
 @pytest.mark.parametrize("name", ["three", "four"])
 def test_the_mean_interval_is_compared_where_it_is_known(name):
     scene, box = SCENES[name], Box.of(SCENES[name])
-    point = intervals.hop_intervals(scene, "vertical_hop", 10**5, 6)
+    point = runs.hop_intervals(scene, "vertical_hop", 10**5, 6)
     theory = Theory.rows(box, [scene.radius])
     (row,) = (
         row

@@ -10,7 +10,7 @@ from scipy.special import ndtri, stdtr
 
 import twodiscs as td
 from twodiscs.comparison.scene_tables import HopHistogram, MeanTimes
-from twodiscs.dynamics.many import lockstep as many
+from twodiscs.dynamics.many import engine
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.theory.exact import replicas_needed
@@ -96,8 +96,8 @@ DENSE = [
 
 @pytest.mark.parametrize(("scene", "seed"), DENSE)
 def test_rates_that_insertions_do_not_see_are_guessed(scene, seed):
-    assert 0 < many.expected_event_rate(scene) < math.inf
-    assert many.expected_rates(scene)["disc_collision"] > 0
+    assert 0 < engine.expected_event_rate(scene) < math.inf
+    assert engine.expected_rates(scene)["disc_collision"] > 0
 
 
 @pytest.mark.slow

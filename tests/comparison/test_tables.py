@@ -10,9 +10,9 @@ import pytest
 from made import described_table
 
 from twodiscs.comparison import load, scene_tables
+from twodiscs.comparison.load import plugin
 from twodiscs.comparison.scene_tables import SCENE_TABLES, Check, Cost, Theory
 from twodiscs.comparison.table import RADIUS, TEXT, TIME, Column, Table, Z
-from twodiscs.model.plugins import plugin
 
 EVERY_TABLE = plugin("tables")
 

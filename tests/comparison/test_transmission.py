@@ -11,7 +11,7 @@ from twodiscs.comparison import transmission
 from twodiscs.comparison.scores import student_deviate
 from twodiscs.dynamics.two.passages import HOPS_OF_BLOCK, LARGEST, SUMS, cluster_sizes, hop_sums
 from twodiscs.points.estimates import Estimate
-from twodiscs.sampling.blocks import rounds
+from twodiscs.sampling import rounds
 
 
 def test_clusters_are_weighed_by_their_sizes():

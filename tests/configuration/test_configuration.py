@@ -9,10 +9,9 @@ from pathlib import Path
 import pytest
 from snakemake.utils import update_config
 
-from twodiscs.model.box import Box
+from twodiscs.model.box import Box, stream_seed
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import AXIS, EVENTS, HOPS
-from twodiscs.model.radii import stream_seed
 from twodiscs.model.scene import Scene
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration import load, scene, schema
@@ -371,9 +370,9 @@ def test_a_histogram_next_to_a_threshold_is_taken_if_it_ends():
 
 
 def test_the_fewest_intervals_are_a_block():
-    from twodiscs.dynamics import intervals
+    from twodiscs.dynamics import runs
 
-    assert scene.LEAST_INTERVALS == intervals.CHAINS * intervals.RETURNS
+    assert scene.LEAST_INTERVALS == runs.CHAINS * runs.RETURNS
 
 
 def test_radii_too_close_to_the_largest_are_refused_for_dynamics_alone():

@@ -1,7 +1,8 @@
 """How tests of the ensemble decide that it does not have the exact rates."""
 
-from twodiscs.dynamics import counting
-from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
+from twodiscs.dynamics import runs
+from twodiscs.dynamics.ensemble import REPLICAS
+from twodiscs.dynamics.runs import relative_errors
 from twodiscs.model.events import EVENTS
 from twodiscs.theory.exact import mean_times
 
@@ -11,8 +12,8 @@ def check_rates(scene, seed, blocks, duration=None):
 
     This holds for events with a thousand expected counts; impossible events have no count.
     """
-    duration = duration or counting.replica_duration(scene)
-    sums, products = counting.run_blocks(scene, EVENTS, seed, 0, blocks, duration)
+    duration = duration or runs.replica_duration(scene)
+    sums, products = runs.run_blocks(scene, EVENTS, seed, 0, blocks, duration)
     errors = relative_errors(sums, products, blocks * REPLICAS)
     for event, total, error in zip(EVENTS, sums, errors, strict=True):
         time = mean_times(scene)[event]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from twodiscs.comparison.scene_tables import MeanTimes, Theory
-from twodiscs.dynamics import counting
+from twodiscs.dynamics import runs
 from twodiscs.model.box import Box
 from twodiscs.model.events import SHELLS
 from twodiscs.model.scene import Scene
@@ -39,7 +39,7 @@ def test_binomial_intervals_cover_volume_and_areas():
 
 def test_the_shown_interval_is_the_one_whose_coverage_is_measured():
     """The estimate ± stderr of a table comes from the same sums by the same function."""
-    point = counting.count_events(BOX.scene(0.24), {"right_wall": 0.02}, 10**7, 1)
+    point = runs.count_events(BOX.scene(0.24), {"right_wall": 0.02}, 10**7, 1)
     count, squares = point.counts["right_wall"], point.products["right_wall*right_wall"]
     replicas, duration = point.replicas, 4 * point.duration
     estimate = point.estimate("right_wall", copies=4)
@@ -71,7 +71,7 @@ def test_bursts_of_collisions_have_no_error_bar():
     """
     wrong, bars = 0, 0
     for seed in range(40):
-        point = counting.count_events(BURSTS, {"disc_collision": 1e-3}, 10**6, seed)
+        point = runs.count_events(BURSTS, {"disc_collision": 1e-3}, 10**6, seed)
         row = row_of(BURSTS, point)
         bars += row["stderr"] is not None
         wrong += row["stderr"] is not None and abs(row["z"]) > 5
@@ -83,7 +83,7 @@ def test_rough_discs_with_an_error_bar_are_covered(radius):
     """Mean square deviate within five sigma of 1, of those that have an error bar."""
     scene, z = Scene(1.0, 1.0, radius, moment_of_inertia=0.9), []
     for seed in range(20):
-        point = counting.count_events(scene, {"disc_collision": 1e-3}, 10**6, seed)
+        point = runs.count_events(scene, {"disc_collision": 1e-3}, 10**6, seed)
         row = row_of(scene, point)
         z += [row["z"]] if row["stderr"] else []
     assert len(z) >= 15

@@ -15,8 +15,7 @@ import math
 import numpy as np
 import pytest
 
-from twodiscs.dynamics.many import kernels
-from twodiscs.dynamics.many import lockstep as many
+from twodiscs.dynamics.many import engine
 from twodiscs.model.events import SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.theory import channel
@@ -49,8 +48,8 @@ def forces(discs, width, height, events, seed, periodic="", replicas=64):
     # A scene needs a unit of length in which a volume to the power N is a double.
     size = math.sqrt(width * height)
     scene = Scene(width / size, height / size, 0.5 / size, discs=discs, periodic=periodic)
-    duration = many.replica_duration(scene, events / replicas)
-    sums, products = kernels.run_blocks(scene, seed, 0, 1, duration, replicas=replicas, hops=False)
+    duration = engine.duration_of(scene, events / replicas)
+    sums, products = engine.run_classes(scene, seed, 0, 1, duration, replicas=replicas, hops=False)
     walls = [[*SHELLS].index(wall) for wall in ("right_wall", "top_wall")]
     mean = sums[walls] / replicas
     second = np.triu(products) + np.triu(products, 1).T
@@ -141,8 +140,8 @@ def test_pressure_of_64_128_and_256_discs_in_a_box(packing):
 def test_rates_of_256_discs_in_a_channel_are_exact():
     """By the transfer operator: five sigma on each class."""
     scene, replicas = Scene(130.0, 0.6, 0.18, discs=256), 32
-    duration = many.replica_duration(scene, 1e6 / replicas)
-    sums, products = kernels.run_blocks(scene, 4, 0, 1, duration, replicas=replicas, hops=False)
+    duration = engine.duration_of(scene, 1e6 / replicas)
+    sums, products = engine.run_classes(scene, 4, 0, 1, duration, replicas=replicas, hops=False)
     found = sums / replicas / duration
     errors = np.sqrt((np.diag(products) / replicas - (sums / replicas) ** 2) / (replicas - 1))
     for event, rate in rates(scene, channel.volume_and_areas(scene, hops=False)).items():

@@ -16,8 +16,8 @@ from sampling.uniformity import assert_uniform
 from scipy.special import betainc
 
 import twodiscs as td
-from twodiscs.dynamics import counting, trajectory
-from twodiscs.dynamics.kicks import open_kicks
+from twodiscs.dynamics import runs, trajectory
+from twodiscs.dynamics.ensemble import open_kicks
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.two.follow import kicked, new_kicks, new_rows, put_state
 from twodiscs.model.checks import InputError
@@ -142,7 +142,7 @@ def test_rare_hops_have_their_exact_rate():
     """In a strip, with kicks before and after a start: none, one or several hops."""
     for rate in (3.0, 100.0):
         scene, hop = Scene(1.5, 1.0, 0.2495, friction=rate), "horizontal_hop"
-        point = counting.count_events(scene, {hop: 0.02}, 10**8, 7)
+        point = runs.count_events(scene, {hop: 0.02}, 10**8, 7)
         found = point.in_strip(hop).estimate()
         assert abs(found.value - exact.mean_times(scene)[hop]) <= 5 * found.stderr
         assert found.relative_stderr < 0.025
@@ -161,7 +161,7 @@ def test_bits_do_not_depend_on_shards_or_lanes(scene):
     scene = replace(scene, friction=2.0)
 
     def counts(first, stop, lanes=64):
-        return counting.run_blocks(scene, EVENTS, 3, first, stop, 8.0, replicas=100, lanes=lanes)
+        return runs.run_blocks(scene, EVENTS, 3, first, stop, 8.0, replicas=100, lanes=lanes)
 
     whole, halves = counts(0, 4), [counts(0, 1), counts(1, 4)]
     for total, *shards, other in zip(whole, *halves, counts(0, 4, 7), strict=True):
@@ -199,7 +199,7 @@ def test_a_trajectory_has_the_kicks_of_the_ensemble(scene):
     start = tuple(map(float, states(scene, 1, 3)[: len(components(scene)), 0]))
     rows = list(trajectory.events_of(scene, start, time, seed=3))
     names = Counter(row[1] for row in rows)
-    sums, _ = counting.run_blocks(scene, EVENTS, 3, 0, 1, time, replicas=1, lanes=1)
+    sums, _ = runs.run_blocks(scene, EVENTS, 3, 0, 1, time, replicas=1, lanes=1)
     counts = dict(zip(EVENTS, sums.tolist(), strict=True))
     for event in {*HOPS, "disc_collision"} & {*scene.events}:
         assert counts[event] == names[event]

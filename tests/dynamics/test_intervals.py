@@ -7,13 +7,13 @@ import pytest
 from effect_scenes import SCENES
 from factory import through_json
 
-from twodiscs.dynamics import intervals, trajectory
-from twodiscs.dynamics.many import lockstep as many
+from twodiscs.dynamics import runs, trajectory
+from twodiscs.dynamics.many import engine
 from twodiscs.dynamics.two import returns
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.points.intervals import GROWTH
-from twodiscs.sampling.blocks import rounds
+from twodiscs.sampling import rounds
 from twodiscs.sampling.many import initial, insertions
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import density_at_zero
@@ -23,7 +23,7 @@ PAPER = Scene(1.5, 1.0, 0.2)
 
 
 def check_mean(scene, event, number):
-    found = intervals.hop_intervals(scene, event, number, 9)
+    found = runs.hop_intervals(scene, event, number, 9)
     assert abs(found.mean - mean_times(scene)[event]) <= 5 * found.stderr
     assert sum(found.counts) + found.overflow == found.intervals >= number
     assert math.frexp(found.bin_width)[0] == 0.5  # a power of two
@@ -45,7 +45,7 @@ def test_horizontal_hops_in_a_field_have_the_exact_mean():
 def test_hop_intervals_have_the_exact_density_at_zero(event, side):
     """p(0⁺) = 3√2 / (16 (side − 2r))."""
     scene = PAPER.with_radius(0.1)
-    found = intervals.hop_intervals(scene, event, 8_000_000, 10)
+    found = runs.hop_intervals(scene, event, 8_000_000, 10)
     width, n = found.bin_width, found.intervals
     counts, squares = np.array(found.counts[:2]), np.array(found.squares[:2])
     error = np.sqrt(squares - counts**2 / found.chains) / (n * width)
@@ -71,7 +71,7 @@ def test_hop_chains_do_not_depend_on_lanes():
 
 def test_squares_are_those_of_the_counts_of_each_chain():
     """A chain at a time, its counts are known; in wide bins they are sums over those in others."""
-    edges, found, going = np.array(intervals.wide_edges(64)), [], np.ones(1, np.bool_)
+    edges, found, going = np.array(runs.wide_edges(64)), [], np.ones(1, np.bool_)
     wide = np.full(65, 65 + edges.size)
     wide[: edges[-1]] = 65 + np.searchsorted(edges, np.arange(edges[-1]), side="right") - 1
     for first, stop in (*((i, i + 1) for i in range(8)), (0, 8)):
@@ -88,16 +88,16 @@ def test_squares_are_those_of_the_counts_of_each_chain():
 
 
 def test_wide_bins_widen():
-    edges = intervals.wide_edges()
+    edges = runs.wide_edges()
     assert edges[:14] == list(range(14))
     growth = np.diff(edges) / np.maximum(edges[:-1], 1)
     assert (growth >= GROWTH).all()
-    assert edges[-1] <= intervals.BINS < (1 + GROWTH) * edges[-1]
+    assert edges[-1] <= runs.BINS < (1 + GROWTH) * edges[-1]
 
 
 def test_a_blocked_hop_has_no_intervals():
     with pytest.raises(ValueError, match="blocked"):
-        intervals.hop_intervals(PAPER.with_radius(0.3), "horizontal_hop", 1, 1)
+        runs.hop_intervals(PAPER.with_radius(0.3), "horizontal_hop", 1, 1)
 
 
 # More than two discs -----------------------------------------------------------------------------
@@ -122,7 +122,7 @@ MANY = {
 def test_intervals_of_many_have_the_mean_of_theory_or_monte_carlo(name):
     """Five sigma: the first interval of a replica, or one cut off at an end, would show."""
     scene, event = MANY[name]
-    found = intervals.hop_intervals(scene, event, 2_000_000, 4)
+    found = runs.hop_intervals(scene, event, 2_000_000, 4)
     mean, error = mean_times(scene)[event], 0.0
     if mean is None:
         known, spread = (rates(scene, part) for part in insertions.sample(scene, 10**6, 5))
@@ -139,8 +139,8 @@ def test_intervals_of_many_are_those_of_trajectories(name):
     replicas, window, width = 5, 16.0, 0.125
     wide, sums = np.full(65, 65), np.zeros((3, 66), np.int64)
     going = np.ones(1, np.bool_)
-    times, numbers = many.run_intervals(
-        scene, event, 7, 3, 4, replicas, window, (width, wide), sums, going
+    times, numbers = engine.record_within(
+        window, scene, event, 7, 3, 4, replicas, (width, wide), sums, going
     )
     due = np.zeros((3, 66), np.int64)
     for k, state in enumerate(initial.states(scene, replicas, 7, 3).T):
@@ -157,9 +157,9 @@ def test_intervals_of_many_are_those_of_trajectories(name):
 def test_errors_of_intervals_of_many_are_those_of_repetitions():
     """The spread of 60 estimates over the mean error, of the mean and in bins: five sigma."""
     scene, event = MANY["three"]
-    points = [intervals.hop_intervals(scene, event, 1, seed) for seed in range(60)]
+    points = [runs.hop_intervals(scene, event, 1, seed) for seed in range(60)]
     bins = [[*point.bins()] for point in points]
-    wide = intervals.BINS  # from there on bins are wide
+    wide = runs.BINS  # from there on bins are wide
     for k in (0, 1, 10, wide, wide + 15, wide + 19):
         densities = [some[k].density.value for some in bins]
         errors = np.array([some[k].density.stderr for some in bins])
@@ -171,7 +171,7 @@ def test_errors_of_intervals_of_many_are_those_of_repetitions():
 
 
 def test_intervals_of_many_do_not_depend_on_who_draws_them():
-    run = intervals.IntervalRun(*MANY["three"], 150_000, 3)
+    run = runs.IntervalRun(*MANY["three"], 150_000, 3)
     (part,) = run.parts.values()
     assert part.planned == 3
     pieces = through_json({ends: part.work(*ends) for ends in ((0, 1), (1, 3))})
@@ -181,8 +181,8 @@ def test_intervals_of_many_do_not_depend_on_who_draws_them():
 def test_what_is_not_known_of_many_is_refused():
     scene = Scene(1.5, 1.0, 0.13, discs=16)
     with pytest.raises(ValueError, match="is so large for 16 discs that the time between"):
-        intervals.hop_intervals(scene, "vertical_hop", 1, 1)
+        runs.hop_intervals(scene, "vertical_hop", 1, 1)
     with pytest.raises(ValueError, match="blocked"):
-        intervals.hop_intervals(MANY["four in a channel"][0], "horizontal_hop", 1, 1)
+        runs.hop_intervals(MANY["four in a channel"][0], "horizontal_hop", 1, 1)
     with pytest.raises(ValueError, match="budget must allow for 65536 intervals"):
-        intervals.hop_intervals(*MANY["three"], 1, 1, budget=1000)
+        runs.hop_intervals(*MANY["three"], 1, 1, budget=1000)

@@ -12,7 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from twodiscs.dynamics import counting, trajectory
+from twodiscs.dynamics import runs, trajectory
 from twodiscs.dynamics.law import (
     DISC,
     END_OF_TIME,
@@ -139,7 +139,7 @@ def test_counts_do_not_depend_on_shards_or_lanes(name):
     scene = SCENES[name]
 
     def counts(first, stop, lanes=64):
-        return counting.run_blocks(scene, EVENTS, 3, first, stop, 8.0, replicas=100, lanes=lanes)
+        return runs.run_blocks(scene, EVENTS, 3, first, stop, 8.0, replicas=100, lanes=lanes)
 
     whole = counts(0, 4)
     halves = [counts(0, 1), counts(1, 4)]
@@ -165,7 +165,7 @@ def test_a_trajectory_tells_the_same_events_as_the_ensemble(name):
             for disc in discs
         )
     seen["any_wall"] = sum(n for name, n in names.items() if name.startswith("wall"))
-    sums, _ = counting.run_blocks(scene, EVENTS, 3, 0, 1, 64.0, replicas=1, lanes=1)
+    sums, _ = runs.run_blocks(scene, EVENTS, 3, 0, 1, 64.0, replicas=1, lanes=1)
     counts = dict(zip(EVENTS, sums.tolist(), strict=True))
     assert {event: counts[event] for event in scene.events} == {
         event: seen[event] for event in scene.events

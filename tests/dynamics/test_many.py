@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 import scalar_many
 
-from twodiscs.dynamics import counting
-from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
-from twodiscs.dynamics.many import kernels
+from twodiscs.dynamics import runs
+from twodiscs.dynamics.ensemble import REPLICAS
+from twodiscs.dynamics.many import engine
 from twodiscs.dynamics.many import lockstep as many
+from twodiscs.dynamics.runs import relative_errors
 from twodiscs.model.events import AXIS, EVENTS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial, insertions
@@ -22,8 +23,8 @@ from twodiscs.theory.virial import rates, virial_sum, virial_weights
 
 def counted(scene, blocks, seed=1, events=None):
     """Return ({class: rate}, {class: standard error}, rates for the virial theorem by replica)."""
-    duration = many.replica_duration(scene, events)
-    sums, products = kernels.run_blocks(scene, seed, 0, blocks, duration)
+    duration = engine.duration_of(scene, events)
+    sums, products = engine.run_classes(scene, seed, 0, blocks, duration)
     replicas = blocks * REPLICAS
     found = sums / replicas / duration
     errors = found * np.where(sums > 0, relative_errors(sums, products, replicas), 0.0)
@@ -130,9 +131,9 @@ def test_another_program_has_the_same_rates(name):
 def test_two_discs_are_those_of_the_engine_of_two(radius):
     """From its states, for its time: the same law gives the same events, replica for replica."""
     scene, scene = Scene(1.5, 1.0, radius), Scene(1.5, 1.0, radius, discs=2)
-    duration = counting.replica_duration(scene)
+    duration = runs.replica_duration(scene)
     found, errors, _ = counted(scene, 8, seed=3)
-    sums, products = counting.run_blocks(scene, EVENTS, 4, 0, 8, duration)
+    sums, products = runs.run_blocks(scene, EVENTS, 4, 0, 8, duration)
     replicas = 8 * REPLICAS
     scale = sums / replicas / duration
     spread = scale * np.where(sums > 0, relative_errors(sums, products, replicas), 0.0)
@@ -150,7 +151,7 @@ def test_counts_of_events_are_those_of_their_classes():
     of_axis = {"x": columns["right_wall"], "y": columns["top_wall"]}
     columns |= {wall: of_axis[AXIS[wall]] for wall in WALLS}
     by_event = np.array([columns[event] for event in EVENTS]).T
-    sums, products = many.of_events(by_class.sum(axis=0), np.triu(by_class.T @ by_class))
+    sums, products = engine.of_events(by_class.sum(axis=0), np.triu(by_class.T @ by_class))
     assert np.array_equal(sums, by_event.sum(axis=0))
     assert np.array_equal(products, np.triu(by_event.T @ by_event))
 
@@ -184,7 +185,7 @@ def test_orders_are_those_of_the_ergodic_components(scene):
 
 BITS = """
 import hashlib
-from twodiscs.dynamics.many import kernels
+from twodiscs.dynamics.many import engine
 from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial, insertions
@@ -192,7 +193,7 @@ scenes = [Scene(1.5, 1.0, 0.15, discs=3), Scene(2.3, 0.6, 0.18, discs=8)]
 scenes += [Scene(1.5, 1.0, 0.2, discs=6), Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.3)]
 found = hashlib.sha256()
 for scene in [*scenes, Scene(1.5, 1.0, 0.15, discs=4, periodic="x")]:
-    counts = kernels.run_blocks(scene, 5, 0, 1, 16.0, replicas=64)
+    counts = engine.run_classes(scene, 5, 0, 1, 16.0, replicas=64)
     for part in (*counts, *insertions.run_blocks(scene, 5, 0, 1), initial.states(scene, 50, 3)):
         found.update(part.tobytes())
 print(found.hexdigest())
@@ -215,9 +216,9 @@ def test_the_bits_do_not_depend_on_the_processor(tmp_path):
 
 def test_lanes_and_shards_do_not_matter():
     for scene in (EXACT["three, rough"], EXACT["four in a channel"], OTHERS["five, dense"]):
-        whole = kernels.run_blocks(scene, 7, 0, 3, 8.0, replicas=100)
-        other = kernels.run_blocks(scene, 7, 0, 3, 8.0, replicas=100, lanes=5)
-        parts = [kernels.run_blocks(scene, 7, a, b, 8.0, replicas=100) for a, b in ((0, 1), (1, 3))]
+        whole = engine.run_classes(scene, 7, 0, 3, 8.0, replicas=100)
+        other = engine.run_classes(scene, 7, 0, 3, 8.0, replicas=100, lanes=5)
+        parts = [engine.run_classes(scene, 7, a, b, 8.0, replicas=100) for a, b in ((0, 1), (1, 3))]
         for one, same, *pieces in zip(whole, other, *parts, strict=True):
             assert np.array_equal(one, same)
             assert np.array_equal(one, sum(pieces))
@@ -232,5 +233,5 @@ def test_states_of_one_block_at_a_time(monkeypatch):
         return count(states, *given)
 
     monkeypatch.setattr(many, "count_events", counting_events)
-    kernels.run_blocks(EXACT["three, rough"], 7, 0, 3, 8.0, replicas=100)
+    engine.run_classes(EXACT["three, rough"], 7, 0, 3, 8.0, replicas=100)
     assert sizes == [100, 100, 100]

@@ -6,11 +6,11 @@ import math
 import numpy as np
 import pytest
 
-from twodiscs.dynamics.ensemble import relative_errors
 from twodiscs.dynamics.many import cells as many_cells
-from twodiscs.dynamics.many import kernels, path
+from twodiscs.dynamics.many import engine, path
 from twodiscs.dynamics.many import lockstep as many
-from twodiscs.dynamics.many.experiments import mean_interval
+from twodiscs.dynamics.many.engine import mean_interval
+from twodiscs.dynamics.runs import relative_errors
 from twodiscs.model.events import SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial
@@ -21,7 +21,7 @@ from twodiscs.theory.virial import rates, virial_weights
 
 def counts_of(scene, seed, replicas, events, epochs=7.3):
     """Return (sums, products, duration) of ``many_cells``, whose times begin anew some times."""
-    duration = many.replica_duration(scene, events)
+    duration = engine.duration_of(scene, events)
     hops_x = None if scene.periodic else True
     sums, products = many_cells.count_events(
         initial.states(scene, replicas, seed), np.uint64(seed), 0, duration, duration / epochs,
@@ -98,7 +98,7 @@ def test_both_kernels_have_the_same_rates(scene):
     """Five sigma on every class, beyond the few events that are the same ones."""
     replicas = 1024
     found, errors = means(*counts_of(scene, 2, replicas, 1024), replicas)
-    duration = many.replica_duration(scene, 1024)
+    duration = engine.duration_of(scene, 1024)
     hops_x = None if scene.periodic else True
     sums, products = many.count_events(
         initial.states(scene, replicas, 3), np.uint64(3), 0, 64, duration, many.law_of(scene),
@@ -111,7 +111,7 @@ def test_both_kernels_have_the_same_rates(scene):
 @pytest.mark.parametrize("scene", [*BORDER[:4], *SHORT, ROUGH_TOO], ids=repr)
 def test_a_few_events_are_the_same_ones(scene):
     """From the same states, before roundings have grown: the same counts, every one of them."""
-    replicas, duration = 256, many.replica_duration(scene, 2 * scene.discs)
+    replicas, duration = 256, engine.duration_of(scene, 2 * scene.discs)
     hops_x = None if scene.periodic else True
     given, law = (initial.states(scene, replicas, 4), np.uint64(4), 0), many.law_of(scene)
     one = many_cells.count_events(
@@ -129,16 +129,16 @@ def test_which_kernel_runs():
     assert initial.large_grid(small) is None
     assert initial.large_grid(large) is not None
     assert [grid_of(scene).x.size for scene in SHORT] == [4, 3]
-    sums, _ = kernels.run_blocks(large, 5, 0, 1, 4.0, replicas=16)
-    alone, _ = kernels.run_blocks(large, 5, 0, 1, 4.0, replicas=16, hops=False)
+    sums, _ = engine.run_classes(large, 5, 0, 1, 4.0, replicas=16)
+    alone, _ = engine.run_classes(large, 5, 0, 1, 4.0, replicas=16, hops=False)
     assert np.array_equal(sums[2:], alone[2:])
     assert not alone[:2].any()
 
 
 def test_shards_add_up():
     scene = BORDER[0]
-    whole = kernels.run_blocks(scene, 7, 0, 3, 8.0, replicas=20)
-    parts = [kernels.run_blocks(scene, 7, a, b, 8.0, replicas=20) for a, b in ((0, 1), (1, 3))]
+    whole = engine.run_classes(scene, 7, 0, 3, 8.0, replicas=20)
+    parts = [engine.run_classes(scene, 7, a, b, 8.0, replicas=20) for a, b in ((0, 1), (1, 3))]
     for one, *pieces in zip(whole, *parts, strict=True):
         assert np.array_equal(one, sum(pieces))
 
@@ -147,10 +147,10 @@ def test_the_virial_theorem_holds_for_many_discs():
     """Five sigma, at a packing fraction of .5 in a box."""
     side = math.sqrt(64 * math.pi * 0.01 / 0.5)
     scene, replicas = Scene(side, side, 0.1, discs=64), 256
-    sums, products = kernels.run_blocks(
-        scene, 8, 0, 1, many.replica_duration(scene), replicas=replicas
+    sums, products = engine.run_classes(
+        scene, 8, 0, 1, engine.duration_of(scene), replicas=replicas
     )
-    duration = many.replica_duration(scene)
+    duration = engine.duration_of(scene)
     weights = np.array([virial_weights(scene).get(event, 0.0) for event in SHELLS])
     second = np.triu(products) + np.triu(products, 1).T
     covariance = (second / replicas - np.outer(sums, sums) / replicas**2) / replicas / duration**2
@@ -165,15 +165,15 @@ def test_the_virial_theorem_holds_for_many_discs():
 def test_advanced_states_are_those_of_the_other_kernel(scene):
     """After some events of each disc, and there and back again; rounds of a ring as well."""
     start = initial.states(scene, 20, 9)
-    duration = many.replica_duration(scene, 4 * scene.discs)
+    duration = engine.duration_of(scene, 4 * scene.discs)
     states, laps = start.copy(), np.zeros((scene.discs, 20))
-    kernels.advance_scene(scene, states, laps, duration, None)
+    engine.advance_scene(scene, states, laps, duration, None)
     other, rounds = start.copy(), np.zeros((scene.discs, 20))
     many.advance_states(other, rounds, duration, many.law_of(scene), None)
     assert np.array_equal(laps, rounds)
     assert states == pytest.approx(other, abs=1e-7 * scene.width)
     states[2 * scene.discs :] *= -1
-    kernels.advance_scene(scene, states, laps, duration, None)
+    engine.advance_scene(scene, states, laps, duration, None)
     states[2 * scene.discs :] *= -1
     assert states == pytest.approx(start, abs=1e-7 * scene.width)
 
@@ -185,8 +185,8 @@ def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
     if scene.periodic:
         state[3] += 2 * scene.width
     # The rate that is guessed for short rings is far too high.
-    duration = many.replica_duration(scene, (10 if scene in SHORT else 5) * scene.discs)
-    monkeypatch.setattr(kernels, "ENTRIES", 50)
+    duration = engine.duration_of(scene, (10 if scene in SHORT else 5) * scene.discs)
+    monkeypatch.setattr(engine, "ENTRIES", 50)
     found = [*path.events_of(scene, state, duration)]
     monkeypatch.setattr(path, "large_grid", lambda scene: None)
     other = [*path.events_of(scene, state, duration)]
@@ -210,12 +210,12 @@ def test_intervals_are_those_of_the_other_kernel(scene, hop, monkeypatch):
     """Those of each chain, from the same states, before roundings have grown."""
     mean = mean_interval(scene, hop)
     bins = mean / 16, np.arange(65) // 8 + 65
-    given = scene, hop, 3, 2, 4, 20, 8 * mean, bins
+    given = 8 * mean, scene, hop, 3, 2, 4, 20, bins
     sums, other = np.zeros((2, 3, 74), np.int64)
-    monkeypatch.setattr(kernels, "ENTRIES", 50)
-    found = kernels.record_intervals(*given, sums, np.ones(1, np.bool_))
-    monkeypatch.setattr(kernels, "large_grid", lambda scene: None)
-    same = kernels.record_intervals(*given, other, np.ones(1, np.bool_))
+    monkeypatch.setattr(engine, "ENTRIES", 50)
+    found = engine.record_within(*given, sums, np.ones(1, np.bool_))
+    monkeypatch.setattr(engine, "large_grid", lambda scene: None)
+    same = engine.record_within(*given, other, np.ones(1, np.bool_))
     assert found == pytest.approx(same, rel=1e-6)
     assert np.array_equal(found[1], same[1])
     assert found[1].sum() > 20
@@ -249,10 +249,10 @@ def check_conserved(scene, events):
     law, grid, epoch = (
         many.law_of(scene),
         grid_of(scene),
-        many.replica_duration(scene, 64 * scene.discs),
+        engine.duration_of(scene, 64 * scene.discs),
     )
     pieces, laps = 20, np.zeros((n, 1))
-    duration = many.replica_duration(scene, events / pieces)
+    duration = engine.duration_of(scene, events / pieces)
     for _ in range(pieces):
         many_cells.advance_all(states, laps, duration, epoch, law, grid, None)
         x, y, u, v = np.split(states[:, 0], 4)

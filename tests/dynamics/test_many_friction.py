@@ -10,9 +10,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from twodiscs.dynamics.ensemble import relative_errors
-from twodiscs.dynamics.many import kernels, path
-from twodiscs.dynamics.many import lockstep as many
+from twodiscs.dynamics.many import engine, path
+from twodiscs.dynamics.runs import relative_errors
 from twodiscs.model.events import SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial
@@ -28,9 +27,9 @@ RING = Scene(3.0, 1.0, 0.15, discs=3, periodic="x", friction=4.0)
 @pytest.mark.parametrize("scene", [FEW, CHANNEL], ids=["few", "channel"])
 def test_no_mean_time_changes(scene):
     """Kicks come several times in a replica, in both kernels."""
-    duration, replicas = many.replica_duration(scene, 256), 2048
+    duration, replicas = engine.duration_of(scene, 256), 2048
     assert duration * scene.friction > 3
-    sums, products = kernels.run_blocks(scene, 1, 0, 1, duration, replicas=replicas)
+    sums, products = engine.run_classes(scene, 1, 0, 1, duration, replicas=replicas)
     found, relative = sums / replicas / duration, relative_errors(sums, products, replicas)
     for event, rate in rates(scene, n_discs.known_derivatives(scene)).items():
         k = [*SHELLS].index(event)
@@ -68,41 +67,41 @@ def test_a_kick_keeps_places_energy_and_momentum(scene):
 
 def test_both_kernels_count_the_same_events_between_kicks(monkeypatch):
     """Before roundings have grown, and after some kicks."""
-    duration = many.replica_duration(CHANNEL, 160)
+    duration = engine.duration_of(CHANNEL, 160)
     assert duration * CHANNEL.friction > 3
-    one = kernels.run_blocks(CHANNEL, 5, 0, 1, duration, replicas=4)
-    monkeypatch.setattr(kernels, "large_grid", lambda scene: None)
-    other = kernels.run_blocks(CHANNEL, 5, 0, 1, duration, replicas=4)
+    one = engine.run_classes(CHANNEL, 5, 0, 1, duration, replicas=4)
+    monkeypatch.setattr(engine, "large_grid", lambda scene: None)
+    other = engine.run_classes(CHANNEL, 5, 0, 1, duration, replicas=4)
     assert np.array_equal(one[0], other[0])
     assert np.array_equal(one[1], other[1])
 
 
 def test_kicks_belong_to_replicas_not_to_blocks(monkeypatch):
     """Two blocks of four replicas from the same state are one block of eight, in both kernels."""
-    duration = many.replica_duration(CHANNEL, 160)
+    duration = engine.duration_of(CHANNEL, 160)
     state = initial.states(CHANNEL, 1, 1)
-    monkeypatch.setattr(kernels, "states_of", lambda _, number, *__: np.repeat(state, number, 1))
+    monkeypatch.setattr(engine, "states_of", lambda _, number, *__: np.repeat(state, number, 1))
     for _ in range(2):
-        first, _ = kernels.run_blocks(CHANNEL, 5, 0, 1, duration, replicas=4)
-        halves = kernels.run_blocks(CHANNEL, 5, 0, 2, duration, replicas=4)
-        whole = kernels.run_blocks(CHANNEL, 5, 0, 1, duration, replicas=8)
+        first, _ = engine.run_classes(CHANNEL, 5, 0, 1, duration, replicas=4)
+        halves = engine.run_classes(CHANNEL, 5, 0, 2, duration, replicas=4)
+        whole = engine.run_classes(CHANNEL, 5, 0, 1, duration, replicas=8)
         assert np.array_equal(halves[0], whole[0])
         assert np.array_equal(halves[1], whole[1])
         assert not np.array_equal(halves[0], 2 * first)
-        monkeypatch.setattr(kernels, "large_grid", lambda scene: None)
+        monkeypatch.setattr(engine, "large_grid", lambda scene: None)
 
 
 def test_both_kernels_have_the_same_kicks(monkeypatch):
     """Rows and states are the same, before roundings have grown."""
-    duration = many.replica_duration(CHANNEL, 160)
+    duration = engine.duration_of(CHANNEL, 160)
     start = initial.states(CHANNEL, 4, 1)
     found = {}
     for name in ("cells", "all pairs"):
         states, laps = start.copy(), np.zeros((20, 4))
-        kernels.advance_scene(CHANNEL, states, laps, duration, kernels.kicks_of(CHANNEL, 4, 5))
+        engine.advance_scene(CHANNEL, states, laps, duration, engine.kicks_of(CHANNEL, 4, 5))
         rows = [*path.events_of(CHANNEL, start[:, 0], duration, 5)]
         found[name] = states, [row[1:4] for row in rows], rows[-1][-1]
-        monkeypatch.setattr(kernels, "large_grid", lambda scene: None)
+        monkeypatch.setattr(engine, "large_grid", lambda scene: None)
         monkeypatch.setattr(path, "large_grid", lambda scene: None)
     one, other = found["cells"], found["all pairs"]
     assert one[0] == pytest.approx(other[0], abs=1e-7)

@@ -13,8 +13,7 @@ import pytest
 
 import twodiscs as td
 from twodiscs.dynamics import trajectory
-from twodiscs.dynamics.many import kernels, path
-from twodiscs.dynamics.many import lockstep as many
+from twodiscs.dynamics.many import engine, path
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial
 from twodiscs.theory.exact import replicas_needed
@@ -95,11 +94,11 @@ def test_two_discs_are_those_of_the_engine_of_two(periodic):
 def test_reversed_discs_come_back(scene):
     """Velocities and spins are reversed after some events of each disc, in both kernels."""
     start, laps = initial.states(scene, 20, 3), np.zeros((scene.discs, 20))
-    states, duration = start.copy(), many.replica_duration(scene, 4 * scene.discs)
-    kernels.advance_scene(scene, states, laps, duration, None)
+    states, duration = start.copy(), engine.duration_of(scene, 4 * scene.discs)
+    engine.advance_scene(scene, states, laps, duration, None)
     assert np.abs(states - start).max() > 0.1
     states[2 * scene.discs :] *= -1
-    kernels.advance_scene(scene, states, laps, duration, None)
+    engine.advance_scene(scene, states, laps, duration, None)
     states[2 * scene.discs :] *= -1
     assert states == pytest.approx(start, abs=1e-7 * scene.width)
 
@@ -120,8 +119,8 @@ def test_velocities_and_spins_are_on_a_sphere(scene, friction):
     states, laps = initial.states(scene, replicas, 7), np.zeros((n, replicas))
     for time in (0.0, 3.0):
         if time:
-            kicks = kernels.kicks_of(scene, replicas, 7)
-            kernels.advance_scene(scene, states, laps, time, kicks)
+            kicks = engine.kicks_of(scene, replicas, 7)
+            engine.advance_scene(scene, states, laps, time, kicks)
         u, v, s = states.reshape(5, n, -1)[2:]
         s = s * math.sqrt(scene.moment_of_inertia)
         assert (u**2 + v**2 + s**2).sum(axis=0) == pytest.approx(1, abs=1e-12)
@@ -140,7 +139,7 @@ def test_rough_walls_take_the_momentum_along_a_ring():
     n, replicas = RING.discs, 512
     states, laps = initial.states(RING, replicas, 4), np.zeros((n, replicas))
     before = states[2 * n : 3 * n].sum(axis=0)
-    kernels.advance_scene(RING, states, laps, 64.0, None)
+    engine.advance_scene(RING, states, laps, 64.0, None)
     after = states[2 * n : 3 * n].sum(axis=0)
     five(after, 0.0)
     five(before * after, 0.0)
@@ -151,7 +150,7 @@ def test_rough_walls_take_the_momentum_along_a_ring():
 def test_energy_does_not_drift():
     """Over a million events of 20 discs on a ring."""
     states, laps = initial.states(RING, 1, 5), np.zeros((RING.discs, 1))
-    kernels.advance_scene(RING, states, laps, many.replica_duration(RING, 1e6), None)
+    engine.advance_scene(RING, states, laps, engine.duration_of(RING, 1e6), None)
     energy = np.sum(states[40:80] ** 2) + RING.moment_of_inertia * np.sum(states[80:] ** 2)
     assert abs(energy - 1) < 1e-11
 

@@ -9,7 +9,7 @@ from factory import all_reached
 from mpmath import mp
 
 from twodiscs.comparison import scores
-from twodiscs.dynamics import counting
+from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.two import strip
 from twodiscs.model.events import AXIS, HOPS
@@ -241,21 +241,21 @@ def test_only_rare_hops_of_a_neck_have_strips():
 @pytest.mark.parametrize("hop", HOPS)
 def test_the_target_is_reached_at_any_distance_from_a_threshold(hop, distance):
     scene = PAPER.with_radius((0.375 if hop == "vertical_hop" else 0.25) * (1 - distance))
-    point = counting.count_events(scene, {hop: 0.01}, 10**8, 1)
+    point = runs.count_events(scene, {hop: 0.01}, 10**8, 1)
     found = point.in_strip(hop)
     assert all_reached(point)
     assert found.events < 100 * found.replicas
     time = point.estimate(hop)
     assert time.relative_stderr <= 0.01
     assert abs(time.value / exact.mean_times(scene)[hop] - 1) < 5 * 0.01
-    assert point == counting.count_events(scene, {hop: 0.01}, 10**8, 1)
+    assert point == runs.count_events(scene, {hop: 0.01}, 10**8, 1)
 
 
 def test_a_budget_is_shared_and_spent():
     scene, hop = PAPER.with_radius(0.24), "horizontal_hop"
-    point = counting.count_events(scene, {hop: 1e-6, "any_wall": 1e-6}, 10**7, 1)
+    point = runs.count_events(scene, {hop: 1e-6, "any_wall": 1e-6}, 10**7, 1)
     assert not all_reached(point)
-    parts = counting.CountingRun(scene, point.target, 10**7, 1).parts
+    parts = runs.CountingRun(scene, point.target, 10**7, 1).parts
     planned = {name: part.planned * part.block_events for name, part in parts.items()}
     of_strip = point.in_strip(hop).events / point.events
     assert of_strip == pytest.approx(planned[hop] / sum(planned.values()), rel=0.2)
@@ -282,7 +282,7 @@ def test_every_rare_hop_has_random_numbers_of_its_own(monkeypatch):
     monkeypatch.setattr(strip, "run_blocks", recorded)
     for radius, root in product((0.2499, 0.24999), (1, 2)):
         target = dict.fromkeys(HOPS, 0.1)
-        run = counting.CountingRun(Scene(1.0, 1.0, radius), target, 10**6, root)
+        run = runs.CountingRun(Scene(1.0, 1.0, radius), target, 10**6, root)
         assert {*HOPS} < {*run.parts}
         for hop in HOPS:
             run.parts[hop].work(0, 1)

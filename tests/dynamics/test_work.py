@@ -8,14 +8,14 @@ from factory import all_reached
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from twodiscs.dynamics import counting, intervals, trajectory
+from twodiscs.dynamics import runs, trajectory
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.two import lockstep, strip
 from twodiscs.model.box import Box
 from twodiscs.model.checks import LONGEST, SHORTEST, InputError
 from twodiscs.model.events import HOPS
 from twodiscs.model.two import LEAST_DISTANCE
-from twodiscs.sampling.blocks import rounds
+from twodiscs.sampling import rounds
 from twodiscs.sampling.prism import fraction_if_accepted, prism_of, propose_anywhere
 from twodiscs.sampling.starts import require_room
 from twodiscs.sampling.streams import open_stream
@@ -63,13 +63,13 @@ def passes(scene, duration):
 @pytest.mark.parametrize("width", [1.0, 1.5])
 def test_too_close_to_the_largest_radius_dynamics_is_refused(width):
     box = Box(width, 1.0)
-    for run in (lambda scene: counting.count_events(scene, {"any_wall": 0.5}, 1, 1),
+    for run in (lambda scene: runs.count_events(scene, {"any_wall": 0.5}, 1, 1),
                 lambda scene: trajectory.trajectory(scene, 1)):  # fmt: skip
         with pytest.raises(InputError, match=r"must not exceed .* for molecular dynamics"):
             run(box.scene(box.largest_radius * (1 - 1e-13)))
     # It holds at the closest radius: five standard errors.
     scene = box.scene(box.largest_radius * (1 - LEAST_DISTANCE))
-    found = counting.count_events(scene, {"disc_collision": 3e-4}, 10**8, 1)
+    found = runs.count_events(scene, {"disc_collision": 3e-4}, 10**8, 1)
     mean = found.counts["disc_collision"] / found.replicas / found.duration
     assert mean == pytest.approx(exact.rate(scene, "disc_collision"), rel=5 * 3e-4)
     # If each disc spans the short side, no digit is lost.
@@ -84,7 +84,7 @@ def test_the_work_of_a_replica_is_bounded(width, height, effects, share):
         require_room(scene)
     except InputError:
         return
-    events, leaves = passes(scene, counting.replica_duration(scene))
+    events, leaves = passes(scene, runs.replica_duration(scene))
     # A duration is rounded to a power of two.
     assert events <= 2**0.5 * lockstep.EVENTS_PER_REPLICA
     assert leaves <= 2**0.5 * lockstep.EVENTS_PER_REPLICA * CROSSINGS_PER_EVENT
@@ -93,7 +93,7 @@ def test_the_work_of_a_replica_is_bounded(width, height, effects, share):
 
 def test_small_discs_on_a_torus_end():
     scene = Box(1.5, 1.0, {"periodic": "xy"}).scene(1e-9)
-    found = counting.count_events(scene, {"disc_collision": 0.001}, 1000, 1)
+    found = runs.count_events(scene, {"disc_collision": 0.001}, 1000, 1)
     _, leaves = passes(scene, found.replicas * found.duration)
     block = lockstep.REPLICAS * lockstep.EVENTS_PER_REPLICA * CROSSINGS_PER_EVENT
     assert leaves <= 2**0.5 * rounds.FIRST_ROUND * block
@@ -106,14 +106,14 @@ def test_histograms_that_exceed_their_budget_are_refused(hop, width, height, sha
     scene = scene_of(width, height, {}, share)
     if scene.is_possible(hop) and exact.events_per_interval(scene, hop) > 1.0:
         with pytest.raises(InputError, match="budget must allow for 65536 intervals"):
-            intervals.hop_intervals(scene, hop, 1, 1, budget=65536)
+            runs.hop_intervals(scene, hop, 1, 1, budget=65536)
 
 
 @pytest.mark.parametrize("effects", [{"field": 1e4}, {"field": 1.0, "depth": 1.0}])
 def test_starts_that_are_too_rare_are_refused(effects):
     box = Box(1.5, 1.0, effects)
     scene = box.scene(box.last_radius * 0.999)
-    for start in (lambda: counting.count_events(scene, {"any_wall": 0.1}, 1000, 1),
+    for start in (lambda: runs.count_events(scene, {"any_wall": 0.1}, 1000, 1),
                   lambda: require_room(scene)):  # fmt: skip
         with pytest.raises(InputError, match="a scene with effects needs"):
             start()
@@ -137,7 +137,7 @@ def test_draws_are_within_the_price_of_a_budget(drawn):
     try:
         scene = scene_of(width, 1.0, effects, share)
         require_room(scene)
-        parts = counting.CountingRun(scene, dict.fromkeys(scene.events, 1e-3), 10**9, 1).parts
+        parts = runs.CountingRun(scene, dict.fromkeys(scene.events, 1e-3), 10**9, 1).parts
     except InputError:
         return
     proposals = 0
@@ -165,7 +165,7 @@ def test_what_is_too_rare_to_be_drawn_is_waited_for_in_vain_and_that_ends(
 ):
     scene = Box(width, height, effects).scene(radius)
     assert strip.rare_hops(scene) == ()
-    point = counting.count_events(scene, dict.fromkeys(HOPS, 0.01), 10**6, 1)
+    point = runs.count_events(scene, dict.fromkeys(HOPS, 0.01), 10**6, 1)
     assert point.counts["horizontal_hop"] == 0
     assert point.events <= 10**6
 

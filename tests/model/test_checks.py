@@ -5,7 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from twodiscs.model.box import Box
+from twodiscs.model.box import Box, stream_seed
 from twodiscs.model.checks import (
     InputError,
     check_ascending,
@@ -16,7 +16,6 @@ from twodiscs.model.checks import (
     check_number,
 )
 from twodiscs.model.effects import ABSENT
-from twodiscs.model.radii import stream_seed
 from twodiscs.model.scene import Scene
 
 

@@ -6,8 +6,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from twodiscs.model.box import Box
-from twodiscs.model.radii import METHODS, even_radii, key, radii, stream_seed
+from twodiscs.model.box import METHODS, Box, even_radii, key, radii, stream_seed
 
 sides = st.floats(-6, 6).map(lambda x: 10**x)
 

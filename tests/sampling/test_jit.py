@@ -154,9 +154,9 @@ def test_kernels_start_without_linear_algebra_which_is_there_for_others():
     script = """
 import sys, numba
 from twodiscs.model.box import Box
-from twodiscs.dynamics import counting
+from twodiscs.dynamics import runs
 scene = Box(1.5, 1.0).scene(0.2)
-counting.run_blocks(scene, ("any_wall",), 1, 0, 0, 1.0)
+runs.run_blocks(scene, ("any_wall",), 1, 0, 0, 1.0)
 print("scipy.linalg" in sys.modules)
 import numpy as np
 import scipy.linalg.cython_blas

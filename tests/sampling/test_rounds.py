@@ -9,13 +9,12 @@ from factory import all_reached, through_json
 from hypothesis import given
 from hypothesis import strategies as st
 
-from twodiscs.dynamics import counting, intervals
+from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.points.base import reached
-from twodiscs.sampling import montecarlo
-from twodiscs.sampling.blocks import rounds
+from twodiscs.sampling import montecarlo, rounds
 
 PAPER = Box(1.5, 1.0)
 UNEQUAL = Box(1.5, 1.0, {"radius_ratio": 0.6, "mass_ratio": 3.0})
@@ -177,7 +176,7 @@ UNEQUAL_TOO = pytest.param(UNEQUAL, 0.15, marks=pytest.mark.slow)
 def test_counts_in_pieces_are_those_of_their_blocks_and_reach_what_is_asked(box, radius):
     """This holds for rare hops, too, which are counted from separate starts."""
     scene = box.scene(radius)
-    run = counting.CountingRun(scene, TARGET, 4 * 10**7, 3)
+    run = runs.CountingRun(scene, TARGET, 4 * 10**7, 3)
     assert {*run.parts} == ({"all", "horizontal_hop"} if box is PAPER else {"all"})
     found = [
         run.point({name: done_in_pieces(one, n) for name, one in run.parts.items()})
@@ -186,7 +185,7 @@ def test_counts_in_pieces_are_those_of_their_blocks_and_reach_what_is_asked(box,
     assert found[0] == found[1]
     blocks = found[0].replicas // REPLICAS
     assert blocks == run.parts["all"].planned
-    sums, _ = counting.run_blocks(scene, [*TARGET], 3, 0, blocks, found[0].duration)
+    sums, _ = runs.run_blocks(scene, [*TARGET], 3, 0, blocks, found[0].duration)
     assert [*found[0].counts.values()] == [sums[EVENTS.index(event)] for event in found[0].counts]
     assert all_reached(found[0])
     for hop, one in found[0].strips.items():
@@ -198,7 +197,7 @@ def test_planned_events_follow_the_errors_asked_for_as_far_as_the_budget_goes(bu
     """Each part has what its own events need; too small a budget shortens all equally."""
     scene = PAPER.scene(0.24)
     coarse, fine = (
-        counting.CountingRun(scene, {"horizontal_hop": error, "any_wall": 0.001}, budget, 1).parts
+        runs.CountingRun(scene, {"horizontal_hop": error, "any_wall": 0.001}, budget, 1).parts
         for error in (2e-3, 1e-3)
     )
     ratio = fine["horizontal_hop"].planned / fine["all"].planned
@@ -223,13 +222,13 @@ def test_samples_in_pieces_are_those_of_one_process(box, radius):
 
 @pytest.mark.parametrize(("box", "radius"), [(PAPER, 0.1), UNEQUAL_TOO])
 def test_intervals_in_pieces_are_those_of_one_process(box, radius):
-    run = intervals.IntervalRun(box.scene(radius), "vertical_hop", 200_000, 5)
+    run = runs.IntervalRun(box.scene(radius), "vertical_hop", 200_000, 5)
     assert run.parts["all"].planned == 4
     found = [run.point({"all": done_in_pieces(run.parts["all"], n)}) for n in (1, 2)]
     assert found[0] == found[1] == run.run()
     # A second method: the sums of the chains in floating point.
-    totals, _ = intervals.recorded(run.scene, run.event, 4, intervals.CHAINS, intervals.RETURNS, 5)
-    means = totals / intervals.RETURNS
+    totals, _ = runs.recorded(run.scene, run.event, 4, runs.CHAINS, runs.RETURNS, 5)
+    means = totals / runs.RETURNS
     assert found[0].mean == pytest.approx(math.fsum(means) / means.size, rel=1e-14)
     error = np.std(means, ddof=1) / math.sqrt(means.size)
     assert found[0].stderr == pytest.approx(error, rel=1e-13)

@@ -8,7 +8,7 @@ import time
 import pytest
 
 from twodiscs.model.checks import InputError
-from twodiscs.sampling.blocks.threads import in_threads
+from twodiscs.sampling.rounds import in_threads
 
 
 @pytest.mark.parametrize("cores", [1, 4])
@@ -55,7 +55,7 @@ ENDING = """
 import contextlib, sys, time
 from numba.core.compiler_lock import global_compiler_lock
 from twodiscs.sampling import jit
-from twodiscs.sampling.blocks.threads import in_threads
+from twodiscs.sampling.rounds import in_threads
 
 def work(seconds, compiling):
     with global_compiler_lock if compiling else contextlib.nullcontext():

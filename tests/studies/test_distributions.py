@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from factory import written
 
-from twodiscs.dynamics import intervals
+from twodiscs.dynamics import runs
 from twodiscs.figures import style
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
@@ -192,7 +192,7 @@ def test_intervals_are_those_of_chains():
     """Shares of intervals beyond some times, from separate starts and from hop to hop."""
     rows = measured(PAPER, "vertical_hop", 5, 2**20)
     mean = rows[0]["reference"]
-    chains = intervals.hop_intervals(PAPER, "vertical_hop", 2**19, 6)
+    chains = runs.hop_intervals(PAPER, "vertical_hop", 2**19, 6)
     hazards = [row for row in rows if row["quantity"] == "hazard"]
     alive = total = chains.intervals
     assert len(hazards) > 20

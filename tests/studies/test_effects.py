@@ -15,9 +15,8 @@ from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.trajectory import follow
 from twodiscs.figures import curves, style
-from twodiscs.model.box import Box
+from twodiscs.model.box import Box, key, stream_seed
 from twodiscs.model.events import EVENTS, WALLS
-from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.sampling.starts import draw_states, start_sampler

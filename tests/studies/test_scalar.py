@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from twodiscs.dynamics import counting, trajectory
+from twodiscs.dynamics import runs, trajectory
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.separations import draw_constants
@@ -20,10 +20,10 @@ def test_the_scalar_engine_counts_the_same(radius):
     Chaos would turn a difference in the last bit into other counts after some tens of events.
     """
     scene = PAPER.with_radius(radius)
-    duration = counting.replica_duration(scene)
+    duration = runs.replica_duration(scene)
     arguments = (duration, scene.contact_distance, draw_constants(scene), (0, 0))
     usual = scalar.count_blocks(np.uint64(3), 0, 1, 1024, *arguments)
-    sums, products = counting.run_blocks(scene, EVENTS, 3, 0, 1, duration)[:2]
+    sums, products = runs.run_blocks(scene, EVENTS, 3, 0, 1, duration)[:2]
     at = [EVENTS.index(event) for event in scalar.COUNTED]
     np.testing.assert_array_equal(usual[0], sums[at])
     np.testing.assert_array_equal(usual[1], products[np.ix_(at, at)])

@@ -6,7 +6,7 @@ import twodiscs.sampling.jit  # noqa: F401 - start saves collections of what is 
 from twodiscs.dynamics.runs import KINDS, run_of
 from twodiscs.model.box import Box
 from twodiscs.points.base import content_of, pieces_of, read_seconds, write_json
-from twodiscs.sampling.blocks.rounds import joined
+from twodiscs.sampling.rounds import joined
 from twodiscs_paper.pipeline.job import start
 
 start(snakemake.log[0])

@@ -148,7 +148,7 @@ class Intervals(Result):
 
 def _events_of_pair(scene):
     """Return the rate of wall hits and collisions that two of the discs have on average."""
-    from twodiscs.dynamics.counting import expected_event_rate
+    from twodiscs.dynamics.runs import expected_event_rate
 
     return expected_event_rate(scene) * 2 / scene.discs
 
@@ -210,7 +210,7 @@ def run_intervals(scene, hop, number, seed, name, cores=1, progress=None, kept=N
             f"intervals have no exact mean, but moment_of_inertia is {scene.moment_of_inertia!r}"
         )
     number, stream = check_count("number", number), seed_of(scene, "intervals", seed, name)
-    from twodiscs.dynamics.intervals import BUDGET, IntervalRun
+    from twodiscs.dynamics.runs import BUDGET, IntervalRun
 
     settings = {
         "hop": hop, "number": number, "seed": int(seed), "name": name, "budget": budget or BUDGET,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from importlib import metadata
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,7 +17,6 @@ from twodiscs.model.checks import (
     answering,
     quote,
 )
-from twodiscs.model.plugins import plugin
 from twodiscs.points.base import digest, read_json, with_arrays
 
 if TYPE_CHECKING:
@@ -26,6 +26,18 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from twodiscs.comparison.measurements import Measurements
+
+
+def plugin(name):
+    """Return the object that an installed package registers as ``name``, None if none does.
+
+    It is an entry point of the group "twodiscs", by which packages on top of this one extend it.
+    ``tables`` are its tables, {name: ``Table``}; ``build`` is the module of ``twodiscs run`` and
+    ``twodiscs new``.
+    """
+    for entry in metadata.entry_points(group="twodiscs", name=name):
+        return entry.load()
+    return None
 
 
 @answering

@@ -500,7 +500,7 @@ def run_simulation(
         "error": target if isinstance(error, Mapping) else check_error("error", error),
         "seed": int(seed), "budget": budget, "events": tracked, "name": name,
     }  # fmt: skip
-    from twodiscs.dynamics.counting import CountingRun
+    from twodiscs.dynamics.runs import CountingRun
 
     run = CountingRun(scene, target, budget, stream)
     with progress_bar(progress, f"simulate r = {scene.radius:g}") as progress:
@@ -537,7 +537,7 @@ def _timed(scene, error, duration, seed, budget, events, name, cores, progress, 
         "error": None, "duration": duration, "seed": int(seed), "budget": budget,
         "events": tracked, "name": name,
     }  # fmt: skip
-    from twodiscs.dynamics.timed import TimedRun
+    from twodiscs.dynamics.runs import TimedRun
 
     # No error is asked for: 1 is the largest that a run takes.
     run = TimedRun(scene, dict.fromkeys(tracked, 1.0), budget, stream, duration)

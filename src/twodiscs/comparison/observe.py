@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from twodiscs.comparison.result import note_of_number, progress_bar, seed_of
-from twodiscs.dynamics.counting import engine_of
+from twodiscs.dynamics.runs import engine_of
 from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, kicks_of, new_wraps, unwrap
 from twodiscs.model.checks import (
     InputError,
@@ -21,7 +21,7 @@ from twodiscs.model.checks import (
 )
 from twodiscs.model.many import LARGE
 from twodiscs.model.scene import check_scene
-from twodiscs.sampling.blocks.threads import in_threads
+from twodiscs.sampling.rounds import in_threads
 from twodiscs.sampling.starts import as_records, components, states
 
 if TYPE_CHECKING:

@@ -8,9 +8,8 @@ from html import escape
 from typing import TYPE_CHECKING, ClassVar, Self
 
 import twodiscs
-from twodiscs.model.box import Box, parameters_of
+from twodiscs.model.box import Box, key, parameters_of, stream_seed
 from twodiscs.model.checks import InputError, quote, writing_to
-from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import check_scene
 from twodiscs.points.base import content_of, write_json
 

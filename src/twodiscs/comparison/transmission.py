@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from twodiscs.comparison.result import Result, note_of_number, progress_bar
-from twodiscs.dynamics.counting import engine_of
 from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK
-from twodiscs.dynamics.intervals import chains_of
-from twodiscs.model.box import Box
+from twodiscs.dynamics.runs import chains_of, engine_of
+from twodiscs.model.box import Box, key, stream_seed
 from twodiscs.model.checks import (
     InputError,
     answering,
@@ -21,11 +20,10 @@ from twodiscs.model.checks import (
     quote,
 )
 from twodiscs.model.events import AXIS
-from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import check_scene
 from twodiscs.points.base import reached
 from twodiscs.points.estimates import MIN_EVENTS, Estimate
-from twodiscs.sampling.blocks.rounds import all_in_rounds, fixed
+from twodiscs.sampling.rounds import all_in_rounds, fixed
 from twodiscs.theory import exact
 
 if TYPE_CHECKING:

@@ -1,13 +1,27 @@
-"""Sizes of ensembles and errors of counts, for two discs and for more.
+"""The ensemble: many independent trajectories, their sizes, and the kicks that friction gives them.
 
-An ensemble is many independent trajectories. They start from streams of random numbers keyed by
-block, and their sums are integers, or taken in the order of the initial states. A result therefore
-depends on the scene, the seed and the blocks, not on lanes, processors or shards.
+Trajectories start from streams of random numbers keyed by block, and their sums are integers, or
+taken in the order of the initial states. A result therefore depends on the scene, the seed and the
+blocks, not on lanes, processors or shards.
+
+Friction draws all velocities anew in kicks. They come at the times of a Poisson process, so that
+the time to the next one does not depend on the past. A kick leaves the invariant measure as it is,
+and it satisfies detailed balance with reversed velocities. The past of a state is therefore the
+future of the reversed state. The kicks in its past and in its future are independent.
+
+A kick ends a flight, as the end of time does. Each replica has its own stream of random numbers,
+keyed by its number. The seeds of jobs are below 2⁶³, and the seeds of kicks above. Without friction
+the kicks are None, and nothing is compiled. The constants of the law are the same with and without
+friction.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
+
+from twodiscs.sampling.jit import compiled, optional
+from twodiscs.sampling.streams import exponential, open_stream
 
 #: Trajectories that a kernel advances in lock step.
 LANES = 64
@@ -24,12 +38,8 @@ RETURNS = 256
 #: Hops with one random stream, of which each is followed.
 HOPS_OF_BLOCK = 64
 
-#: Clusters of this many hops, or more, are in one class. It counts as even, which makes κ too small
-#: by less than the fraction of hops in it over their number.
-LARGEST = 2**13
-
-#: The sums at each time after a hop: n = Σ s_0 s_k and n², N hops and N².
-SUMS = 4
+#: The bit that makes the seed of kicks of the seed of a job.
+SEED = np.uint64(1 << 63)
 
 
 def nearest_power_of_two(value):
@@ -42,13 +52,62 @@ def nearest_power_of_two(value):
     return math.ldexp(1.0, exponent if mantissa > math.sqrt(0.5) else exponent - 1)
 
 
-def relative_errors(sums, products, replicas):
-    """Return the relative standard error of each mean count (n), inf without a count.
+# Kicks ------------------------------------------------------------------------------------------
 
-    Replicas are independent, so the error is √(var N / R) / ⟨N⟩.
+
+class Kicks(NamedTuple):
+    """The rate of kicks, and for each lane the time to the next one and its stream.
+
+    ``stream``, ``direction`` and ``velocity`` are working memory. ``sampler`` is the
+    ``law.KickSampler`` of two discs, None of more.
     """
-    with np.errstate(divide="ignore", invalid="ignore"):
-        mean = sums / replicas
-        variance = np.maximum(np.diag(products) / replicas - mean**2, 0.0)
-        errors = np.sqrt(variance / replicas) / mean
-    return np.where(sums > 0, errors, np.inf)
+
+    rate: float
+    waits: np.ndarray  # (lanes,)
+    streams: np.ndarray  # (lanes, 4), uint64
+    stream: np.ndarray
+    direction: np.ndarray
+    velocity: np.ndarray
+    sampler: tuple | None = None
+
+
+def idle_kicks(lanes, rate, direction, velocity, sampler=None):
+    """Return the ``Kicks`` of some ``lanes``. A lane has none before ``open_kicks`` begins them."""
+    streams, stream = np.zeros((lanes, 4), np.uint64), np.zeros(4, np.uint64)
+    return Kicks(rate, np.full(lanes, np.inf), streams, stream, direction, velocity, sampler)
+
+
+@optional(lambda i, seed, replica, kicks: None)
+def open_kicks(i, seed, replica, kicks):
+    """Begin the kicks of a ``replica`` of the streams of ``seed`` (uint64) in lane ``i``."""
+    stream = open_stream(seed ^ SEED, replica)
+    for k in range(stream.size):
+        kicks.streams[i, k] = stream[k]
+    kicks.waits[i] = exponential(kicks.streams[i]) / kicks.rate
+
+
+@optional(lambda i, kicks: None)
+def renew_kicks(i, kicks):
+    """Draw the time to the next kick in lane ``i`` anew: another path begins with its replica."""
+    kicks.waits[i] = exponential(kicks.streams[i]) / kicks.rate
+
+
+@optional(lambda remaining, i, kicks: remaining)
+def before_kick(remaining, i, kicks):
+    """Return the ``remaining`` time of lane ``i``, or the time to its next kick if it is less."""
+    wait = kicks.waits[i]
+    return remaining if remaining < wait else wait
+
+
+@compiled
+def open_all(seed, first, kicks):
+    """Begin the kicks of the replicas from the ``first`` on, one a lane."""
+    for i in range(kicks.waits.size):
+        open_kicks(i, seed, first + i, kicks)
+
+
+def opened(kicks, seed, block):
+    """Return ``kicks`` (None stays None) with those of a ``block`` of as many states begun."""
+    if kicks is not None:
+        open_all(np.uint64(seed), block * kicks.waits.size, kicks)
+    return kicks

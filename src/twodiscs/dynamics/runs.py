@@ -1,6 +1,44 @@
-"""The run that makes a point: that of a stage, for a scene."""
+"""Runs: counts of events to an error or in a time, and intervals between hops.
 
-from twodiscs.model.radii import key, stream_seed
+A run has its work as ``SequentialRun`` of blocks, ``parts``, and makes the point of their sums. The
+kernels are those of ``two`` or ``many`` discs (``engine_of``).
+
+The mean count in a time T is rate × T exactly, for every T and without burn-in; the spread between
+independent replicas gives its error.
+
+Intervals are exact draws. Chains start on the surface of a hop, weighted by the flux through it,
+and record the next returns. No interval is cut off by a window. Chains of more than two discs start
+in the invariant measure, and record to their end all intervals that begin within a window of time.
+This has no bias: by Palm's formula, the mean sum of these intervals over their mean number is the
+mean interval.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from twodiscs.dynamics.ensemble import RETURNS, nearest_power_of_two
+from twodiscs.dynamics.two import strip
+from twodiscs.model.box import key, stream_seed
+from twodiscs.model.checks import (
+    InputError,
+    check_choice,
+    check_error,
+    check_integer,
+    format_number,
+)
+from twodiscs.model.events import EVENTS, HOPS
+from twodiscs.model.scene import Scene, check_scene, why_absent
+from twodiscs.points.dynamics import DynamicsPoint, simulated_events
+from twodiscs.points.intervals import BINS, GRAIN, IntervalsPoint, wide_edges
+from twodiscs.sampling.rounds import SequentialRun, all_in_rounds, fixed, on_grid
+from twodiscs.sampling.starts import require_room
+from twodiscs.theory.exact import replicas_needed
+
+#: Chains of intervals that share a stream, and the usual budget of their wall and disc events.
+CHAINS, BUDGET = 256, 10**11
 
 #: The function of the face that does the work of a stage.
 KINDS = {"monte_carlo": "sample", "dynamics": "simulate", "intervals": "intervals"}
@@ -19,9 +57,393 @@ def run_of(stage, scene, settings):
 
         return SamplingRun(scene, seed=seed, **given)
     if stage == "dynamics":
-        from twodiscs.dynamics.counting import CountingRun
-
         return CountingRun(scene, given["error"], given["budget"], seed)
-    from twodiscs.dynamics.intervals import IntervalRun
-
     return IntervalRun(scene, given["hop"], given["number"], seed, given["budget"])
+
+
+# Counts -----------------------------------------------------------------------------------------
+
+
+def engine_of(scene):
+    """Return the module that counts the events of a ``Scene``: of two discs, or of many."""
+    if check_scene(scene).discs > 2:
+        from twodiscs.dynamics.many import engine
+    else:
+        from twodiscs.dynamics.two import lockstep as engine
+    return engine
+
+
+def expected_event_rate(scene):
+    """Return the wall hits and disc collisions per unit of time, exactly if the rate is known.
+
+    For more than two discs it may be an estimate.
+    """
+    return engine_of(scene).expected_event_rate(scene)
+
+
+def replica_duration(scene):
+    """Return the time T of one replica, a power of two."""
+    return engine_of(scene).replica_duration(scene)
+
+
+def run_blocks(scene, events, seed, first, stop, duration, **shape):
+    """Count ``events`` in the blocks ``first`` … ``stop`` − 1 of the stream ``seed``.
+
+    A block is some initial states (``block_replicas``), each followed for ``duration``. Returns
+    (sums, products): Σ N_e (n) and Σ N_e N_f for e ≤ f (n, n), int64, in the order of EVENTS.
+    """
+    return engine_of(scene).run_blocks(scene, events, seed, first, stop, duration, **shape)
+
+
+def count_events(scene, target, budget, seed):
+    """Count the events of a ``Scene`` in independent replicas until each is known well enough.
+
+    ``target`` maps each tracked event to the relative standard error asked for (0 < target ≤ 1);
+    blocked hops are counted, but their error is ignored. ``budget`` is the largest number of wall
+    and disc events to simulate; the minimum is one block of replicas. Work goes in rounds (see
+    ``sampling.rounds``).
+
+    Hops that are rare because of a neck are also counted in strips (``strip``). The budget is
+    divided in proportion to the events that each error needs.
+
+    Returns a ``DynamicsPoint``. Raises ``InputError`` for an unknown event or a number out of
+    range.
+    """
+    return CountingRun(scene, target, budget, seed).run()
+
+
+@dataclass(frozen=True)
+class CountingRun:
+    """``count_events`` in blocks, with checked arguments."""
+
+    scene: Scene
+    target: dict
+    budget: int
+    seed: int
+
+    def __post_init__(self):
+        check_scene(self.scene)
+        if not isinstance(self.target, dict) or not self.target:
+            raise InputError(
+                f"target must name at least one event, with its error, not {self.target!r}"
+            )
+        for event, target in self.target.items():
+            check_error(f"target of {check_choice('event', event, EVENTS)}", target)
+        check_integer("budget", self.budget)
+        check_integer("seed", self.seed, 0)
+        require_room(self.scene)
+
+    @property
+    def _events(self):
+        return [event for event in EVENTS if event in self.target]
+
+    @cached_property
+    def _rare(self):
+        return [hop for hop in strip.rare_hops(self.scene) if hop in self.target]
+
+    @property
+    def _waited(self):
+        return [e for e in self._events if self.scene.is_possible(e) and e not in self._rare]
+
+    @cached_property
+    def parts(self):
+        """Runs by name, ``SequentialRun``: "all" and the rare hops.
+
+        The budget is divided in proportion to the events that the errors need. If it is too small
+        for all of them, each has the same fraction of its events.
+        """
+        budget = max(1, int(self.budget / engine_of(self.scene).work_per_event(self.scene)))
+        runs = {"all": self._everything(budget)}
+        for hop in self._rare:
+            runs[hop] = strip.run_of(self.scene, hop, self.target[hop], budget, self.seed)
+        events = {name: run.planned * run.block_events for name, run in runs.items()}
+        total = sum(events.values())
+        most = min(1.0, budget / total)
+        return {
+            name: replace(
+                run,
+                budget=run.budget * events[name] / total,
+                planned=on_grid(run.planned * most),
+            )
+            for name, run in runs.items()
+        }
+
+    def _everything(self, budget):
+        scene, engine = self.scene, engine_of(self.scene)
+        duration, each = engine.replica_duration(scene), engine.block_replicas(scene)
+        index = [EVENTS.index(event) for event in self._waited]
+        goals = np.array([self.target[event] for event in self._waited])
+        replicas = (
+            relative_variance(engine.expected_rate(scene, event) * duration)
+            / self.target[event] ** 2
+            for event in self._waited
+        )
+
+        def work(first, stop):
+            return engine.run_blocks(scene, self._events, self.seed, first, stop, duration)
+
+        block_events = each * engine.expected_event_rate(scene) * duration
+        # Errors of bursts that the budget cannot reach are ignored.
+        needed = np.array([replicas_needed(scene, e, self.target[e]) for e in self._waited])
+        needed = needed / each
+        needed = np.ceil(np.where(needed * block_events <= budget, needed, 0.0))
+        planned = max(replicas, default=0.0) / each
+        planned = max([planned, *needed])
+
+        def excess_of(sums, blocks):
+            errors = relative_errors(*sums, blocks * each)[index] / goals
+            return np.maximum(errors, np.sqrt(needed / blocks))
+
+        return SequentialRun(
+            work,
+            excess_of,
+            lambda sums: max(1, simulated_events(sums[0])),
+            block_events,
+            budget,
+            on_grid(engine.planned(planned, budget / block_events)),
+            engine.cost_ratio(scene),
+        )
+
+    def point(self, pieces):
+        """Return the ``DynamicsPoint``, given {name: pieces} of all parts."""
+        engine = engine_of(self.scene)
+        constants = {
+            "duration": engine.replica_duration(self.scene),
+            "replicas": engine.block_replicas(self.scene),
+            "target": self._target,
+        }
+        parts = {"all": constants | {"sums": pieces["all"]}}
+        for hop in self._rare:
+            parts[hop] = strip.constants(self.scene, hop) | {"sums": pieces[hop]}
+        return DynamicsPoint.of(self.scene.radius, parts)
+
+    @property
+    def _target(self):
+        return {event: self.target[event] for event in self._events}
+
+    def run(self, progress=None, cores=1, kept=None):
+        """Do all work in this process and return the ``DynamicsPoint``.
+
+        ``kept`` are the parts of an earlier run, which are not done again (see ``all_in_rounds``).
+        """
+        return self.point(all_in_rounds(self.parts, progress, cores, kept))
+
+
+def relative_variance(count):
+    """Return the largest variance to expect of a replica's count over its mean ``count`` squared.
+
+    Random counts have a variance of less than 2⟨N⟩; discs that keep their motion for long add a
+    fraction of ⟨N⟩². It is infinite if none is expected. Both numbers hold at all radii of the
+    repository's boxes without effects. The fraction is up to 0.16 there, at a hundredth of the
+    height and close to the largest radius.
+    """
+    return 2 / count + 1 / 6 if count else math.inf
+
+
+def relative_errors(sums, products, replicas):
+    """Return the relative standard error of each mean count (n), inf without a count.
+
+    Replicas are independent, so the error is √(var N / R) / ⟨N⟩.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        mean = sums / replicas
+        variance = np.maximum(np.diag(products) / replicas - mean**2, 0.0)
+        errors = np.sqrt(variance / replicas) / mean
+    return np.where(sums > 0, errors, np.inf)
+
+
+@dataclass(frozen=True)
+class TimedRun(CountingRun):
+    """Blocks of replicas, at least one, until all replicas together have a ``duration``.
+
+    All events are counted in the same replicas. Rare hops have no strips, because trajectories in a
+    strip have another duration. Raises ``InputError`` for a duration with more than ``budget``
+    expected events.
+    """
+
+    duration: float
+
+    def __post_init__(self):
+        super().__post_init__()
+        rate = engine_of(self.scene).expected_event_rate(self.scene)
+        if self.duration * rate > self.budget:
+            raise InputError(
+                f"duration must be below {format_number(self.budget / rate, '.3g')}, where the "
+                f"budget of {format_number(self.budget, 'g')} events is spent, not "
+                f"{format_number(self.duration, 'g')}"
+            )
+
+    @cached_property
+    def _rare(self):
+        return []
+
+    @property
+    def _target(self):
+        return dict.fromkeys(self._events)
+
+    @cached_property
+    def parts(self):
+        """The ``SequentialRun`` of all blocks, {"all": run}."""
+        engine = engine_of(self.scene)
+        each = engine.replica_duration(self.scene) * engine.block_replicas(self.scene)
+        blocks, waited = max(1, math.ceil(self.duration / each)), len(self._waited)
+        run = replace(
+            self._everything(self.budget),
+            excess_of=lambda sums, blocks: np.zeros(waited),
+            budget=math.inf,
+            planned=blocks,
+            first_round=blocks,
+        )
+        return {"all": run}
+
+
+# Intervals --------------------------------------------------------------------------------------
+
+
+def chains_of(scene):
+    """Return the module that records the intervals of a ``Scene``: of two discs, or of many."""
+    if scene.discs > 2:
+        from twodiscs.dynamics.many import engine as chains
+    else:
+        from twodiscs.dynamics.two import returns as chains
+    return chains
+
+
+def recorded(scene, event, blocks, chains, returns, seed, first=0, going=None):
+    """Return (times of the chains, sums in bins) of a number of ``blocks``, from the ``first`` on.
+
+    Each block has ``chains`` chains of ``returns`` intervals, see ``record_intervals``.
+    ``going`` is an array to stop it with.
+    """
+    edges = wide_edges()
+    # Intervals beyond all bins, or in the last ones that fill no wide bin, have no wide bin.
+    beyond = BINS + len(edges)
+    wide = np.full(BINS + 1, beyond)
+    wide[: edges[-1]] = BINS + np.repeat(np.arange(1, len(edges)), np.diff(edges))
+    sums = np.zeros((chains_of(scene).INTERVAL_SUMS, beyond + 1), np.int64)
+    going, bins = np.ones(1, np.bool_) if going is None else going, (_width(scene, event), wide)
+    record = chains_of(scene).record_intervals
+    stop = first + blocks
+    return record(scene, event, seed, first, stop, chains, returns, bins, sums, going), sums
+
+
+def _mean(scene, event):
+    return chains_of(scene).mean_interval(scene, event)
+
+
+def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
+    """Draw intervals between hops of one kind, each one exact, and count them in bins.
+
+    ``event`` is a hop that the ``Scene`` allows; ``intervals`` is the least number of intervals,
+    within the ``budget`` of wall and disc events. Chains of ``RETURNS`` successive intervals start
+    on the hop's surface with the flux-weighted measure. The map from hop to hop preserves it, so
+    every interval of a chain has the law of the interval between hops. Intervals within a chain are
+    correlated, chains are independent.
+
+    Returns an ``IntervalsPoint``, whose bins have a power of two near τ/16 as width. Chains of more
+    than two discs differ in their number of intervals. Raises ``InputError`` for a hop that is
+    unknown or blocked, for one whose mean time is not known, or for a number out of range.
+    """
+    return IntervalRun(scene, event, intervals, seed, budget).run()
+
+
+@dataclass(frozen=True)
+class IntervalRun:
+    """``hop_intervals`` in blocks, with checked arguments."""
+
+    scene: Scene
+    event: str
+    intervals: int
+    seed: int
+    budget: int = BUDGET
+
+    def __post_init__(self):
+        scene = check_scene(self.scene)
+        check_choice("event", self.event, HOPS)
+        if not scene.is_possible(self.event):
+            why = why_absent(scene, self.event) or f" is blocked at radius {scene.radius!r}"
+            raise InputError(f"event {self.event!r} has no intervals{why}")
+        check_integer("seed", self.seed, 0)
+        check_integer("budget", self.budget)
+        check_integer("intervals", self.intervals)
+        require_room(scene)
+        if not self._blocks:
+            raise InputError(
+                f"budget must allow for {self._each} intervals, at radius {scene.radius!r} "
+                f"of {self._events:.2g} events each, not {self.budget!r}"
+            )
+
+    @property
+    def _events(self):
+        return chains_of(self.scene).events_per_interval(self.scene, self.event)
+
+    @property
+    def _each(self):
+        """The number of intervals of a block."""
+        return CHAINS * chains_of(self.scene).intervals_of_chain(self.scene, self.event)
+
+    @property
+    def _blocks(self):
+        wanted = -(-self.intervals // self._each)
+        return min(wanted, int(self.budget / (self._each * self._events)))
+
+    @property
+    def _grain(self):
+        """The unit in which the times of chains are integers, the finest that doubles have."""
+        return _width(self.scene, self.event) * GRAIN
+
+    @cached_property
+    def _going(self):
+        """A flag that long kernels read: false when no thread waits for their result."""
+        return np.ones(1, np.bool_)
+
+    @cached_property
+    def parts(self):
+        """The ``SequentialRun`` of all blocks, {"all": run}.
+
+        Sums are the sums of ``record_intervals``, and Σ t and Σ t² over the times of chains, in
+        grains. Chains of more than two discs differ in their number n of intervals. They also have
+        Σ t n, Σ n and Σ n².
+        """
+
+        def work(first, stop):
+            totals, sums = recorded(
+                self.scene, self.event, stop - first, CHAINS, RETURNS, self.seed, first, self._going
+            )
+            totals, *numbers = np.atleast_2d(totals)
+            times = [int(time) for time in totals / self._grain]
+            moments = [sum(times), sum(time * time for time in times)]
+            for number in numbers:
+                n = [int(each) for each in number]
+                joint = sum(time * each for time, each in zip(times, n, strict=True))
+                moments += [joint, sum(n), sum(each * each for each in n)]
+            return sums, np.array(moments, object)
+
+        ratio = chains_of(self.scene).interval_cost(self.scene)
+        return {"all": fixed(work, self._blocks, self._each * self._events, ratio)}
+
+    def point(self, pieces):
+        """Return the ``IntervalsPoint``, given {"all": pieces}."""
+        part = {
+            "event": self.event,
+            "bin_width": _width(self.scene, self.event),
+            "chains": CHAINS,
+            "returns": RETURNS,
+            "sums": pieces["all"],
+        }
+        return IntervalsPoint.of(self.scene.radius, {"all": part})
+
+    def run(self, progress=None, cores=1, kept=None):
+        """Do all work in this process and return the ``IntervalsPoint``.
+
+        ``kept`` are the parts of an earlier run, which are not done again (see ``all_in_rounds``).
+        """
+        try:
+            return self.point(all_in_rounds(self.parts, progress, cores, kept))
+        except BaseException:
+            self._going[0] = False
+            raise
+
+
+def _width(scene, event):
+    return nearest_power_of_two(_mean(scene, event) / 16)

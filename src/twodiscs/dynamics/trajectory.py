@@ -14,7 +14,7 @@ from twodiscs.model.checks import (
     format_number,
 )
 from twodiscs.model.scene import check_scene
-from twodiscs.sampling.blocks.threads import in_threads
+from twodiscs.sampling.rounds import in_threads
 from twodiscs.sampling.starts import MOST_NUMBERS, components, states
 
 #: The most events of a trajectory, because all its rows are kept. Those of many discs have at most

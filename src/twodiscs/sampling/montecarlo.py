@@ -31,9 +31,9 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, check_choice, check_fraction, check_integer
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
 from twodiscs.model.scene import Scene, check_scene, check_two
-from twodiscs.sampling.blocks.rounds import Sampler, all_in_rounds, fixed
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.prism import kinetic_fraction, power_chance, prism_of, propose_in_prism
+from twodiscs.sampling.rounds import Sampler, all_in_rounds, fixed
 from twodiscs.sampling.separations import draw_constants, propose_separation
 from twodiscs.sampling.streams import GOLDEN, next_bits, open_stream, splitmix, uniform
 from twodiscs.theory import exact

@@ -11,7 +11,6 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.model.checks import InputError, quote
-from twodiscs.sampling.blocks.threads import in_a_thread, in_threads
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.prism import (
     PrismSampler,
@@ -21,6 +20,7 @@ from twodiscs.sampling.prism import (
     kinetic_fraction,
     prism_of,
 )
+from twodiscs.sampling.rounds import in_a_thread, in_threads
 from twodiscs.sampling.separations import (
     SeparationSampler,
     draw_configuration,

@@ -115,7 +115,7 @@ def shards(scene, stage, radius):
     """
     if _most(scene, stage) <= scene.shard_events:
         return []
-    from twodiscs.sampling.blocks.rounds import pieces
+    from twodiscs.sampling.rounds import pieces
 
     run = run_at(scene, stage, radius)
     if _work(run) <= scene.shard_events:

@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.dynamics.kicks import before_kick, open_kicks
+from twodiscs.dynamics.ensemble import before_kick, open_kicks
 from twodiscs.dynamics.law import NEVER, VANISHING, contact_quotient, crosses, crossing_time
 from twodiscs.dynamics.many.lockstep import (
     ABOVE,

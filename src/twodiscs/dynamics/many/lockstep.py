@@ -14,13 +14,19 @@ Rough discs have spins s, an array (N, lanes) like the velocities; for smooth di
 """
 
 import math
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import LANES, REPLICAS, SWEEPS, nearest_power_of_two
-from twodiscs.dynamics.kicks import Kicks, before_kick, idle_kicks, open_kicks, renew_kicks
+from twodiscs.dynamics.ensemble import (
+    LANES,
+    SWEEPS,
+    Kicks,
+    before_kick,
+    idle_kicks,
+    open_kicks,
+    renew_kicks,
+)
 from twodiscs.dynamics.law import (
     END_OF_TIME,
     NEVER,
@@ -31,30 +37,14 @@ from twodiscs.dynamics.law import (
     rough_wall_collision,
     wall_quotient,
 )
-from twodiscs.model.events import by_kind
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.many import insertions
-from twodiscs.sampling.many.chains import DENSEST, crowding
 from twodiscs.sampling.many.initial import (
-    LARGE,
     draw_velocities,
-    initial_of,
-    method,
     put_spins,
     spin_of,
     spins_in,
-    states_of,
     velocity_memory,
 )
-from twodiscs.theory import n_discs
-from twodiscs.theory.virial import bulk_derivatives, rates
-
-#: Events of a replica, and of a replica whose initial state takes as long as ten thousand events.
-REPLICA_EVENTS, EVENTS_OF_CHAIN = 256, 8192
-
-#: Events of each disc in a replica of ``LARGE`` numbers of discs, and the fewest replicas of a
-#: block of crowded ones.
-EVENTS_OF_DISC, FEWEST = 64, 8
 
 #: A flight on a ring that ends without an event.
 LOOK_AGAIN = -1.0
@@ -63,17 +53,6 @@ LOOK_AGAIN = -1.0
 CLASSES = ("vertical_hop", "horizontal_hop", "disc_collision", "right_wall", "top_wall")
 N = len(CLASSES)
 VERTICAL, HORIZONTAL, COLLISIONS, BESIDE, ABOVE = range(N)
-
-#: The classes whose counts are those of an event, in the order of ``EVENTS``.
-PARTS = by_kind(
-    "dynamics/many/lockstep.py",
-    {
-        "hop": lambda event: ("vertical_hop" if event.axis == "y" else "horizontal_hop",),
-        "collision": lambda event: ("disc_collision",),
-        "wall": lambda event: ("right_wall" if event.axis == "x" else "top_wall",),
-        "walls": lambda event: ("right_wall", "top_wall"),
-    },
-)
 
 
 class ManyLaw(NamedTuple):
@@ -556,97 +535,3 @@ def record_intervals(states, seed, first, window, law, hops_x, bins, sums, going
                 sums[1, k] += counts[l, k] * counts[l, k]
                 sums[2, k] += counts[l, k] * np.int64(own[1, l])
     return totals
-
-
-def replicas_of(scene):
-    """Return how many replicas of a ``Scene`` a block has: fewer of ``LARGE`` numbers of discs.
-
-    There are still fewer, for longer, if contacts are so many that initial states take long.
-    """
-    if scene.discs < LARGE:
-        return REPLICAS
-    usual = _roomy_replicas(scene)
-    return min(usual, max(FEWEST, usual >> (math.frexp(crowding(scene))[1] - 1)))
-
-
-def _roomy_replicas(scene):
-    return REPLICAS >> (scene.discs.bit_length() - 5)
-
-
-def epoch_of(scene):
-    """Return a time in which each disc of a ``Scene`` has some ``EVENTS_OF_DISC`` events."""
-    return replica_duration(scene, EVENTS_OF_DISC * scene.discs)
-
-
-def run_intervals(scene, event, seed, first, stop, replicas, window, bins, sums, going):
-    """Record the intervals between hops of a ``Scene`` as ``record_intervals`` does."""
-    hops_x, kicks = True if event == "horizontal_hop" else None, new_kicks(scene, LANES)
-    given = window, law_of(scene), hops_x, bins, sums, going, kicks
-    initial, totals = initial_of(scene), []
-    for block in range(first, stop):
-        states = states_of(initial, replicas, seed, block)
-        totals.append(record_intervals(states, np.uint64(seed), block * replicas, *given))
-    return np.hstack(totals)
-
-
-def of_events(sums, products):
-    """Return (sums, products) of ``EVENTS``, given the sums and products of ``CLASSES``.
-
-    In every replica, the hits of all walls are the hits of the two classes of walls together.
-    """
-    matrix = np.array([[name in parts for name in CLASSES] for parts in PARTS.values()], np.int64)
-    whole = products + np.triu(products, 1).T
-    return matrix @ sums, np.triu(matrix @ whole @ matrix.T)
-
-
-@lru_cache(maxsize=256)
-def expected_rates(scene):
-    """Return {event: rate} of the events of a ``Scene`` of more than two discs.
-
-    Rates are exact if that is known, and otherwise from some insertions (``insertions.expected``),
-    within a few per cent. If insertions find no room, the rates of wall hits and collisions are
-    guessed (``replica_duration``), and so is one of them for which insertions give 0. For
-    ``LARGE`` numbers of discs rates follow from an equation of state, within some ten per cent. It
-    ends where discs are ``DENSEST``; there the guess, if it is more, takes its place.
-    """
-    known = n_discs.known_derivatives(scene)
-    if known is None:
-        known = insertions.expected(scene) if scene.discs < LARGE else bulk_derivatives(scene)
-    guess = dict.fromkeys(("disc_collision", "any_wall"), _guessed_rate(scene) / 2)
-    if known is None:
-        return guess
-    by_class = rates(scene, known)
-    summed = {event: sum(by_class[name] for name in parts) for event, parts in PARTS.items()}
-    found = guess | {e: rate for e, rate in summed.items() if rate and e in scene.events}
-    if scene.discs >= LARGE and crowding(scene) == DENSEST and not n_discs.method(scene):
-        found |= {event: max(rate, found[event]) for event, rate in guess.items()}
-    return found
-
-
-def expected_event_rate(scene):
-    """Return the wall hits and collisions per time, as ``expected_rates``."""
-    expected = expected_rates(scene)
-    return expected["any_wall"] + expected["disc_collision"]
-
-
-def simulated_events(sums):
-    """Return how many wall hits and collisions there are among the counts of all classes."""
-    return int(sums[COLLISIONS] + sums[BESIDE] + sums[ABOVE])
-
-
-def replica_duration(scene, events=None):
-    """Return a power of two in which about ``events`` happen, within a factor of two.
-
-    The rate is guessed from the wall hits of an ideal gas and from the distance to the largest
-    radius. By default ``events`` is 256, or ``EVENTS_OF_CHAIN`` if an initial state takes a chain
-    of moves. ``LARGE`` numbers of discs have ``EVENTS_OF_DISC`` each, more if replicas are fewer.
-    """
-    if events is None and scene.discs >= LARGE:
-        events = EVENTS_OF_DISC * scene.discs * _roomy_replicas(scene) // replicas_of(scene)
-    events = events or (EVENTS_OF_CHAIN if method(scene) == "chain" else REPLICA_EVENTS)
-    return nearest_power_of_two(events / _guessed_rate(scene))
-
-
-def _guessed_rate(scene):
-    room = scene.largest_radius - scene.radius
-    return math.sqrt(scene.discs) * (0.5 / scene.range_x + 0.5 / scene.range_y + 0.35 / room)

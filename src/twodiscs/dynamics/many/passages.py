@@ -16,8 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK, LARGEST, SUMS
-from twodiscs.dynamics.kicks import open_kicks, renew_kicks
+from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK, open_kicks, renew_kicks
 from twodiscs.dynamics.law import crosses, crossing_time
 from twodiscs.dynamics.many.lockstep import (
     COLLISIONS,
@@ -31,6 +30,7 @@ from twodiscs.dynamics.many.lockstep import (
     nearest,
     new_kicks,
 )
+from twodiscs.dynamics.two.passages import LARGEST, SUMS
 from twodiscs.model.checks import InputError, check_choice
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import hopping_along

@@ -2,11 +2,16 @@
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import nearest_power_of_two
-from twodiscs.dynamics.kicks import before_kick
+from twodiscs.dynamics.ensemble import before_kick, nearest_power_of_two
 from twodiscs.dynamics.law import END_OF_TIME, crosses, crossing_time
 from twodiscs.dynamics.many.cells import KICK
-from twodiscs.dynamics.many.kernels import Followed, advance_scene, kicks_of
+from twodiscs.dynamics.many.engine import (
+    Followed,
+    advance_scene,
+    expected_event_rate,
+    expected_rates,
+    kicks_of,
+)
 from twodiscs.dynamics.many.lockstep import (
     BESIDE,
     COLLISIONS,
@@ -14,8 +19,6 @@ from twodiscs.dynamics.many.lockstep import (
     VERTICAL,
     N,
     advance,
-    expected_event_rate,
-    expected_rates,
     find_events,
     kick_lanes,
     law_of,

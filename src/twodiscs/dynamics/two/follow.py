@@ -38,7 +38,7 @@ from types import FunctionType
 
 import numpy as np
 
-from twodiscs.dynamics.kicks import before_kick, idle_kicks, open_kicks, renew_kicks
+from twodiscs.dynamics.ensemble import before_kick, idle_kicks, open_kicks, renew_kicks
 from twodiscs.dynamics.law import after_event, first_event, kick_sampler, law_of, meeting, redrawn
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.starts import COMPONENTS, draw_states

@@ -34,7 +34,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK, LANES, LARGEST, SUMS
+from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK, LANES
 from twodiscs.dynamics.law import END_OF_TIME, WRAP_X, WRAP_Y, crosses, crossing_time
 from twodiscs.dynamics.two.follow import across, follow
 from twodiscs.model.checks import (
@@ -51,6 +51,13 @@ from twodiscs.sampling.prism import prism_of
 from twodiscs.sampling.starts import COMPONENTS, StartSampler, draw_states, require_room
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
+
+#: Clusters of this many hops, or more, are in one class. It counts as even, which makes κ too small
+#: by less than the fraction of hops in it over their number.
+LARGEST = 2**13
+
+#: The sums at each time after a hop: n = Σ s_0 s_k and n², N hops and N².
+SUMS = 4
 
 #: Sweeps between two searches for lanes that have ended: paths are short.
 SWEEPS = 2

@@ -5,8 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import nearest_power_of_two
-from twodiscs.dynamics.kicks import before_kick, opened
+from twodiscs.dynamics.ensemble import before_kick, nearest_power_of_two, opened
 from twodiscs.dynamics.law import (
     DISC,
     END_OF_TIME,

@@ -24,12 +24,12 @@ import numpy as np
 from twodiscs.dynamics.ensemble import LANES, REPLICAS
 from twodiscs.dynamics.law import END_OF_TIME, crosses
 from twodiscs.dynamics.two.follow import across, follow
+from twodiscs.model.box import key, stream_seed
 from twodiscs.model.events import AXIS, HOPS
-from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import hopping_along
 from twodiscs.points.estimates import PARTS, fractions_of_speeds, stratified_mean
-from twodiscs.sampling.blocks.rounds import SequentialRun, on_grid
 from twodiscs.sampling.prism import PrismSampler, neck_of, prism_of, proposed_measure
+from twodiscs.sampling.rounds import SequentialRun, on_grid
 from twodiscs.sampling.starts import kinetic_fraction_of, start_sampler
 from twodiscs.theory import exact
 

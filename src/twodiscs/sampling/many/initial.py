@@ -25,11 +25,11 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.model.many import LARGE, arrangement, is_ordered
-from twodiscs.sampling.blocks.threads import in_a_thread, in_threads
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import chains, insertions
 from twodiscs.sampling.many.cells import Grid, grid_of
 from twodiscs.sampling.many.insertions import around
+from twodiscs.sampling.rounds import in_a_thread, in_threads
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
 from twodiscs.theory import channel
 

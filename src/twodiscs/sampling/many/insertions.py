@@ -28,9 +28,8 @@ from twodiscs.model.checks import (
 )
 from twodiscs.model.events import SHELLS, by_kind
 from twodiscs.points.monte_carlo import InsertionPoint
-from twodiscs.sampling.blocks.rounds import Sampler
-from twodiscs.sampling.blocks.threads import in_a_thread
 from twodiscs.sampling.jit import compiled, inlined, optional
+from twodiscs.sampling.rounds import Sampler, in_a_thread
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
 from twodiscs.theory.virial import Derivatives, overlap_of_two
 

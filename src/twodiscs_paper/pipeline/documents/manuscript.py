@@ -6,7 +6,7 @@ from pathlib import Path
 
 from twodiscs.comparison.table import NUMBER, TEXT, Table
 from twodiscs.comparison.transmission import QUIET
-from twodiscs.dynamics.intervals import RETURNS
+from twodiscs.dynamics.runs import RETURNS
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.box import Box
 from twodiscs.sampling.montecarlo import COST_RATIO

@@ -25,12 +25,12 @@ from mpmath import mp
 from tqdm import tqdm
 
 from twodiscs.comparison.scene_tables import MeanTimes, Theory
-from twodiscs.dynamics import counting
-from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
+from twodiscs.dynamics import runs
+from twodiscs.dynamics.ensemble import REPLICAS
+from twodiscs.dynamics.runs import relative_errors
 from twodiscs.dynamics.two import strip
-from twodiscs.model.box import Box
+from twodiscs.model.box import Box, radii
 from twodiscs.model.events import EVENTS, HOPS
-from twodiscs.model.radii import radii
 from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import LinearFit
 from twodiscs.sampling import montecarlo
@@ -257,15 +257,15 @@ def times(scene, events, counts, replicas, duration):
 
 def by_lockstep(scene, blocks, seed):
     """Measure the mean times with the engine."""
-    duration = counting.replica_duration(scene)
-    counts = counting.run_blocks(scene, EVENTS, seed, 0, blocks, duration)[0]
+    duration = runs.replica_duration(scene)
+    counts = runs.run_blocks(scene, EVENTS, seed, 0, blocks, duration)[0]
     means = times(scene, EVENTS, counts, blocks * REPLICAS, duration)
-    return means, counting.simulated_events(counts), 1
+    return means, runs.simulated_events(counts), 1
 
 
 def by_scalar(scene, replicas, seed):
     """Measure the mean times one trajectory at a time."""
-    duration = counting.replica_duration(scene)
+    duration = runs.replica_duration(scene)
     counts = scalar.count_blocks(
         np.uint64(seed), 0, 1, replicas, duration, scene.contact_distance, draw_constants(scene),
         (0, 0),
@@ -276,7 +276,7 @@ def by_scalar(scene, replicas, seed):
 
 def by_steps(step, scene, blocks, seed):
     """Measure the mean times by looking for overlaps every ``step``."""
-    duration = counting.replica_duration(scene)
+    duration = runs.replica_duration(scene)
     counts = timestepping.run_blocks(scene, seed, 0, blocks, duration, step)
     replicas = blocks * REPLICAS
     means = times(scene, scalar.COUNTED, counts, replicas, duration)
@@ -492,12 +492,12 @@ def by_radius(scale):
     speeds, scenes = [], []
     for radius in radii(SCENE.width, SCENE.height, 0.01, RADII):
         scene = SCENE.with_radius(radius)
-        duration = counting.replica_duration(scene)
+        duration = runs.replica_duration(scene)
         blocks = math.ceil(PILOT_BLOCKS * scale)
         start = time.process_time()
-        sums, products = counting.run_blocks(scene, EVENTS, 1, 0, blocks, duration)
+        sums, products = runs.run_blocks(scene, EVENTS, 1, 0, blocks, duration)
         seconds = time.process_time() - start
-        events = counting.simulated_events(sums)
+        events = runs.simulated_events(sums)
         speeds.append(events / seconds)
         scenes.append(scene)
         yield from strip_rows(scene, blocks)
@@ -524,11 +524,11 @@ def by_radius(scale):
                     work=round(events), seconds=events / speed, error=TARGET,
                 )  # fmt: skip
     for event, paid in PAID.items():
-        counting.run_blocks(SCENE, (event,), 0, 0, 1, 1.0)
+        runs.run_blocks(SCENE, (event,), 0, 0, 1, 1.0)
         for radius in paid:
             scene = SCENE.with_radius(radius)
             start = time.process_time()
-            point = counting.count_events(scene, {event: TARGET}, 10**10, 1)
+            point = runs.count_events(scene, {event: TARGET}, 10**10, 1)
             seconds = time.process_time() - start
             box = Box.of(scene)
             (mean,) = MeanTimes.rows(box, Theory.rows(box, [radius]), {"dynamics": [point]})

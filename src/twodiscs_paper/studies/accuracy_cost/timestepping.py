@@ -97,7 +97,7 @@ def step_blocks(seed, first, stop, replicas, lanes, steps, step, sigma, draw):
 
 
 def run_blocks(scene, seed, first, stop, duration, step):
-    """Count all events as ``counting.run_blocks`` does, but by steps of ``step``.
+    """Count all events as ``runs.run_blocks`` does, but by steps of ``step``.
 
     The ``duration`` is rounded to whole steps. Returns Σ N_e, in the order of ``COUNTED``.
     """

@@ -21,9 +21,8 @@ from twodiscs.comparison.scores import chi2_p, student_deviate, two_sided_p
 from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.two.path import time_to_next
-from twodiscs.model.box import Box
+from twodiscs.model.box import Box, key, stream_seed
 from twodiscs.model.events import HOPS
-from twodiscs.model.radii import key, stream_seed
 from twodiscs.points.estimates import Estimate, density_at_zero, mean_of
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import (

@@ -9,7 +9,7 @@ from dataclasses import replace
 from functools import partial
 from statistics import median
 
-from twodiscs.dynamics import counting
+from twodiscs.dynamics import runs
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, WALLS
 from twodiscs.model.scene import Scene
@@ -55,9 +55,9 @@ def interleaved(variants, repetitions=REPETITIONS):
 
 def lockstep(blocks=BLOCKS, scene=SCENE, events=EVENTS):
     """Count ``events``, by default all, up to a fixed end time, with statistics by replica."""
-    duration = counting.replica_duration(scene)
-    counted, seconds = timed(lambda: counting.run_blocks(scene, events, 1, 0, blocks, duration))
-    return counting.simulated_events(counted[0]), seconds
+    duration = runs.replica_duration(scene)
+    counted, seconds = timed(lambda: runs.run_blocks(scene, events, 1, 0, blocks, duration))
+    return runs.simulated_events(counted[0]), seconds
 
 
 def compared(name, values, unit, baseline, larger_is_better=True):

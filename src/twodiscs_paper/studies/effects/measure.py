@@ -16,8 +16,7 @@ from twodiscs.dynamics.two.follow import new_rows, put_state, state_at
 from twodiscs.dynamics.two.path import time_to_next
 from twodiscs.figures import curves
 from twodiscs.figures.curves import limits
-from twodiscs.model.box import Box
-from twodiscs.model.radii import key, stream_seed
+from twodiscs.model.box import Box, key, stream_seed
 from twodiscs.points import estimates
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.starts import draw_states, start_sampler

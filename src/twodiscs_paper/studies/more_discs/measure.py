@@ -8,8 +8,7 @@ import math
 
 import numpy as np
 
-from twodiscs.dynamics.many import kernels
-from twodiscs.dynamics.many import lockstep as many
+from twodiscs.dynamics.many import engine
 from twodiscs.model.events import DECLARED, SHELLS
 from twodiscs.model.many import multiplicity
 from twodiscs.model.scene import Scene
@@ -33,15 +32,15 @@ FEWER, SHARE = {16: 128, 32: 96, 64: 48}, 1 / 8
 def counted(scene, events, seed):
     """Return (sums, products, replicas, duration) of about ``events``."""
     if replicas := FEWER.get(scene.discs):
-        duration = many.replica_duration(scene, SHARE * events / replicas)
-        counts = kernels.run_blocks(scene, seed, 0, 1, duration, replicas=replicas)
+        duration = engine.duration_of(scene, SHARE * events / replicas)
+        counts = engine.run_classes(scene, seed, 0, 1, duration, replicas=replicas)
         return *counts, replicas, duration
-    duration = many.replica_duration(scene)
-    first = kernels.run_blocks(scene, seed, 0, 1, duration)
-    blocks = max(2, math.ceil(events / many.simulated_events(first[0])))
-    rest = kernels.run_blocks(scene, seed, 1, blocks, duration)
+    duration = engine.duration_of(scene)
+    first = engine.run_classes(scene, seed, 0, 1, duration)
+    blocks = max(2, math.ceil(events / engine.simulated_events(first[0])))
+    rest = engine.run_classes(scene, seed, 1, blocks, duration)
     sums, products = (one + more for one, more in zip(first, rest, strict=True))
-    return sums, products, blocks * many.replicas_of(scene), duration
+    return sums, products, blocks * engine.block_replicas(scene), duration
 
 
 def dynamics_rates(scene, events, seed):

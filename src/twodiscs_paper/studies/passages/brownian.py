@@ -20,7 +20,7 @@ import numpy as np
 from scipy.integrate import quad
 
 from twodiscs.comparison.transmission import by_clusters
-from twodiscs.model.radii import stream_seed
+from twodiscs.model.box import stream_seed
 from twodiscs.points.estimates import Estimate, LinearFit
 from twodiscs_paper.studies.passages.models import brownian
 from twodiscs_paper.study import row

@@ -15,14 +15,14 @@ from mpmath import mp, mpf
 
 from twodiscs.comparison import scores
 from twodiscs.comparison.scene_tables import Areas, Theory, Volume
-from twodiscs.dynamics import counting
+from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import after_event, contact_quotient, law_of, wall_quotient
 from twodiscs.dynamics.two.follow import find_events, new_rows, put_state, state_at
 from twodiscs.dynamics.two.path import advance
+from twodiscs.model.box import shortest_decimal
 from twodiscs.model.checks import LARGEST_INTEGER
 from twodiscs.model.events import EVENTS, HOPS
-from twodiscs.model.radii import shortest_decimal
 from twodiscs.points import estimates
 from twodiscs.points.estimates import LinearFit, mean_of
 from twodiscs.sampling import montecarlo
@@ -598,15 +598,15 @@ def reversal_rows(box, seed):
 def coverage_rows(box, seed, repetitions=REPETITIONS):
     """Yield how often the 95 % interval of a mean time covers the exact value, event by event.
 
-    A repetition is one block of ``counting.run_blocks``. If most repetitions have too few events
+    A repetition is one block of ``runs.run_blocks``. If most repetitions have too few events
     for an interval (``estimates.has_error_bar``), the row has the status too-few and no value.
     """
     low, high = COVERAGE_BOUNDS
     for radius in ordinary_radii(box):
         scene = box.scene(radius)
-        duration, times = counting.replica_duration(scene), exact.mean_times(scene)
+        duration, times = runs.replica_duration(scene), exact.mean_times(scene)
         blocks = [
-            counting.run_blocks(scene, EVENTS, seed, block, block + 1, duration)
+            runs.run_blocks(scene, EVENTS, seed, block, block + 1, duration)
             for block in range(repetitions)
         ]
         start = start_of("coverage", "ordinary", radius) | {"count": repetitions}

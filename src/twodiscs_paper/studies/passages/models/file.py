@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.dynamics.ensemble import LANES
-from twodiscs.dynamics.many import kernels
+from twodiscs.dynamics.many import engine
 from twodiscs.dynamics.many.lockstep import (
     N,
     advance,
@@ -226,9 +226,9 @@ def recorded(scene, step, number, replicas, seed, friction=None):
     states, laps = initial.states(scene, replicas, seed), np.zeros((scene.discs, replicas))
     places = np.empty((number + 1, scene.discs, replicas))
     places[0] = states[: scene.discs]
-    kicks = kernels.kicks_of(moving, replicas, seed)
+    kicks = engine.kicks_of(moving, replicas, seed)
     for k in range(1, number + 1):
-        kernels.advance_scene(moving, states, laps, step, kicks)
+        engine.advance_scene(moving, states, laps, step, kicks)
         places[k] = states[: scene.discs] + scene.width * laps
     return places
 

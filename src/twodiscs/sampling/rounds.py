@@ -5,19 +5,28 @@ blocks without rounds (``all_at_once``). The number of planned blocks is known b
 Many processes can do ``pieces`` of the work, which are then ``joined``. The bits depend neither on
 the size of the pieces nor on the process that does a piece. Pieces are {(first, stop): sums}, as in
 ``points.base``.
+
+A process works in threads (``in_threads``): on several cores, and so that Ctrl-C stops it without
+delay. Kernels release Python's lock, so threads can use all cores. Python handles no signal while a
+kernel runs. If it handles one while numba prepares or ends a call, the KeyboardInterrupt is lost,
+or a ``SystemError`` takes its place. Python handles signals in the main thread only. The main
+thread therefore waits, and other threads call the kernels.
 """
 
 import math
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import islice
+from queue import SimpleQueue
+from threading import Thread
 from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.checks import InputError
+from twodiscs.model.checks import InputError, check_integer
 from twodiscs.points.base import added, reached
 from twodiscs.points.monte_carlo import MonteCarloPoint
-from twodiscs.sampling.blocks.threads import in_threads
 
 #: Blocks of the first round, and the longest round over the work before it: an error from few
 #: events predicts badly.
@@ -33,6 +42,12 @@ CALL = 2**24
 
 #: Steps of the grid of planned blocks while their number doubles.
 STEPS = 16
+
+#: Seconds between two calls of ``waiting`` during the wait for a result.
+LOOK = 0.2
+
+#: The largest number of threads.
+MOST_CORES = 1024
 
 
 @dataclass(frozen=True)
@@ -204,3 +219,59 @@ def joined(run, pieces):
             f"pieces must cover blocks 0 to {run.planned} without gap or overlap, not {given}"
         )
     return pieces
+
+
+# Threads ----------------------------------------------------------------------------------------
+
+
+def _serve(work, calls):
+    """Do the ``work`` of each (``Future``, arguments) in the queue ``calls``, until a None."""
+    for future, given in iter(calls.get, None):
+        if future.set_running_or_notify_cancel():
+            try:
+                future.set_result(work(*given))
+            except BaseException as error:
+                future.set_exception(error)
+        del future, given  # results may be large, and the next call late
+
+
+def in_threads(work, arguments, cores=1, waiting=None):
+    """Yield ``work(*given)`` for each tuple in ``arguments``, in their order, by ``cores`` threads.
+
+    With one core the calls run one after the other. Only a few calls begin before the caller asks
+    for their result. When the generator ends or is interrupted, no further call begins.
+    ``waiting()`` is called repeatedly during the wait for a result.
+    """
+    from concurrent.futures import Future, wait
+
+    cores = check_integer("cores", cores, 1, MOST_CORES)
+    given, calls, begun = iter(arguments), SimpleQueue(), deque()
+
+    def begin(number):
+        for some in islice(given, number):
+            begun.append(Future())
+            calls.put((begun[-1], some))
+
+    try:
+        # A call may take a minute. A script that ends does not wait for daemon threads, but would
+        # wait for the threads of an executor.
+        for _ in range(cores):
+            Thread(target=_serve, args=(work, calls), daemon=True).start()
+        begin(2 * cores)
+        while begun:
+            while not wait([begun[0]], LOOK).done:
+                if waiting is not None:
+                    waiting()
+            yield begun.popleft().result()
+            begin(1)
+    finally:
+        for future in begun:
+            future.cancel()
+        for _ in range(cores):
+            calls.put(None)
+
+
+def in_a_thread(work, *given):
+    """Return ``work(*given)``, run in another thread: for a kernel that is called once."""
+    (result,) = in_threads(work, [given])
+    return result

@@ -1,0 +1,361 @@
+"""The experiments of more than two discs: counts and intervals, their durations and costs.
+
+The kernels are ``lockstep`` for few discs and ``cells`` for ``LARGE`` numbers of them.
+"""
+
+import math
+from functools import lru_cache
+
+import numpy as np
+
+from twodiscs.dynamics.ensemble import LANES, REPLICAS, RETURNS, nearest_power_of_two, opened
+from twodiscs.dynamics.many import cells, lockstep
+from twodiscs.dynamics.many.lockstep import ABOVE, BESIDE, CLASSES, COLLISIONS, N, law_of, new_kicks
+from twodiscs.model.checks import InputError
+from twodiscs.model.events import HOPS, by_kind
+from twodiscs.sampling.many import insertions
+from twodiscs.sampling.many.chains import DENSEST, crowding
+from twodiscs.sampling.many.initial import (
+    LARGE,
+    draw_states,
+    initial_of,
+    large_grid,
+    method,
+    rows_of,
+    states_of,
+)
+from twodiscs.sampling.streams import open_stream
+from twodiscs.theory import n_discs
+from twodiscs.theory.virial import bulk_derivatives, rates
+
+#: Events of a replica, and of a replica whose initial state takes as long as ten thousand events.
+REPLICA_EVENTS, EVENTS_OF_CHAIN = 256, 8192
+
+#: Events of each disc in a replica of ``LARGE`` numbers of discs, and the fewest replicas of a
+#: block of crowded ones.
+EVENTS_OF_DISC, FEWEST = 64, 8
+
+#: The classes whose counts are those of an event, in the order of ``EVENTS``.
+PARTS = by_kind(
+    "dynamics/many/engine.py",
+    {
+        "hop": lambda event: ("vertical_hop" if event.axis == "y" else "horizontal_hop",),
+        "collision": lambda event: ("disc_collision",),
+        "wall": lambda event: ("right_wall" if event.axis == "x" else "top_wall",),
+        "walls": lambda event: ("right_wall", "top_wall"),
+    },
+)
+
+#: Entries of a log before it is read.
+ENTRIES = 2**14
+
+#: Numbers that are summed in each bin of intervals: Σ c, Σ c² and Σ c n.
+INTERVAL_SUMS = 3
+
+#: The time that a pair of discs adds to an event, over the time of an event of the plain ensemble.
+#: Events of 3, 4 and 8 discs take 3.7, 5.9 and 22 times as long. Pairs of rough discs take longer.
+PAIR, ROUGH_PAIR = 0.8, 1.3
+
+#: The same for ``LARGE`` numbers of discs: the time of an event, and the time that each disc adds.
+TOUCHED, COMPARED = 50.0, 0.25
+
+#: The time of a kick for each of ``LARGE`` numbers of discs, over the time of an event. The time to
+#: draw the velocity of a disc, over the time of an event of the plain ensemble.
+KICK, DRAW = 0.45, 8.0
+
+#: The largest factor by which the window of ``LARGE`` numbers of discs is longer.
+LONGER = 64
+
+
+# Rates and durations ------------------------------------------------------------------------------
+
+
+@lru_cache(maxsize=256)
+def expected_rates(scene):
+    """Return {event: rate} of the events of a ``Scene`` of more than two discs.
+
+    Rates are exact if that is known, and otherwise from some insertions (``insertions.expected``),
+    within a few per cent. If insertions find no room, the rates of wall hits and collisions are
+    guessed (``duration_of``), and so is one of them for which insertions give 0. For
+    ``LARGE`` numbers of discs rates follow from an equation of state, within some ten per cent. It
+    ends where discs are ``DENSEST``; there the guess, if it is more, takes its place.
+    """
+    known = n_discs.known_derivatives(scene)
+    if known is None:
+        known = insertions.expected(scene) if scene.discs < LARGE else bulk_derivatives(scene)
+    guess = dict.fromkeys(("disc_collision", "any_wall"), _guessed_rate(scene) / 2)
+    if known is None:
+        return guess
+    by_class = rates(scene, known)
+    summed = {event: sum(by_class[name] for name in parts) for event, parts in PARTS.items()}
+    found = guess | {e: rate for e, rate in summed.items() if rate and e in scene.events}
+    if scene.discs >= LARGE and crowding(scene) == DENSEST and not n_discs.method(scene):
+        found |= {event: max(rate, found[event]) for event, rate in guess.items()}
+    return found
+
+
+def expected_event_rate(scene):
+    """Return the wall hits and collisions per time, as ``expected_rates``."""
+    expected = expected_rates(scene)
+    return expected["any_wall"] + expected["disc_collision"]
+
+
+def duration_of(scene, events=None):
+    """Return a power of two in which about ``events`` happen, within a factor of two.
+
+    The rate is guessed from the wall hits of an ideal gas and from the distance to the largest
+    radius. By default ``events`` is 256, or ``EVENTS_OF_CHAIN`` if an initial state takes a chain
+    of moves. ``LARGE`` numbers of discs have ``EVENTS_OF_DISC`` each, more if replicas are fewer.
+    """
+    if events is None and scene.discs >= LARGE:
+        events = EVENTS_OF_DISC * scene.discs * _roomy_replicas(scene) // block_replicas(scene)
+    events = events or (EVENTS_OF_CHAIN if method(scene) == "chain" else REPLICA_EVENTS)
+    return nearest_power_of_two(events / _guessed_rate(scene))
+
+
+def _guessed_rate(scene):
+    room = scene.largest_radius - scene.radius
+    return math.sqrt(scene.discs) * (0.5 / scene.range_x + 0.5 / scene.range_y + 0.35 / room)
+
+
+def replica_duration(scene):
+    """Return the time T of one replica, a power of two, see ``duration_of``.
+
+    With friction it is shorter, so that kicks do not add to the work.
+    """
+    return nearest_power_of_two(duration_of(scene) / work_per_event(scene))
+
+
+def block_replicas(scene):
+    """Return how many replicas of a ``Scene`` a block has: fewer of ``LARGE`` numbers of discs.
+
+    There are still fewer, for longer, if contacts are so many that initial states take long.
+    """
+    if scene.discs < LARGE:
+        return REPLICAS
+    usual = _roomy_replicas(scene)
+    return min(usual, max(FEWEST, usual >> (math.frexp(crowding(scene))[1] - 1)))
+
+
+def _roomy_replicas(scene):
+    return REPLICAS >> (scene.discs.bit_length() - 5)
+
+
+def epoch_of(scene):
+    """Return a time in which each disc of a ``Scene`` has some ``EVENTS_OF_DISC`` events."""
+    return duration_of(scene, EVENTS_OF_DISC * scene.discs)
+
+
+# Counts -------------------------------------------------------------------------------------------
+
+
+def expected_rate(scene, event):
+    """Return the rate of all events that count as ``event``; 0 if it is not known."""
+    return expected_rates(scene).get(event, 0.0)
+
+
+def run_blocks(scene, events, seed, first, stop, duration, **shape):
+    """Count all events in some blocks, see ``runs.run_blocks``; few discs detect all."""
+    hops = any(event in HOPS for event in events)
+    counts = run_classes(scene, seed, first, stop, duration, hops=hops, **shape)
+    return of_events(*counts)
+
+
+def run_classes(scene, seed, first, stop, duration, *, replicas=None, lanes=LANES, hops=True):
+    """Count all classes of events of a ``Scene`` in the blocks ``first`` … ``stop`` − 1.
+
+    A block is ``replicas`` states of the invariant measure from the stream ``seed``, each followed
+    for ``duration``. Returns (sums, products) as ``count_events`` does: integers, which depend on
+    neither lanes nor shards. ``LARGE`` numbers of discs have the kernel ``many.cells``, which
+    leaves out hops if ``hops`` is not True.
+    """
+    replicas = replicas or block_replicas(scene)
+    hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
+    law, grid, initial = law_of(scene), large_grid(scene), initial_of(scene)
+    counts = None
+    for block in range(first, stop):
+        states = states_of(initial, replicas, seed, block)
+        given = states, np.uint64(seed), block * replicas
+        if grid is None:
+            part = lockstep.count_events(
+                *given, lanes, duration, law, hops_x, new_kicks(scene, lanes)
+            )
+        else:
+            part = cells.count_events(
+                *given, duration, epoch_of(scene), law, grid, True if hops else None,
+                hops_x if hops else None, new_kicks(scene, 1),
+            )  # fmt: skip
+        counts = part if counts is None else tuple(map(np.add, counts, part))
+    return counts
+
+
+def of_events(sums, products):
+    """Return (sums, products) of ``EVENTS``, given the sums and products of ``CLASSES``.
+
+    In every replica, the hits of all walls are the hits of the two classes of walls together.
+    """
+    matrix = np.array([[name in parts for name in CLASSES] for parts in PARTS.values()], np.int64)
+    whole = products + np.triu(products, 1).T
+    return matrix @ sums, np.triu(matrix @ whole @ matrix.T)
+
+
+def simulated_events(sums):
+    """Return how many wall hits and collisions there are among the counts of all classes."""
+    return int(sums[COLLISIONS] + sums[BESIDE] + sums[ABOVE])
+
+
+# Costs --------------------------------------------------------------------------------------------
+
+
+def planned(needed, affordable):
+    """Return the number of planned blocks: the number ``needed``, within the budget."""
+    return min(needed, affordable)
+
+
+def work_per_event(scene):
+    """Return the cost of an event over the usual cost, with kicks.
+
+    For few discs a kick costs an event and the draw of all velocities. For ``LARGE`` numbers of
+    discs it costs ``KICK`` events for each disc.
+    """
+    few = scene.discs < LARGE
+    kick = 1.0 + DRAW * scene.discs / cost_ratio(scene) if few else KICK * scene.discs
+    return 1.0 + kick * scene.friction / expected_event_rate(scene)
+
+
+def cost_ratio(scene):
+    """Return the time of an event over the time of an event of the plain ensemble."""
+    if scene.discs >= LARGE:
+        return TOUCHED + COMPARED * scene.discs
+    pair = PAIR if scene.moment_of_inertia is None else ROUGH_PAIR
+    return 1 + pair * scene.discs * (scene.discs - 1) / 2
+
+
+def interval_cost(scene):
+    """Return the time of an event over the time of an event of the plain ensemble."""
+    return cost_ratio(scene)
+
+
+# Trajectories -------------------------------------------------------------------------------------
+
+
+def advance_scene(scene, states, laps, time, kicks):
+    """Advance the columns of ``states`` (rows, replicas), as ``advance_states`` does."""
+    law, grid = law_of(scene), large_grid(scene)
+    if grid is None:
+        return lockstep.advance_states(states, laps, time, law, kicks)
+    return cells.advance_all(states, laps, time, epoch_of(scene), law, grid, kicks)
+
+
+def kicks_of(scene, number, seed, block=0):
+    """Return the ``Kicks`` of ``number`` states, see ``trajectory.kicks_of``."""
+    return opened(new_kicks(scene, number), seed, block)
+
+
+class Followed:
+    """One trajectory of ``LARGE`` numbers of discs, whose log is read in the order of time.
+
+    ``counted`` names the hops that are logged.
+    """
+
+    def __init__(self, scene, counted):
+        self.scene, self.law, self.grid = scene, law_of(scene), large_grid(scene)
+        self.epoch, self.laps = epoch_of(scene), np.zeros(scene.discs)
+        self.motion = cells.new_motion(scene.discs, self.grid, self.law.rough)
+        self.log = cells.new_log(scene.discs, ENTRIES, rows_of(scene) // scene.discs)
+        self.counts = np.zeros(N, np.int64)
+        self.hops = [True if hop in counted else None for hop in ("vertical_hop", "horizontal_hop")]
+
+    def start(self, state, seed, replica=0):
+        """Begin with a ``state``, a column of numbers, and the kicks of its stream."""
+        self.kicks = kicks_of(self.scene, 1, seed, replica)
+        self.log.origin[0] = self.laps[:] = 0.0
+        cells.start_from(state, 0, self.motion, self.grid, self.law)
+
+    def go_on(self, duration):
+        """Yield the log, and the order of its entries, of one stretch after the other."""
+        while duration > 0.0:
+            self.log.size[0] = 0
+            duration = cells.follow(
+                duration, self.epoch, self.motion, self.laps, self.grid, self.law, self.counts,
+                0, self.kicks, self.log, *self.hops,
+            )  # fmt: skip
+            yield self.log, np.argsort(self.log.times[: self.log.size[0]], kind="stable")
+
+
+# Intervals ----------------------------------------------------------------------------------------
+
+
+def mean_interval(scene, hop):
+    """Return the mean time between two hops of any pair, maybe within a few per cent only."""
+    if not (rate := expected_rates(scene).get(hop)):
+        raise InputError(
+            f"radius {scene.radius!r} is so large for {scene.discs} discs that the time between "
+            f"two events {hop} is not known"
+        )
+    return 1 / rate
+
+
+def _window(scene, hop):
+    """Return a time in which ``RETURNS`` intervals begin, or up to twice as many.
+
+    ``LARGE`` numbers of discs have a longer window, the duration of a replica, but at most
+    ``LONGER`` times the usual one. Their initial states take as much time to draw.
+    """
+    window = 2.0 ** math.ceil(math.log2(RETURNS * mean_interval(scene, hop)))
+    if scene.discs < LARGE:
+        return window
+    return min(max(window, replica_duration(scene)), LONGER * window)
+
+
+def intervals_of_chain(scene, hop):
+    """Return a number of intervals; up to twice as many begin in the window of a chain."""
+    return max(RETURNS, int(_window(scene, hop) / mean_interval(scene, hop) / 2))
+
+
+def events_per_interval(scene, hop):
+    """Return the wall and disc events per interval, as if there were ``intervals_of_chain``."""
+    window = _window(scene, hop)
+    events = window * expected_event_rate(scene) * work_per_event(scene)
+    return events / intervals_of_chain(scene, hop)
+
+
+def record_intervals(scene, hop, seed, first, stop, chains, returns, bins, sums, going):
+    """Add the intervals between hops to ``sums``, see ``lockstep.record_intervals``."""
+    window = _window(scene, hop)
+    return record_within(window, scene, hop, seed, first, stop, chains, bins, sums, going)
+
+
+def record_within(window, scene, hop, seed, first, stop, chains, bins, sums, going):
+    """Add the intervals that begin within a ``window`` of time, in chains of some blocks."""
+    if large_grid(scene) is None:
+        hops_x, kicks = True if hop == "horizontal_hop" else None, new_kicks(scene, LANES)
+        given = window, law_of(scene), hops_x, bins, sums, going, kicks
+        initial, totals = initial_of(scene), []
+        for block in range(first, stop):
+            states = states_of(initial, chains, seed, block)
+            part = lockstep.record_intervals(states, np.uint64(seed), block * chains, *given)
+            totals.append(part)
+        return np.hstack(totals)
+    (width, wide), path, initial = bins, Followed(scene, (hop,)), initial_of(scene)
+    totals, state = np.zeros((2, (stop - first) * chains)), np.zeros((initial.rows, 1))
+    for chain in range(totals.shape[1]):
+        if chain % chains == 0:
+            stream = open_stream(np.uint64(seed), first + chain // chains)
+        draw_states(stream, initial, state)
+        path.start(state, seed, first * chains + chain)
+        times, step = np.zeros(0), window
+        # If there is a hop in the window, also the first one after it ends an interval.
+        while step == window or (times.size and times[-1] < window):
+            for log, order in path.go_on(step):
+                if not going[0]:
+                    return totals
+                hops = order[log.classes[order] < COLLISIONS]
+                times = np.append(times, log.times[hops])
+            step = window / RETURNS
+        intervals = np.diff(times)[times[:-1] < window]
+        index = np.minimum((intervals / width).astype(int), wide.size - 1)
+        counts = np.bincount(np.append(index, wide[index]), minlength=sums.shape[1])
+        totals[:, chain] = intervals.sum(), intervals.size
+        sums += counts, counts**2, counts * intervals.size
+    return totals

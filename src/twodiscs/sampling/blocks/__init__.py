@@ -1,1 +1,0 @@
-"""Work in blocks: their random streams, and rounds."""
