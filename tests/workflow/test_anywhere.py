@@ -112,10 +112,10 @@ def test_without_one_the_default_is_built(complete, tmp_path):
     assert place.jobs(*arguments) == []
     for name in (
         *("walls/points/dynamics/0.3.json", "walls/check.csv", "thresholds.csv"),
-        *("figures/tails.pdf", "paper.pdf", "manifest.sha256"),
+        *("figures/tails.pdf", "report.html", "manifest.sha256"),
     ):
         (tmp_path / "results" / name).unlink()
-    assert {"dynamics", "study_table", "paper"} < {rule for rule, _ in place.jobs(*arguments)}
+    assert {"dynamics", "study_table", "report"} < {rule for rule, _ in place.jobs(*arguments)}
     place.snakemake("--cores", "2", *arguments)
     assert manifest(place) == manifest(complete)
     assert {*place.results()} == {*complete.results()}

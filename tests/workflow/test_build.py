@@ -32,7 +32,7 @@ def test_everything_that_is_called_for_is_built(complete):
     )
     walls = {name for name in results if name.startswith("walls/") and name.endswith(".csv")}
     assert walls == {f"walls/{n}.csv" for n in ("grid", "theory", "mean_times", "check", "cost")}
-    assert {"check.passed", "paper.pdf", "report.html", "configuration.json"} <= set(results)
+    assert {"check.passed", "tails.csv", "report.html", "configuration.json"} <= set(results)
     assert [n for n, text in results.items() if not text and not n.startswith("logs/")] == []
 
 
@@ -52,7 +52,7 @@ def test_the_manifest_is_one_of_sha256sum(complete):
     subprocess.run(["sha256sum", "--check", "--quiet", "manifest.sha256"], cwd=results, check=True)
     names = [line.split()[1] for line in (results / "manifest.sha256").read_text().splitlines()]
     assert {"errata.csv", "full/areas.csv", "walls/check.csv", "full/figures/volume.pdf"} < {*names}
-    assert not {"full/cost.csv", "accuracy_cost.csv", "figures/accuracy_cost.pdf"} & {*names}
+    assert not {"full/cost.csv", "effects_cost.csv", "figures/effects.pdf"} & {*names}
     assert sorted(names) == names
 
 
@@ -95,12 +95,12 @@ def test_a_formula_off_by_one_percent_fails_the_check_and_is_named(built):
 
 
 def test_what_is_deleted_comes_back(built):
-    lost = "full/figures/volume.pdf", "paper.pdf", "full/mean_times.csv"
+    lost = "full/figures/volume.pdf", "tails.csv", "full/mean_times.csv"
     for name in lost:
         (built.path / "results" / name).unlink()
     made = {
         ("figure", ("scene=full", "figure=volume")),
-        ("paper", ()),
+        ("study_table", ("table=tails",)),
         ("table", ("scene=full", "table=mean_times")),
     }
     assert made <= {*built.jobs(*(f"results/{name}" for name in lost))}
@@ -165,6 +165,17 @@ def test_what_only_looks_changes_nothing_and_lint_is_clean_and_every_rule_says_w
     assert everything() == before
     assert len(listed) > 40
     assert [line for line in listed if "(" not in line] == []
+
+
+@pytest.mark.slow
+def test_the_manuscript_is_made_of_all_studies(built):
+    built.configure(lambda mapping: mapping.update(shared=["paper", "report"]))
+    built.snakemake("--cores", "2")
+    results = built.results()
+    assert results["paper.pdf"].startswith(b"%PDF")
+    assert {"paper_numbers.csv", "passages.csv", "parts/passages/in_the_limit.csv"} < {*results}
+    assert 'href="paper.pdf"' in (built.path / "results" / "report.html").read_text()
+    assert built.jobs() == []
 
 
 @pytest.mark.slow

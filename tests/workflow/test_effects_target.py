@@ -42,4 +42,4 @@ def test_edit_of_a_scene_counts_that_one_again(built):
 
 
 #: The files that are made from the tables of the study.
-FOLLOWING = {"shared_figure", "paper", "report", "provenance"}
+FOLLOWING = {"shared_figure", "report", "provenance"}

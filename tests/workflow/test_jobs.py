@@ -3,6 +3,8 @@
 import os
 import re
 
+from twodiscs_paper.catalogue import STUDIES
+
 FULL, WALLS = "scene=full", "scene=walls"
 
 
@@ -34,7 +36,7 @@ def test_one_more_radius_runs_one_job_of_each_kind(built):
     assert not [job for job in jobs if WALLS in job[1]]
     assert {rule for rule, _ in jobs} == {
         *("monte_carlo", "dynamics", "exact", "table", "check"),
-        *("study_table", "figure", "paper", "report", "manifest", "provenance"),
+        *("study_table", "figure", "report", "manifest", "provenance"),
         *("configuration", "shared_figure"),
     }
 
@@ -45,7 +47,8 @@ NO_CODE = {"__init__", "__main__", "arguments", "catalogue", "cli", "configurati
 
 def test_the_checksums_are_those_of_all_sources(unbuilt):
     """A folder or module that is added belongs to a group, or to ``NO_CODE``."""
-    printed = unbuilt.snakemake("--dry-run", "--forceall", "--", "all", "benchmark").stdout
+    targets = "all", "paper", "benchmark", *STUDIES
+    printed = unbuilt.snakemake("--dry-run", "--forceall", "--", *targets).stdout
     jobs = printed.split("rule code:")[1:]
     listed = {
         path
@@ -62,7 +65,7 @@ def test_the_checksums_are_those_of_all_sources(unbuilt):
 
 
 CODE = "\n\nREMARK = 1\n"
-DOCUMENTS = [("paper",), ("report",), ("manifest",), ("provenance",)]
+DOCUMENTS = [("report",), ("manifest",), ("provenance",)]
 COUNTED = {"monte_carlo", "dynamics", "intervals"}
 
 
@@ -88,7 +91,7 @@ def test_edit_of_a_study_measures_it_again(built):
 
 def test_edit_of_a_document_makes_documents_again(built):
     built.edit("src/twodiscs_paper/pipeline/documents/report.py", CODE)
-    assert {rule for rule, _ in built.jobs()} == {"check", "paper", "report", "provenance"}
+    assert {rule for rule, _ in built.jobs()} == {"check", "report", "provenance"}
 
 
 def test_edit_of_the_script_of_points_makes_them_again(built):
@@ -103,7 +106,7 @@ def test_edit_of_how_figures_look_redraws_all_of_them_and_computes_nothing(built
     built.edit("src/twodiscs/figures/style.py", CODE)
     jobs = built.jobs()
     assert {rule for rule, _ in jobs} == {
-        *("figure", "shared_figure", "animate", "paper", "report", "manifest", "provenance"),
+        *("figure", "shared_figure", "animate", "report", "manifest", "provenance"),
     }
     assert len(jobs) == len(drawn) + len(DOCUMENTS)
 
@@ -111,7 +114,7 @@ def test_edit_of_how_figures_look_redraws_all_of_them_and_computes_nothing(built
 def test_edit_of_columns_makes_tables_again_and_computes_nothing(built):
     built.edit("src/twodiscs/comparison/table.py", CODE)
     rules = {rule for rule, _ in built.jobs()}
-    assert {"exact", "trajectory", "table", "check", "figure", "study_table", "paper"} <= rules
+    assert {"exact", "trajectory", "table", "check", "figure", "study_table"} <= rules
     assert not COUNTED & rules
 
 

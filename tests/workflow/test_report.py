@@ -163,7 +163,7 @@ def test_key_figures_have_their_captions_beneath_them(front, complete):
     key = [figure for figure in others if figure["key"]]
     titles = {f"{entry.title}.": entry for entry in (FIGURES | STUDY_FIGURES).values()}
     assert (
-        len({figure["title"] for figure in key}) == 2 + 2 + 5
+        len({figure["title"] for figure in key}) == 2 + 2 + 3
     )  # of the scenes full, walls, of all
     for figure in front["figures"]:
         assert figure["loaded"] > 300
@@ -218,4 +218,4 @@ def test_links_of_the_report_lead_to_files(front, complete):
     results = complete.path / "results"
     files = {link for link in front["links"] if not link.startswith("#")}
     assert [link for link in files if not (results / link).is_file()] == []
-    assert {"paper.pdf", "full/check.csv"} <= files
+    assert {"full/check.csv", "tails.csv"} <= files

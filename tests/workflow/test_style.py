@@ -1,4 +1,4 @@
-"""The Snakefiles: what Snakemake's linter says of them, and the pages about them."""
+"""Pages about the workflow: without it they would differ from rules, keys and names."""
 
 import re
 import subprocess
@@ -9,11 +9,6 @@ import pytest
 from checkout import REPOSITORY
 
 import twodiscs
-from twodiscs.figures.catalogue import FIGURES
-from twodiscs_paper.catalogue import STUDIES
-
-#: Rules without output.
-WITHOUT_OUTPUT = ("verify", "renew")
 
 
 def test_every_rule_keeps_a_log():
@@ -69,23 +64,3 @@ def test_the_drawing_of_the_rules_is_the_graph_of_snakemake():
     while longer := {(a, d) for a, b in joined for c, d in drawn if b == c} - joined:
         joined |= longer
     assert read <= joined
-
-
-def test_the_page_lists_every_target():
-    page = (REPOSITORY / "docs" / "pipeline.md").read_text()
-    targets = (
-        "all",
-        "check",
-        "paper",
-        "report",
-        "verify",
-        "explorer",
-        "provenance",
-        *FIGURES,
-        *STUDIES,
-    )
-    (table,) = re.findall(r"^\| target \|.*\n\|[-|]+\n((?:\|.*\n)+)", page, re.MULTILINE)
-    others = (*WITHOUT_OUTPUT, "explorer")
-    assert [
-        name for name in targets if f"`{name}`" not in (page if name in others else table)
-    ] == []
