@@ -97,11 +97,6 @@ def test_every_effect_is_a_key_with_its_meaning_range_and_default():
     assert {place: {*blocks[place]["properties"]} for place in keys} == keys
 
 
-def test_the_quantities_are_the_keys_of_watch():
-    watch = schema.keys()["properties"]["scenes"]["items"]["properties"]["watch"]
-    assert tuple(watch["properties"]) == tuple(Quantities.__dataclass_fields__)
-
-
 def test_reading_a_configuration_needs_no_numerical_package():
     code = (
         "import sys; from twodiscs_paper.configuration import load;"
@@ -389,12 +384,6 @@ def test_stability_needs_sides_that_leave_room_below():
     with pytest.raises(load.ConfigError, match="shared must leave out 'stability' unless"):
         load.load({"scenes": [scene], "shared": ["stability"]})
     assert load.load({"scenes": [scene], "shared": ["errata"]}).main.name == "a"
-
-
-def test_two_discs_are_the_default_and_leave_no_trace():
-    assert one(discs=2) == one()
-    assert repr(one(discs=2)) == repr(one())
-    assert one().box.discs == 2
 
 
 def test_more_discs_are_a_scene_of_their_own():

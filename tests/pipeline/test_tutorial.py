@@ -57,10 +57,6 @@ def text_of(output):
     return output.get("text") or output.data.get("text/plain", "")
 
 
-def test_the_notebook_is_small():
-    assert NOTEBOOK.stat().st_size < 500_000
-
-
 def test_outputs_are_put_beneath_their_blocks():
     page = "# A\n\n```python\nx = 1\nprint('a')\nx + 1\n```\n\n```text\nold\n```\n\nB\n"
     text, notebook = tutorial.tutorial(page)

@@ -9,8 +9,6 @@ import time
 from contextlib import contextmanager, suppress
 from importlib.util import find_spec
 
-import psutil
-
 DAEMONS = "munged", "slurmctld", "slurmd"
 COMMANDS = *DAEMONS, "sbatch", "srun", "squeue", "scancel"
 
@@ -101,29 +99,3 @@ def running(folder):
         for name in ("slurmd", "slurmctld", "munge"):
             with suppress(OSError, ValueError):
                 os.kill(int((folder / f"{name}.pid").read_text()), signal.SIGTERM)
-
-
-def lose_node(folder, environment):
-    """Kill the daemon of the node and the first job that runs there; return when it is back.
-
-    Slurm sees the node no more for a while, as if it had lost its power.
-    """
-
-    def say(*command):
-        return subprocess.run(command, env=environment, capture_output=True, text=True).stdout
-
-    def wait_for(state, *command):
-        ends = time.monotonic() + 120
-        while state not in say(*command):
-            assert time.monotonic() < ends, (folder / "slurmctld.log").read_text()
-            time.sleep(0.2)
-
-    wait_for("R", "squeue", "--noheader", "--format=%t")
-    daemon = psutil.Process(int((folder / "slurmd.pid").read_text()))
-    steps = [one for one in psutil.process_iter(["name"]) if one.info["name"] == "slurmstepd"]
-    for process in [daemon, *(one for s in steps for one in (s, *s.children(recursive=True)))]:
-        with suppress(psutil.NoSuchProcess):
-            process.kill()
-    wait_for("down", "sinfo", "--noheader", "--format=%t")
-    started = subprocess.run(["slurmd"], env=environment, capture_output=True, text=True)
-    assert started.returncode == 0, started.stderr

@@ -105,24 +105,6 @@ def test_every_path_in_a_shell_line_is_quoted(tmp_path):
 
 
 @pytest.mark.slow
-def test_without_one_the_default_is_built(complete, tmp_path):
-    place = copied(complete, tmp_path)
-    # From here the files of the workflow have other paths, which alone would be a reason.
-    arguments = *there(place), "--rerun-triggers", "mtime", "--"
-    assert place.jobs(*arguments) == []
-    for name in (
-        *("walls/points/dynamics/0.3.json", "walls/check.csv", "thresholds.csv"),
-        *("figures/tails.pdf", "report.html", "manifest.sha256"),
-    ):
-        (tmp_path / "results" / name).unlink()
-    assert {"dynamics", "study_table", "report"} < {rule for rule, _ in place.jobs(*arguments)}
-    place.snakemake("--cores", "2", *arguments)
-    assert manifest(place) == manifest(complete)
-    assert {*place.results()} == {*complete.results()}
-    assert {path.name for path in tmp_path.iterdir()} == {"results", ".snakemake"}
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("prefix", ["", "discs_"])
 def test_as_a_module_it_does_the_same_jobs(own, tmp_path, prefix):
     place = copied(own, tmp_path)

@@ -4,13 +4,12 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from importlib.util import find_spec
-from itertools import accumulate
 
 import psutil
 import pytest
 import yaml
 from checkout import REPOSITORY, Checkout
-from slurm import lose_node, missing, running
+from slurm import missing, running
 
 #: Points that are small enough for one job; and one with effects, in shards.
 SCENES = {
@@ -115,41 +114,6 @@ def test_a_queue_of_scripts(local, unbuilt, tmp_path, monkeypatch):
     assert len([*jobs.glob("*/process")]) == counted(unbuilt, tmp_path) + 1
 
 
-SHORT = """
-rule all:
-    input:
-        expand("{n}.txt", n=range(4)),
-    localrule: True
-
-
-rule short:
-    output:
-        "{n}.txt",
-    localrule: True
-    shell:
-        "date +%s.%N > {output}; sleep 1; date +%s.%N >> {output}"
-"""
-
-
-@needs_queue
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["queue", "slurm"])
-def test_two_short_jobs_at_once_run_where_one_logs_in(tmp_path, name):
-    if name == "slurm" and find_spec("snakemake_executor_plugin_slurm") is None:
-        pytest.skip("the extra `cluster` is not installed")
-    place = Checkout(tmp_path / "place")
-    place.path.mkdir()
-    (place.path / "Snakefile").write_text(SHORT)
-    here = {"executor": "cluster-generic", "cluster-generic-submit-cmd": "sh"}
-    place.snakemake(*profile(tmp_path, name, **here))
-    times = []
-    for file in place.path.glob("*.txt"):
-        begin, end = map(float, file.read_text().split())
-        times += [(begin, 1), (end, -1)]
-    running = [*accumulate(change for _, change in sorted(times))]
-    assert (len(times), max(running)) == (8, 2)
-
-
 @pytest.fixture
 def slurm(tmp_path, monkeypatch):
     """A Slurm that runs, (its folder, its environment), and arguments for its profile."""
@@ -174,14 +138,3 @@ def test_slurm(local, unbuilt, tmp_path, slurm):
     folder, _, arguments = slurm
     assert build(place_at(tmp_path / "jobs", unbuilt), *arguments) == local
     assert submitted(folder) == counted(unbuilt, tmp_path)
-
-
-@pytest.mark.slow
-def test_what_a_lost_node_did_is_done_again(local, unbuilt, tmp_path, slurm):
-    folder, environment, arguments = slurm
-    with ThreadPoolExecutor() as threads:
-        lost = threads.submit(lose_node, folder, environment)
-        assert build(place_at(tmp_path / "jobs", unbuilt), *arguments) == local
-        lost.result()
-    # Slurm itself has put the job of that node back into its queue.
-    assert "due to failure of node" in (folder / "slurmctld.log").read_text()
