@@ -169,7 +169,7 @@ MUTANTS = [
     ("each call repeats the first blocks", 'seeds["clusters"], first)', 'seeds["clusters"], 0)'),
     ("passages of other pairs", "partial(of_clusters, others=others)", "of_clusters"),
     ("proposals of heights as states", "    settle(state, initial, centres, initial.chain)\n", ""),
-    ("error of the second estimate", "math.hypot(found.stderr, reference.stderr)", "found.stderr"),
+    ("error of the second estimate", "math.hypot(found.stderr, reference.stderr)\n    return {\n        \"reference\": reference.value,\n", "found.stderr\n    return {\n        \"reference\": reference.value,\n"),
     ("error of a root", "variance.value / 2 if variance", "variance.value if variance"),
     ("limit of long waves", "np.polyfit(numbers**2, sizes", "np.polyfit(numbers, sizes"),
     ("kicks of the first block in all blocks of an average", "kicks = kicks_of(scene, each, stream, block)", "kicks = kicks_of(scene, each, stream, 0)"),
@@ -332,13 +332,12 @@ def main(words, most):
         for name in ("a", "b"):
             copies.put(copied(Path(home, name)))
 
-        def tried(mutant):
-            what, old, new = mutant
-            file, folder, begun = file_of(old), copies.get(), time.monotonic()
-            text = sources()[file]
+        def tried(plan):
+            (what, old, new), file, tests = plan
+            folder, begun, text = copies.get(), time.monotonic(), sources()[file]
             (folder / file).write_text(text.replace(old, new), encoding="utf-8")
             try:
-                failed = failure(folder, nearest(old)[:most])
+                failed = failure(folder, tests)
             finally:
                 (folder / file).write_text(text, encoding="utf-8")
                 copies.put(folder)
@@ -346,7 +345,9 @@ def main(words, most):
             print(f"{file}: {what}: {verdict} ({time.monotonic() - begun:.0f} s)", flush=True)
             return failed
 
-        found = [*threads.map(tried, wanted)]
+        # The plan is made at once, so that an edit meanwhile changes nothing.
+        plans = [(mutant, file_of(mutant[1]), nearest(mutant[1])[:most]) for mutant in wanted]
+        found = [*threads.map(tried, plans)]
         killers = sorted(
             {failed.partition("[")[0] for failed in found if failed and "::" in failed}
         )

@@ -27,6 +27,7 @@ from twodiscs.dynamics import runs, trajectory
 from twodiscs.model import checks, effects
 from twodiscs.model.box import Box, even_radii, radii, stream_seed
 from twodiscs.model.checks import InputError
+from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.base import read_json
@@ -322,6 +323,10 @@ SENTENCES = [
     # Figures
     (lambda: td.plot(td.sample(PAPER, 1), figure="mean_times"), "figure must be one of volume, "),
     (lambda: td.plot([td.sample(PAPER, 1), 1]), "result must be a scene, a trajectory, results"),
+    (
+        lambda: td.plot([td.intervals(PAPER, hop, 1) for hop in HOPS]),
+        "one kind of hop, not horizontal_hop and vertical_hop",
+    ),
     (lambda: td.plot(FIELD), "scene must be two plain discs for a drawing, but it has field"),
     (lambda: td.plot(Box(1.5, 1.0, discs=3)), "for a drawing, but it has discs 3"),
     (lambda: td.animate(PAPER, "a.gif"), "trajectory must be a result of trajectory()"),

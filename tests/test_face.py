@@ -17,8 +17,7 @@ import twodiscs as td
 from twodiscs.comparison.measurements import Measurement, measurement
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.dynamics.trajectory import state_of
-from twodiscs.figures import animation, style
-from twodiscs.figures.style import LOOKS
+from twodiscs.figures import style
 from twodiscs.model.box import Box
 from twodiscs.sampling.starts import components
 from twodiscs_paper.configuration import load
@@ -322,17 +321,6 @@ def test_on_a_periodic_axis_any_image_serves():
 # Figures and tables -------------------------------------------------------------------------------
 
 
-def test_figures_and_animations(simulated, sampled, intervals, trajectory, tmp_path, monkeypatch):
-    for i, found in enumerate((simulated, [sampled], intervals, trajectory, SCENE, Box.of(SCENE))):
-        td.plot(found, tmp_path / f"{i}.png")
-        assert (tmp_path / f"{i}.png").stat().st_size > 5000
-    assert td.plot(sampled, figure="wall_area")._repr_png_().startswith(b"\x89PNG")
-    monkeypatch.setattr(animation, "BEFORE", 2)
-    monkeypatch.setattr(animation, "AFTER", 2)
-    td.animate(trajectory, tmp_path / "two.gif")
-    assert (tmp_path / "two.gif").read_bytes().startswith(b"GIF")
-
-
 def test_what_changes_with_time_is_drawn_with_its_errors(tmp_path):
     def seen(start, now):
         return np.stack([start["u1"] * now["u1"], (now["x1"] - start["x1"]) ** 2], axis=1)
@@ -360,34 +348,6 @@ def test_what_changes_with_time_is_drawn_with_its_errors(tmp_path):
         assert axes.get_legend() is None
         with style.context():
             assert unclear(figure) == []
-
-
-@pytest.mark.parametrize(
-    ("radius", "effects", "lines"),
-    [
-        (0.249, {}, ["exact slope at 0", r"$\kappa\,e^{-2\kappa t/\tau}$, by clusters"]),
-        (0.2, {}, ["exact slope at 0"]),
-        (0.2, {"mass_ratio": 2}, []),
-    ],
-)
-def test_a_transmission_is_drawn_beside_what_is_known(radius, effects, lines, tmp_path):
-    scene = td.Scene(1.5, 1.0, radius, **effects)
-    found = td.transmission(scene, "horizontal_hop", 1)
-    (axes,) = td.plot(found, tmp_path / "kappa.png", figure="transmission").axes
-    drawn = [line for line in axes.lines if line.get_marker() in ("x", LOOKS[found.hop][1])]
-    shown = sorted(point for line in drawn for point in zip(*line.get_data(), strict=True))
-    assert shown == [*found.frame()["kappa"].items()]
-    assert axes.get_legend_handles_labels()[1] == lines
-    with pytest.raises(td.InputError, match="figure must be one of transmission, not 'observed'"):
-        td.plot(found, figure="observed")
-
-
-def test_intervals_of_one_kind_of_hop_are_drawn_together():
-    vertical, horizontal = (
-        td.intervals(SCENE, hop, 1) for hop in ("vertical_hop", "horizontal_hop")
-    )
-    with pytest.raises(td.InputError, match="one kind of hop, not horizontal_hop and vertical_hop"):
-        td.plot([vertical, horizontal])
 
 
 def test_tables_come_back_with_units_and_provenance(simulated, sampled, tmp_path):

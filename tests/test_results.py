@@ -65,19 +65,6 @@ def test_results_go_on_and_come_back(name, tmp_path):
     assert bits(more.more(**{setting: less.settings[setting]})) == bits(less)
 
 
-def test_more_is_what_is_asked_for_at_once():
-    for scene in (SCENE, NARROW):
-        step = td.simulate(scene, 0.3, seed=5)
-        for error in (0.1, 0.02):
-            step = step.more(error=error)
-            assert step.rows == td.simulate(scene, error, seed=5).rows
-            assert step.rows == td.simulate(scene, error, seed=5, cores=3).rows
-    assert td.sample(SCENE, 1e6).more(samples=4e6).rows == td.sample(SCENE, 4e6, cores=2).rows
-    less, more = (td.intervals(SCENE, "vertical_hop", number) for number in (1e5, 3e5))
-    assert less.more(3e5).rows == more.rows
-    assert less.more(3e5).mean == more.mean
-
-
 #: {stage: (settings, larger settings, function of the face)} of a job of the pipeline.
 JOBS = {
     "dynamics": (

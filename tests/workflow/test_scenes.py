@@ -176,9 +176,9 @@ def test_scenes_of_another_file_do_not_inherit_what_is_built_once(unbuilt, tmp_p
     path.write_text(yaml.safe_dump({"scenes": [scene]}))
     found = {rule for rule, w in unbuilt.jobs("--configfile", str(path)) if "scene" not in repr(w)}
     assert found == ALWAYS | OF_REPORT
-    # A file without scenes is laid over config.yaml, which asks for the manuscript.
+    # A file without scenes is laid over config.yaml, which asks for studies.
     path.write_text("seed: 5\n")
-    assert "paper" in {rule for rule, _ in unbuilt.jobs("--configfile", str(path))}
+    assert "study_table" in {rule for rule, _ in unbuilt.jobs("--configfile", str(path))}
 
 
 def test_the_explorer_needs_no_points(unbuilt):
