@@ -191,34 +191,17 @@ def _exact(scene, options):
 
 
 def _simulate(scene, options):
-    _print_measured(
-        twodiscs.simulate(
-            scene,
-            options.error,
-            duration=options.duration,
-            seed=options.seed,
-            budget=options.budget,
-            events=options.events,
-            name=options.name,
-            cores=options.cores,
-        ),
-        options,
-    )
+    names = "error", "duration", "seed", "budget", "events", "name", "cores"
+    _print_measured(twodiscs.simulate(scene, **_given(options, names)), options)
 
 
 def _sample(scene, options):
-    _print_measured(
-        twodiscs.sample(
-            scene,
-            options.samples,
-            seed=options.seed,
-            quantities=options.quantities,
-            shell=options.shell,
-            name=options.name,
-            cores=options.cores,
-        ),
-        options,
-    )
+    names = "samples", "seed", "quantities", "shell", "name", "cores"
+    _print_measured(twodiscs.sample(scene, **_given(options, names)), options)
+
+
+def _given(options, names):
+    return {name: getattr(options, name) for name in names}
 
 
 def _print_measured(result, options):
@@ -231,9 +214,7 @@ def _print_measured(result, options):
 
 
 def _trajectory(scene, options):
-    path = twodiscs.trajectory(
-        scene, options.duration, seed=options.seed, start=options.start, name=options.name
-    )
+    path = twodiscs.trajectory(scene, **_given(options, ("duration", "seed", "start", "name")))
     if options.csv:
         write(path.to_csv(index=False).rstrip("\n"))
     elif options.json:

@@ -109,25 +109,3 @@ def test_strata_of_few_starts_are_taken_together_and_one_start_has_no_error():
     one = np.zeros((2, 3), int)
     one[1, 1] = 1
     assert stratified_mean(shares, one, 3 * one, 9 * one) == (3.0, math.inf)
-
-
-GOOD = {"shares": [[0.5, 0.5]], "starts": [[9, 9]], "counts": [[1, 2]], "squares": [[1, 2]]}
-
-
-@pytest.mark.parametrize(
-    ("wrong", "said"),
-    [
-        ({"shares": [[0.5, 0.4]]}, "shares of strata must add up to 1, not to 0.9"),
-        ({"shares": [[float("nan"), 0.5]]}, "must add up to 1, not to nan"),
-        ({"starts": [[0, 0]]}, "strata must be in arrays of one shape"),
-        ({"starts": [[9], [9]]}, "strata must be in arrays of one shape"),
-        ({"counts": [1, 2]}, "strata must be in arrays of one shape"),
-        ({"counts": [[1, 2], [3]]}, "strata must be arrays of numbers"),
-        ({"squares": "many"}, "strata must be arrays of numbers"),
-        ({"squares": None}, "strata must be"),
-    ],
-)
-def test_what_are_no_strata_is_refused(wrong, said):
-    stratified_mean(**GOOD)
-    with pytest.raises(ValueError, match=said):
-        stratified_mean(**GOOD | wrong)

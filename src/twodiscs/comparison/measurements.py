@@ -480,33 +480,42 @@ def run_simulation(
     progress=None, kept=None,
 ):  # fmt: skip
     """Return the ``Measurements`` of ``simulate``; the parts ``kept`` are not done again."""
-    possible = check_scene(scene).events
-    if duration is not None:
-        return _timed(scene, error, duration, seed, budget, events, name, cores, progress, kept)
+    possible, timed = check_scene(scene).events, duration is not None
+    if timed and error is not None:
+        raise InputError("error and duration must not both be given: leave out one of them")
     if isinstance(error, Mapping) and not error:
         raise InputError(f"error must hold some of {', '.join(possible)}, not {{}}")
-    if not isinstance(error, Mapping):
-        errors = dict.fromkeys(possible, error)
-    elif events is None:
-        errors, events = error, [*error]
-    else:
-        errors = error
+    errors = error if isinstance(error, Mapping) else dict.fromkeys(possible, error)
+    if isinstance(error, Mapping) and events is None:
+        events = [*error]
     tracked = _named("events", "event", events, possible, scene)
     if missing := [event for event in tracked if event not in errors]:
         raise InputError(f"error must have a value for every event, but has none for {missing[0]}")
-    target = {event: check_error("error", errors[event]) for event in tracked}
+    # A run of a duration is asked for no error: 1 is the largest that it takes.
+    target = {e: 1.0 if timed else check_error("error", errors[e]) for e in tracked}
     budget, stream = check_count("budget", budget), seed_of(scene, "dynamics", seed, name)
-    settings = {
-        "error": target if isinstance(error, Mapping) else check_error("error", error),
-        "seed": int(seed), "budget": budget, "events": tracked, "name": name,
-    }  # fmt: skip
-    from twodiscs.dynamics.runs import CountingRun
+    settings = {"seed": int(seed), "budget": budget, "events": tracked, "name": name}
+    if timed:
+        from twodiscs.dynamics.runs import TimedRun
 
-    run = CountingRun(scene, target, budget, stream)
+        duration = check_length("duration", duration)
+        settings |= {"error": None, "duration": duration}
+        run = TimedRun(scene, target, budget, stream, duration)
+    else:
+        from twodiscs.dynamics.runs import CountingRun
+
+        settings["error"] = target if errors is error else check_error("error", error)
+        run = CountingRun(scene, target, budget, stream)
     with progress_bar(progress, f"simulate r = {scene.radius:g}") as progress:
         point = run.run(progress, cores, kept)
     rows = MeanTimes.rows(Box.of(scene), theory_rows(scene), {"dynamics": [point]})
-    note = _note_of_error(rows, target, budget, point.events)
+    if timed:
+        note = (
+            f"duration {duration:g} asked for, {point.replicas * point.duration:g} simulated: "
+            f"{point.replicas} trajectories of {point.duration:g} each"
+        )
+    else:
+        note = _note_of_error(rows, target, budget, point.events)
     return Measurements("simulate", scene, rows, settings, point, note)
 
 
@@ -524,32 +533,6 @@ def _note_of_error(rows, target, budget, events):
         asked = min(target[row["event"]] for row in possible)
         return f"error {asked:g} asked for, {reached:.2g} reached: the minimum is {minimum}"
     return None
-
-
-def _timed(scene, error, duration, seed, budget, events, name, cores, progress, kept):
-    """Return the ``Measurements`` of mean times from trajectories of a ``duration`` in all."""
-    if error is not None:
-        raise InputError("error and duration must not both be given: leave out one of them")
-    tracked = _named("events", "event", events, scene.events, scene)
-    budget, stream = check_count("budget", budget), seed_of(scene, "dynamics", seed, name)
-    duration = check_length("duration", duration)
-    settings = {
-        "error": None, "duration": duration, "seed": int(seed), "budget": budget,
-        "events": tracked, "name": name,
-    }  # fmt: skip
-    from twodiscs.dynamics.runs import TimedRun
-
-    # No error is asked for: 1 is the largest that a run takes.
-    run = TimedRun(scene, dict.fromkeys(tracked, 1.0), budget, stream, duration)
-    with progress_bar(progress, f"simulate r = {scene.radius:g}") as progress:
-        point = run.run(progress, cores, kept)
-    rows = MeanTimes.rows(Box.of(scene), theory_rows(scene), {"dynamics": [point]})
-    total = point.replicas * point.duration
-    note = (
-        f"duration {duration:g} asked for, {total:g} simulated: {point.replicas} trajectories "
-        f"of {point.duration:g} each"
-    )
-    return Measurements("simulate", scene, rows, settings, point, note)
 
 
 @answering

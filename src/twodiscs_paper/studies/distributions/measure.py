@@ -23,7 +23,7 @@ from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.two.path import time_to_next
 from twodiscs.model.box import Box, key, stream_seed
 from twodiscs.model.events import HOPS
-from twodiscs.points.estimates import Estimate, density_at_zero, mean_of
+from twodiscs.points.estimates import Estimate, mean_of
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import (
     draw_configuration,
@@ -69,6 +69,18 @@ LATE = 0.6
 
 #: The columns that identify one hop at one radius.
 CASE = ("scene", "width", "height", "radius", "event", "exact_mean")
+
+
+def density_at_zero(counts, intervals, width):
+    """Return the density at 0 as an ``Estimate``, as ``density_of_chains_at_zero`` does.
+
+    ``counts`` belong to the first two bins of ``width`` from 0, out of a number of independent
+    ``intervals``; the error is for multinomial counts.
+    """
+    n, weights = np.array(counts, float), np.array([7, -1]) / 6
+    share = weights @ n / intervals
+    spread = weights**2 @ n / intervals - share**2
+    return Estimate(share / width, math.sqrt(spread / intervals) / width, intervals)
 
 
 @compiled
