@@ -12,11 +12,7 @@ from typing import TYPE_CHECKING
 import twodiscs
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.model.box import Box, scene_of
-from twodiscs.model.checks import (
-    InputError,
-    answering,
-    quote,
-)
+from twodiscs.model.checks import InputError, answering, quote
 from twodiscs.points.base import digest, read_json, with_arrays
 
 if TYPE_CHECKING:
@@ -146,9 +142,7 @@ def from_dict(content):
 
 
 @answering
-def load_result(
-    path: str | PathLike[str],
-) -> Measurements | Any:
+def load_result(path: str | PathLike[str]) -> Measurements | Any:
     """Read a result that ``save(path)`` wrote, or a point of a build; ``more`` goes on from it.
 
     Parameters

@@ -11,14 +11,7 @@ import numpy as np
 from twodiscs.comparison.result import note_of_number, progress_bar, seed_of
 from twodiscs.dynamics.runs import engine_of
 from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, kicks_of, new_wraps, unwrap
-from twodiscs.model.checks import (
-    InputError,
-    answering,
-    as_list,
-    check_count,
-    format_number,
-    quote,
-)
+from twodiscs.model.checks import InputError, answering, as_list, check_count, format_number, quote
 from twodiscs.model.many import LARGE
 from twodiscs.model.scene import check_scene
 from twodiscs.sampling.rounds import in_threads

@@ -5,19 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, overload
 
-from twodiscs.comparison.measurements import (
-    Measurements,
-    rows_by_quantity,
-    run_simulation,
-)
+from twodiscs.comparison.measurements import Measurements, rows_by_quantity, run_simulation
 from twodiscs.comparison.quantities import box_with, scenes_of
 from twodiscs.comparison.result import Result
 from twodiscs.model.box import Box
-from twodiscs.model.checks import (
-    InputError,
-    answering,
-    quote,
-)
+from twodiscs.model.checks import InputError, answering, quote
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

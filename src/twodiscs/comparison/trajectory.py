@@ -12,13 +12,7 @@ from twodiscs.comparison.result import progress_bar, seed_of
 from twodiscs.comparison.states import VELOCITIES
 from twodiscs.dynamics.trajectory import DISCS, columns, followed
 from twodiscs.model.box import parameters_of, scene_of
-from twodiscs.model.checks import (
-    InputError,
-    answering,
-    as_list,
-    quote,
-    writing_to,
-)
+from twodiscs.model.checks import InputError, answering, as_list, quote, writing_to
 from twodiscs.sampling.starts import components
 
 if TYPE_CHECKING:

@@ -13,12 +13,7 @@ from twodiscs.comparison.result import Result, note_of_number, progress_bar
 from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK
 from twodiscs.dynamics.runs import chains_of, engine_of
 from twodiscs.model.box import Box, key, stream_seed
-from twodiscs.model.checks import (
-    InputError,
-    answering,
-    check_count,
-    quote,
-)
+from twodiscs.model.checks import InputError, answering, check_count, quote
 from twodiscs.model.events import AXIS
 from twodiscs.model.scene import check_scene
 from twodiscs.points.base import reached

@@ -56,16 +56,17 @@ FRAME, HOP, LAST = 50, 1500, 1000
 COLOURS, APART = 32, 60
 
 
-def moments(rows, step):
+def moments(rows, step, discs=2):
     """Return (times of the frames, name of the hop or None, its time) for rows of trajectory.csv.
 
     The hop is of the rarest kind that occurs. It is the first one with no other of its kind in the
     time that is shown, or else the first of all. Frames are ``step`` apart, the hop is one of them,
-    and all are within the trajectory; without any hop they show its start. Raises ``InputError`` if
+    and all are within the trajectory; without any hop they show its start. For more than two
+    ``discs`` hops do not matter, and there are as many frames as with one. Raises ``InputError`` if
     it does not last two frames.
     """
     start, end = rows[0]["time"], rows[-1]["time"]
-    counts = Counter(row["event"] for row in rows if row["event"] in HOPS)
+    counts = Counter(row["event"] for row in rows if row["event"] in HOPS and discs == 2)
     hop = min(sorted(counts), key=counts.get, default=None)
     times = [start, *(row["time"] for row in rows if row["event"] == hop), end]
     isolated = [
@@ -74,7 +75,8 @@ def moments(rows, step):
         if time - before > BEFORE * step and after - time > AFTER * step
     ]
     centre = (isolated or times[1:])[0] if hop else start
-    frames = centre + step * np.arange(-BEFORE if hop else 0, AFTER + 1)
+    later = AFTER if discs == 2 else BEFORE + AFTER
+    frames = centre + step * np.arange(-BEFORE if hop else 0, later + 1)
     frames = frames[(frames >= start) & (frames <= end)]
     if len(frames) < 2:
         raise InputError(
@@ -99,7 +101,7 @@ class Stage:
         self.rows = {name: np.array([row[name] for row in rows]) for name in names}
         self.rows |= self._more(rows)
         self.sides = {"x": width, "y": height}
-        self.times, self.hop, self.centre = self.moments(rows, step)
+        self.times, self.hop, self.centre = moments(rows, step, box.discs)
         self.trace, self.marked = TRACE * step, MARKED * step
         self.axis = "y" if self.hop == "vertical_hop" else "x"
 
@@ -160,10 +162,6 @@ class Stage:
             style = {"lw": 0.8, "ls": (0, (1, 2))} if axis in self.scene.periodic else {"lw": 1.2}
             for end in ends:
                 self.box.plot(*end, color=BLACK, clip_on=False, **style)
-
-    def moments(self, rows, step):
-        """Return (times of the frames, hop, its time) by the function ``moments``."""
-        return moments(rows, step)
 
     def places(self, disc, times):
         """Return the centres (n, 2) of a disc at ``times``."""
@@ -303,17 +301,9 @@ class StageOfMany(Stage):
 
     above = 0
 
-    def moments(self, rows, step):
-        """Return (times of the frames, None, the first of them), the same number as for a hop."""
-        start, end = rows[0]["time"], rows[-1]["time"]
-        frames = start + step * np.arange(BEFORE + AFTER + 1)
-        frames = frames[frames <= end]
-        if len(frames) < 2:
-            raise InputError(
-                f"trajectory must last two frames, a time of {step:g}, not {end - start:g}"
-            )
-        self.colours = motion.colours(self.of, rows[0])
-        return frames, None, start
+    def __init__(self, box, radius, rows):
+        self.colours = motion.colours(box, rows[0])
+        super().__init__(box, radius, rows)
 
     def _draw_strip(self):
         axis, side = motion.along(self.of), max(self.of.width, self.of.height)

@@ -22,11 +22,7 @@ from twodiscs.figures.draw import OF_A_BOX, draw
 from twodiscs.figures.radius import OVER_RADIUS, add, quantity_of
 from twodiscs.figures.style import BLACK, LOOKS, SERIES, name_of, new_figure
 from twodiscs.model.box import Box, scene_of
-from twodiscs.model.checks import (
-    InputError,
-    answering,
-    check_choice,
-)
+from twodiscs.model.checks import InputError, answering, check_choice
 from twodiscs.model.scene import Scene
 from twodiscs.theory import laws
 

@@ -243,10 +243,7 @@ def _rooted(series):
         if not row["estimate"]:
             return row
         value = row["estimate"] ** 0.5
-        return row | {
-            "estimate": value,
-            "stderr": row["stderr"] and row["stderr"] / (2 * value),
-        }
+        return row | {"estimate": value, "stderr": row["stderr"] and row["stderr"] / (2 * value)}
 
     return replace(series, rows=[*map(root, series.rows)], exact=np.sqrt(series.exact))
 

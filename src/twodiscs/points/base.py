@@ -177,10 +177,3 @@ def pieces_of(paths):
         for name, part in with_arrays(content["parts"]).items():
             found.setdefault(name, {}).update(part["sums"])
     return found
-
-
-def require_positive(block, *names):
-    """Raise ``InputError`` unless the fields of these ``names`` are larger than 0."""
-    for name in names:
-        if not getattr(block, name) > 0:
-            raise InputError(f"{name} must be larger than 0, not {getattr(block, name)!r}")

@@ -10,7 +10,7 @@ import numpy as np
 from twodiscs.model.checks import check_choice
 from twodiscs.model.events import EVENTS
 from twodiscs.points import estimates
-from twodiscs.points.base import Point, reached, require_positive
+from twodiscs.points.base import Point, reached
 from twodiscs.points.estimates import stratified_mean
 
 COLLISIONS, ANY_WALLS = EVENTS.index("disc_collision"), EVENTS.index("any_wall")
@@ -37,9 +37,6 @@ class Count:
 
     #: A better estimate (⟨N⟩, error) than from these sums, None without one.
     mean = None
-
-    def __post_init__(self):
-        require_positive(self, "duration", "share", "replicas")
 
     @property
     def sums(self):
@@ -116,9 +113,6 @@ class DynamicsPoint(Point):
     target: dict[str, float | None]
     strips: dict[str, StripCount]
     parts: dict | None = field(default=None, compare=False, repr=False)
-
-    def __post_init__(self):
-        require_positive(self, "duration", "replicas")
 
     @classmethod
     def of(cls, radius, parts):

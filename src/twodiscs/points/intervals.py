@@ -8,7 +8,7 @@ from typing import ClassVar, NamedTuple
 
 from twodiscs.model.checks import check_choice
 from twodiscs.points import estimates
-from twodiscs.points.base import Point, reached, require_positive
+from twodiscs.points.base import Point, reached
 from twodiscs.points.estimates import Estimate
 
 #: The number of equal bins.
@@ -83,9 +83,6 @@ class IntervalsPoint(Bins, Point):
     stderr: float
     intervals_squared: int | None = None
     parts: dict | None = field(default=None, compare=False, repr=False)
-
-    def __post_init__(self):
-        require_positive(self, "bin_width", "intervals", "chains", "mean")
 
     @classmethod
     def of(cls, radius, parts):

@@ -9,7 +9,7 @@ import numpy as np
 
 from twodiscs.model.checks import check_choice
 from twodiscs.points import estimates
-from twodiscs.points.base import Point, reached, require_positive
+from twodiscs.points.base import Point, reached
 from twodiscs.points.estimates import Estimate
 
 #: The areas of walls from which symmetry gives all others.
@@ -56,9 +56,6 @@ class Hits:
     measure: float
     epsilon: float | None
 
-    def __post_init__(self):
-        require_positive(self, "measure")
-
 
 @dataclass(frozen=True)
 class MonteCarloPoint(SampledPoint):
@@ -74,9 +71,6 @@ class MonteCarloPoint(SampledPoint):
     quantities: dict[str, Hits]
     right_and_top: int | None = None
     parts: dict | None = field(default=None, compare=False, repr=False)
-
-    def __post_init__(self):
-        require_positive(self, "samples")
 
     @classmethod
     def of(cls, radius, parts):
@@ -146,9 +140,6 @@ class Weights:
     squares: int
     measure: float
 
-    def __post_init__(self):
-        require_positive(self, "measure")
-
 
 @dataclass(frozen=True)
 class InsertionPoint(SampledPoint):
@@ -166,9 +157,6 @@ class InsertionPoint(SampledPoint):
     quantities: dict[str, Weights]
     products: dict[str, int]
     parts: dict | None = field(default=None, compare=False, repr=False)
-
-    def __post_init__(self):
-        require_positive(self, "samples", "unit")
 
     @classmethod
     def of(cls, radius, parts):

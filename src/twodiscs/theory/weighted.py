@@ -436,12 +436,6 @@ def areas(scene):
     return {event: _area(space, event) for event in EVENTS}
 
 
-def passing_area(scene, hop):
-    """Return A of a ``hop``; on a periodic axis, too, though it is no event of the ``Scene``."""
-    space = _Space(scene, (scene.velocity_components - 1) / 2)
-    return scene.fastest * space.passing(AXIS[hop])
-
-
 def volume_near(scene, hop, distance):
     """Return the part of V with a separation up to ``distance`` along the axis of a ``hop``."""
     return _Space(scene, scene.velocity_components / 2 - 1).within(AXIS[hop], Fraction(distance))
@@ -498,7 +492,8 @@ def rate(scene, event):
 
 def passing_rate(scene, hop):
     """Return the rate at which the discs pass each other in a ``hop`` along a periodic axis."""
-    area = passing_area(scene, hop)
+    space = _Space(scene, (scene.velocity_components - 1) / 2)
+    area = scene.fastest * space.passing(AXIS[hop])
     return flux_constant(scene.velocity_components) * area / volume(scene)
 
 
