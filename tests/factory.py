@@ -11,7 +11,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.points.base import content_of, with_arrays, write_json
 from twodiscs.points.dynamics import DynamicsPoint
-from twodiscs.points.intervals import IntervalsPoint, WideBins
+from twodiscs.points.intervals import Bins, IntervalsPoint
 from twodiscs.points.monte_carlo import Hits, MonteCarloPoint
 from twodiscs.theory import exact
 
@@ -58,13 +58,13 @@ def counts_point(radius=0.37, event="vertical_hop", total=0, squares=0, **fields
 
 def bins_point(radius=0.1, counts=(7, 5, 0), **fields):
     """Return a point of intervals of the vertical hop, a chain each, and other ``fields``."""
-    found = {"counts": [*counts], "squares": [*counts]}
+    bins = Bins([*range(len(counts) + 1)], [*counts], [*counts])
     given = {
         **{"radius": radius, "event": "vertical_hop", "bin_width": 0.125, "overflow": 0},
         **{"intervals": sum(counts), "chains": sum(counts), "mean": 0.5, "stderr": 0.1},
-        **{"wide": WideBins(edges=[*range(len(counts) + 1)], **found)},
+        **{"equal": bins, "wide": bins},
     }
-    return IntervalsPoint(**given | found | fields)
+    return IntervalsPoint(**given | fields)
 
 
 def all_reached(point):
@@ -174,18 +174,18 @@ class Laws:
         edges = np.exp(-0.25 * np.arange(13))
         counts = rng.multinomial(intervals, [*-np.diff(edges), edges[-1]])
 
-        def of_chains(counts):
-            """Return counts and sums of squares of chains that hold them by Poisson's law."""
+        def of_chains(edges, counts):
+            """Return the ``Bins`` of chains that hold these counts by Poisson's law."""
             whole = [int(n) for n in counts]
-            return {"counts": whole, "squares": [n + -(-n * n // chains) for n in whole]}
+            return Bins(edges, whole, [n + -(-n * n // chains) for n in whole])
 
         wide = [0, 1, 2, 4, 8, 12]
         return IntervalsPoint(
             radius=self.scene.radius,
             event="vertical_hop",
             bin_width=width,
-            **of_chains(counts[:-1]),
-            wide=WideBins(edges=wide, **of_chains(np.add.reduceat(counts[:-1], wide[:-1]))),
+            equal=of_chains([*range(13)], counts[:-1]),
+            wide=of_chains(wide, np.add.reduceat(counts[:-1], wide[:-1])),
             overflow=int(counts[-1]),
             intervals=intervals,
             chains=chains,

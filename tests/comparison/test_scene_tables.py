@@ -36,6 +36,7 @@ from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.dynamics import StripCount
+from twodiscs.points.intervals import Bins
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
 from twodiscs.theory.exact import rate
@@ -318,7 +319,7 @@ def test_rows_of_the_histogram(theory, laws):
         assert row["density"] == pytest.approx(density, abs=5 * row["stderr"])
         assert abs(row["z"]) < 5
         assert row["z"] == pytest.approx((row["mean"] - tau) / row["mean_stderr"], rel=0.02)
-    empty = replace(points[0], counts=[0, 5], squares=[0, 5])
+    empty = replace(points[0], equal=Bins([0, 1, 2], [0, 5], [0, 5]))
     first, second = [
         row for row in HopHistogram.rows(theory, {"intervals": [empty]}) if row["bins"] == "equal"
     ]

@@ -12,7 +12,7 @@ import twodiscs as td
 from twodiscs.comparison.table import by_radius
 from twodiscs.model.checks import InputError
 from twodiscs.points.dynamics import StripCount
-from twodiscs.points.intervals import WideBins
+from twodiscs.points.intervals import Bins
 from twodiscs.points.monte_carlo import Hits, InsertionPoint, MonteCarloPoint, Weights
 
 LAW = Laws(BOX.scene(0.1))
@@ -118,15 +118,16 @@ def test_the_error_of_a_density_is_that_of_a_ratio_of_two_numbers_of_each_chain(
     chains, width = 200, 0.25
     intervals = RNG.poisson(30, chains)
     counts = [RNG.binomial(intervals, 0.4), RNG.binomial(intervals, 0.1)]
-    bins = {
-        "counts": [int(c.sum()) for c in counts],
-        "squares": [int((c * c).sum()) for c in counts],
-        "products": [int((c * intervals).sum()) for c in counts],
-    }
+    bins = Bins(
+        [0, 1, 2],
+        [int(c.sum()) for c in counts],
+        [int((c * c).sum()) for c in counts],
+        [int((c * intervals).sum()) for c in counts],
+    )
     total = int(intervals.sum())
     point = bins_point(
         0.1, chains=chains, intervals=total, bin_width=width,
-        intervals_squared=int((intervals**2).sum()), wide=WideBins(edges=[0, 1, 2], **bins), **bins,
+        intervals_squared=int((intervals**2).sum()), equal=bins, wide=bins,
     )  # fmt: skip
     for found, c in zip(point.bins(), counts, strict=False):
         density = c.sum() / total

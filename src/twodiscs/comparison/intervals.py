@@ -89,7 +89,7 @@ class Intervals(Result):
         self.intervals, self.overflow = point.intervals, point.overflow
         self.note = note_of_number("intervals", settings["number"], self.intervals)
         self.rows = HopHistogram.rows(theory_rows(scene), {"intervals": [point]})
-        self.counts = point.counts
+        self.counts = point.equal.counts
         # Wide bins, which hold the same intervals again, come after the equal ones.
         self._bins = self.rows[: len(self.counts)]
         self.edges = [row["left"] for row in self._bins] + [self._bins[-1]["right"]]

@@ -33,23 +33,17 @@ def wide_edges(bins=BINS):
     return edges
 
 
-@dataclass(frozen=True, kw_only=True)
-class Bins:
-    """Sums over chains for each bin: Σ c and Σ c², with c the intervals of a chain in the bin.
+class Bins(NamedTuple):
+    """Sums over chains for bins between ``edges``, in units of the width of an equal bin.
 
-    If the number n of intervals differs from chain to chain, ``products`` are Σ c n.
+    They are Σ c and Σ c², with c the intervals of a chain in the bin. If the number n of intervals
+    differs from chain to chain, ``products`` are Σ c n.
     """
 
+    edges: list[int]
     counts: list[int]
     squares: list[int]
     products: list[int] | None = None
-
-
-@dataclass(frozen=True, kw_only=True)
-class WideBins(Bins):
-    """Bins that widen with time, between ``edges`` in units of the width of an equal bin."""
-
-    edges: list[int]
 
 
 class Bin(NamedTuple):
@@ -63,10 +57,10 @@ class Bin(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class IntervalsPoint(Bins, Point):
-    """Intervals of independent ``chains`` in equal bins from 0 on, ``overflow`` beyond them.
+class IntervalsPoint(Point):
+    """Intervals of independent ``chains`` in ``equal`` bins from 0 on, ``overflow`` beyond them.
 
-    ``wide`` has the same intervals again. ``mean`` is the mean of all ``intervals``, ``stderr`` its
+    ``wide`` bins, which widen with time, have the same intervals again. ``mean`` is the mean of all ``intervals``, ``stderr`` its
     standard error over chains; ``intervals_squared`` is Σ n² if n differs.
     """
 
@@ -76,7 +70,8 @@ class IntervalsPoint(Bins, Point):
     event: str
     bin_width: float
     overflow: int
-    wide: WideBins
+    equal: Bins
+    wide: Bins
     intervals: int
     chains: int
     mean: float
@@ -104,23 +99,20 @@ class IntervalsPoint(Bins, Point):
             intervals, intervals_squared, mean = chains * part["returns"], None, total / chains
             variance = (chains * squares - total * total) / (chains * chains * (chains - 1))
             error, unit = math.sqrt(variance), part["bin_width"] * GRAIN / part["returns"]
-        names, rows = ("counts", "squares", "products"), sums.tolist()
-        wide = slice(BINS + 1, BINS + len(edges))
+        rows, wide = sums.tolist(), slice(BINS + 1, BINS + len(edges))
         return cls(
             radius=radius,
             event=part["event"],
             bin_width=part["bin_width"],
             overflow=rows[0][BINS],
-            wide=WideBins(
-                edges=edges, **{n: row[wide] for n, row in zip(names, rows, strict=False)}
-            ),
+            equal=Bins([*range(BINS + 1)], *(row[:BINS] for row in rows)),
+            wide=Bins(edges, *(row[wide] for row in rows)),
             intervals=intervals,
             intervals_squared=intervals_squared,
             chains=chains,
             mean=float(mean) * unit,
             stderr=error * unit,
             parts=parts,
-            **{name: row[:BINS] for name, row in zip(names, rows, strict=False)},
         )
 
     def estimate(self, name="mean"):
@@ -139,12 +131,13 @@ class IntervalsPoint(Bins, Point):
 
     def bins(self):
         """Yield each ``Bin``, the equal ones first."""
-        width, equal = self.bin_width, range(len(self.counts) + 1)
-        for bins, edges, some in (("equal", equal, self), ("wide", self.wide.edges, self.wide)):
-            columns = some.counts, some.squares, some.products or repeat(None)
+        width = self.bin_width
+        for kind in ("equal", "wide"):
+            edges, counts, squares, products = getattr(self, kind)
+            columns = counts, squares, products or repeat(None)
             for (left, right), count, *sums in zip(pairwise(edges), *columns, strict=False):
                 density = self._density((right - left) * width, count, *sums)
-                yield Bin(bins, left * width, right * width, count, density)
+                yield Bin(kind, left * width, right * width, count, density)
 
     def _density(self, width, count, squares, product):
         """Return count/(intervals × width) as an ``Estimate``, from the spread between chains."""
