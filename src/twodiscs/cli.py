@@ -70,45 +70,51 @@ def _parser():
         return command
 
     command("exact", _exact, "exact volume, areas and mean times of one scene")
-    some = command("simulate", _simulate, "mean times by molecular dynamics, beside the exact ones")
-    relative = some.add_argument(
+    simulate = command(
+        "simulate", _simulate, "mean times by molecular dynamics, beside the exact ones"
+    )
+    relative = simulate.add_argument(
         "--error", type=error, help=f"relative, or {', '.join(PRESETS)} (1e-3)"
     )
     relative.completer = argcomplete.ChoicesCompleter(PRESETS)
-    some.add_argument("--duration", type=number, help="the time to simulate, instead of an error")
-    some.add_argument("--budget", type=whole_number, default=2e9, help="events at most (2e9)")
-    events = some.add_argument(
+    simulate.add_argument(
+        "--duration", type=number, help="the time to simulate, instead of an error"
+    )
+    simulate.add_argument("--budget", type=whole_number, default=2e9, help="events at most (2e9)")
+    events = simulate.add_argument(
         "--events", nargs="+", metavar="EVENT", help=f"of {', '.join(EVENTS)} (all)"
     )
     events.completer = argcomplete.ChoicesCompleter(EVENTS)
-    _seed(some)
-    _cores(some)
-    some = command("sample", _sample, "volume and areas by Monte Carlo, beside the exact ones")
-    some.add_argument(
+    _seed(simulate)
+    _cores(simulate)
+    sample = command("sample", _sample, "volume and areas by Monte Carlo, beside the exact ones")
+    sample.add_argument(
         "--samples", type=whole_number, default=10**7, help="at least this number (1e7)"
     )
-    wanted = some.add_argument(
+    wanted = sample.add_argument(
         "--quantities", nargs="+", metavar="QUANTITY", help="volume, <event>_area"
     )
     wanted.completer = argcomplete.ChoicesCompleter(("volume", *(f"{e}_area" for e in EVENTS)))
-    some.add_argument("--shell", type=number, default=0.02, help="thickness, a fraction (0.02)")
-    _seed(some)
-    _cores(some)
-    some = command("trajectory", _trajectory, "one trajectory, event by event")
-    some.add_argument("--duration", type=number, help="a time (some hops of the rarer kind)")
-    some.add_argument("--start", type=number, nargs="+", metavar="X", help="x1 y1 x2 y2 u1 v1 …")
-    _seed(some)
+    sample.add_argument("--shell", type=number, default=0.02, help="thickness, a fraction (0.02)")
+    _seed(sample)
+    _cores(sample)
+    trajectory = command("trajectory", _trajectory, "one trajectory, event by event")
+    trajectory.add_argument("--duration", type=number, help="a time (some hops of the rarer kind)")
+    trajectory.add_argument(
+        "--start", type=number, nargs="+", metavar="X", help="x1 y1 x2 y2 u1 v1 …"
+    )
+    _seed(trajectory)
 
     text = "build a configuration with Snakemake, or some of it"
-    some = commands.add_parser("run", help=text, description=f"{text[0].upper()}{text[1:]}.")
+    build = commands.add_parser("run", help=text, description=f"{text[0].upper()}{text[1:]}.")
     if sys.argv[1:2] == ["run"]:
         try:
-            some.epilog = f"Targets: {', '.join(_targets())}."
+            build.epilog = f"Targets: {', '.join(_targets())}."
         except InputError as missing:  # the workflow is not installed
-            some.epilog = f"{missing}."
-    file = some.add_argument("configuration", help="a YAML file; twodiscs new writes one")
+            build.epilog = f"{missing}."
+    file = build.add_argument("configuration", help="a YAML file; twodiscs new writes one")
     file.completer = argcomplete.FilesCompleter(("yaml", "yml"))
-    targets = some.add_argument(
+    targets = build.add_argument(
         "targets",
         nargs="*",
         default=[],
@@ -117,14 +123,14 @@ def _parser():
     )
     targets.completer = _targets
     cores = "to work on (all, or those of SNAKEMAKE_PROFILE)"
-    some.add_argument("--cores", type=whole_number, help=cores)
+    build.add_argument("--cores", type=whole_number, help=cores)
     text = "print a table of the jobs, but run nothing"
-    some.add_argument("-n", "--dry-run", action="store_true", help=text)
-    some.set_defaults(work=_run)
+    build.add_argument("-n", "--dry-run", action="store_true", help=text)
+    build.set_defaults(work=_run)
     text = "write a commented configuration"
-    some = commands.add_parser("new", help=text, description=f"{text[0].upper()}{text[1:]}.")
-    some.add_argument("configuration", help="a new file")
-    some.set_defaults(work=_new)
+    new = commands.add_parser("new", help=text, description=f"{text[0].upper()}{text[1:]}.")
+    new.add_argument("configuration", help="a new file")
+    new.set_defaults(work=_new)
     return parser
 
 
@@ -192,15 +198,15 @@ def _exact(scene, options):
 
 def _simulate(scene, options):
     names = "error", "duration", "seed", "budget", "events", "name", "cores"
-    _print_measured(twodiscs.simulate(scene, **_given(options, names)), options)
+    _print_measured(twodiscs.simulate(scene, **_arguments(options, names)), options)
 
 
 def _sample(scene, options):
     names = "samples", "seed", "quantities", "shell", "name", "cores"
-    _print_measured(twodiscs.sample(scene, **_given(options, names)), options)
+    _print_measured(twodiscs.sample(scene, **_arguments(options, names)), options)
 
 
-def _given(options, names):
+def _arguments(options, names):
     return {name: getattr(options, name) for name in names}
 
 
@@ -214,7 +220,7 @@ def _print_measured(result, options):
 
 
 def _trajectory(scene, options):
-    path = twodiscs.trajectory(scene, **_given(options, ("duration", "seed", "start", "name")))
+    path = twodiscs.trajectory(scene, **_arguments(options, ("duration", "seed", "start", "name")))
     if options.csv:
         write(path.to_csv(index=False).rstrip("\n"))
     elif options.json:

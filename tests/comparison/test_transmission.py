@@ -158,7 +158,7 @@ def test_calls_add_up_to_separate_blocks(monkeypatch):
     monkeypatch.setattr(rounds, "CALL", 1.0)
     given, hops = (td.Scene(1.5, 1.0, 0.246), "horizontal_hop"), 2**10
     found, blocks = td.transmission(*given, hops, seed=1, name="a"), hops // HOPS_OF_BLOCK
-    seeds = [transmission.seed_of(*given, "a", 1, part) for part in ("clusters", "times")]
+    seeds = [transmission.hop_seed(*given, "a", 1, part) for part in ("clusters", "times")]
     sizes, _ = cluster_sizes(*given, found.gap, blocks, seeds[0])
     assert found.clusters == {n: hops for n, hops in enumerate(sizes.tolist()) if hops}
     sums, _ = hop_sums(*given, found.times, blocks, seeds[1])

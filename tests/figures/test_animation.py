@@ -91,20 +91,22 @@ def at(*events, end=1000.0):
 def test_the_first_lone_hop_of_the_rarer_kind_is_shown():
     common = [(float(t), "vertical_hop") for t in range(5, 900, 7)]
     rare = [(t, "horizontal_hop") for t in (120.0, 121.0, 400.0, 700.0)]
-    times, hop, centre = animation.moments(at(*common, *rare), 1.0)
+    times, hop, centre = animation.frame_times(at(*common, *rare), 1.0)
     assert (hop, centre) == ("horizontal_hop", 400.0)
     assert times.tolist() == list(range(400 - BEFORE, 400 + AFTER + 1))
 
 
 def test_hops_that_are_never_alone_and_trajectories_that_are_too_short():
-    times, hop, centre = animation.moments(at((3.0, "vertical_hop"), (4.0, "vertical_hop")), 1.0)
+    times, hop, centre = animation.frame_times(
+        at((3.0, "vertical_hop"), (4.0, "vertical_hop")), 1.0
+    )
     assert (hop, centre) == ("vertical_hop", 3.0)
     assert times.tolist() == list(range(3 + AFTER + 1))
-    times, hop, centre = animation.moments(at((3.0, "disc_collision"), end=9.5), 1.0)
+    times, hop, centre = animation.frame_times(at((3.0, "disc_collision"), end=9.5), 1.0)
     assert (hop, centre) == (None, 0.0)
     assert times.tolist() == list(range(10))
     with pytest.raises(ValueError, match=r"trajectory must last two frames, a time of 1, not 0\.5"):
-        animation.moments(at(end=0.5), 1.0)
+        animation.frame_times(at(end=0.5), 1.0)
     with pytest.raises(ValueError, match="trajectory must have rows, but is empty"):
         animation.animate(BOX, RADIUS, [], ["a.gif"])
     with pytest.raises(ValueError, match=r"path must be a \.gif, .*\.mp4 file, not 'a\.avi'"):

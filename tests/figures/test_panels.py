@@ -17,7 +17,7 @@ def row(radius, **values):
 def drawn_lines(rows):
     """Draw ``rows`` of one series and return {(panel, marker): abscissae and ordinates}."""
     with style.context():
-        _, main, lower, _ = panels.panels(PAPER, "")
+        _, main, lower, _ = panels.over_radius(PAPER, "")
         before = set(main.lines) | set(lower.lines)
         one = panels.Series("", rows, np.array([1.0, 1.0]))
         panels.draw_series(main, lower, np.array([0.1, 0.2]), [one])
@@ -87,7 +87,7 @@ def test_sides_are_told_from_powers_of_ten():
 @pytest.mark.parametrize("name", SCENES)
 def test_limits_and_effects_of_a_box_stand_clear(name):
     with style.context():
-        figure, *_ = panels.panels(Box.of(SCENES[name]), "volume $V$")
+        figure, *_ = panels.over_radius(Box.of(SCENES[name]), "volume $V$")
         assert unclear(figure) == []
 
 

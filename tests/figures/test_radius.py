@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from figure_cases import BOXES, PAPER, bars, covered, draw, points, simulated, tables_of, unclear
 
+from twodiscs.comparison.table import quantity_of
 from twodiscs.figures import curves, radius, style
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.box import Box
@@ -34,7 +35,7 @@ def test_each_quantity_has_its_own_curve_and_estimates(figures, name):
         rows = [
             row
             for row in tables_of("paper")[FIGURES[name].tables[0]]
-            if radius.quantity_of(row) == quantity and row["stderr"]
+            if quantity_of(row) == quantity and row["stderr"]
         ]
         assert rows
         shown = [(r, y, s) for r, y, s in bars(main, colour, marker) if s]

@@ -355,8 +355,8 @@ def small(monkeypatch):
 
 
 def test_the_table_is_written(tmp_path, small, monkeypatch):
-    seeds, seed_of = [], measure.seed_of
-    monkeypatch.setattr(measure, "seed_of", lambda *of: seeds.append(seed_of(*of)) or seeds[-1])
+    seeds, seed_of = [], measure.hop_seed
+    monkeypatch.setattr(measure, "hop_seed", lambda *of: seeds.append(seed_of(*of)) or seeds[-1])
     Passages.write(tmp_path / "passages.csv", joined("paper", BOX, (0.5, 1.0)))
     rows = Passages.read(tmp_path / "passages.csv")
     assert len({*seeds}) == len(seeds) > 20  # every estimate has separate streams

@@ -16,6 +16,7 @@ import numpy as np
 from twodiscs.comparison.quantities import Quantities
 from twodiscs.comparison.result import Result, note_of_number, progress_bar, seed_of
 from twodiscs.comparison.scene_tables import Areas, MeanTimes, Theory, Volume
+from twodiscs.comparison.table import quantity_of
 from twodiscs.model.box import Box
 from twodiscs.model.checks import (
     InputError,
@@ -360,11 +361,6 @@ def measurement(scene, row, source=None):
         row["count"] if "count" in row else row["hits"], row["status"], scene.unit(quantity),
         row.get("expectation"), row.get("bound"), source,
     )  # fmt: skip
-
-
-def quantity_of(row):
-    """Return the name of the quantity of a row of results."""
-    return row.get("quantity") or f"{row['event']}_time"
 
 
 def rows_by_quantity(rows):

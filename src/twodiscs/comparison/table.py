@@ -140,6 +140,11 @@ def by_radius(points):
     return points
 
 
+def quantity_of(row):
+    """Return the quantity of a ``row`` of a table, as theory.csv names it."""
+    return row["quantity"] if "quantity" in row else f"{row['event']}_time"
+
+
 def _cell(name, column, value):
     """Return a value of a row as its column has it, or raise ``ValueError``."""
     if value is None:

@@ -151,7 +151,7 @@ def plateau(estimate, time, mean, law):
     return Estimate(value, error, estimate.n)
 
 
-def seed_of(scene, hop, name, seed, what):
+def hop_seed(scene, hop, name, seed, what):
     """Return the seed of the streams of a ``hop``; ``name`` is the name of its scene."""
     return stream_seed(seed, f"{name} {hop} {what}", "passages", key(scene.radius))
 
@@ -255,16 +255,16 @@ class Transmission(Result):
             why = f"too frequent, with a mean time of {self.neighbour_mean:.4g}; .frame() has κ(t)"
             lines = [(f"{name}s", why)]
         else:
-            lines = [(f"fraction of {name}s that are passages", _with_error(self.coefficient))]
+            lines = [(f"fraction of {name}s that are passages", _text_of(self.coefficient))]
         if self.passage_time is not None:
             lines += [
                 ("mean time between hops, exact", f"{self.exact_mean:.6g}"),
-                ("mean time between passages", _with_error(self.passage_time)),
+                ("mean time between passages", _text_of(self.passage_time)),
             ]
         return pd.DataFrame(lines, columns=["quantity", "value"])
 
 
-def _with_error(estimate):
+def _text_of(estimate):
     if estimate.stderr is None:
         return f"{estimate.value:.6g}, too few events for an error"
     return f"{estimate.value:.6g} ± {estimate.stderr:.2g}"
@@ -281,7 +281,7 @@ def passages_of(scene):
 
 def parts_of(scene, hop, mean, gap, times, blocks, name, seed):
     """Return {"times": run} for ``blocks`` of hops, and "clusters", too, if hops are rare."""
-    seeds = {what: seed_of(scene, hop, name, seed, what) for what in ("clusters", "times")}
+    seeds = {what: hop_seed(scene, hop, name, seed, what) for what in ("clusters", "times")}
     passages, engine = passages_of(scene), engine_of(scene)
     events = HOPS_OF_BLOCK * engine.expected_event_rate(scene)
     work = engine.work_per_event(scene) * chains_of(scene).interval_cost(scene)

@@ -56,7 +56,7 @@ FRAME, HOP, LAST = 50, 1500, 1000
 COLOURS, APART = 32, 60
 
 
-def moments(rows, step, discs=2):
+def frame_times(rows, step, discs=2):
     """Return (times of the frames, name of the hop or None, its time) for rows of trajectory.csv.
 
     The hop is of the rarest kind that occurs. It is the first one with no other of its kind in the
@@ -101,7 +101,7 @@ class Stage:
         self.rows = {name: np.array([row[name] for row in rows]) for name in names}
         self.rows |= self._more(rows)
         self.sides = {"x": width, "y": height}
-        self.times, self.hop, self.centre = moments(rows, step, box.discs)
+        self.times, self.hop, self.centre = frame_times(rows, step, box.discs)
         self.trace, self.marked = TRACE * step, MARKED * step
         self.axis = "y" if self.hop == "vertical_hop" else "x"
 

@@ -67,7 +67,7 @@ class Series:
         return bool(np.any(self.exact > 0)) or any(drawn)
 
 
-def panels(box, label, judged=True, beneath=False):
+def over_radius(box, label, judged=True, beneath=False):
     """Return (figure, main axes, axes of residuals, axes beneath) for curves over the radius.
 
     ``label`` is the label of the main ordinate. The axes of residuals are None unless the estimates
@@ -228,9 +228,9 @@ def draw_series(main, lower, radii, series, single=False):
     """
     for (colour, marker), part in with_looks(series):
         main.plot(radii, part.exact, color=BLACK if single else colour, zorder=5)
-        estimates(main, part.rows, colour, marker)
+        draw_estimates(main, part.rows, colour, marker)
         if lower:
-            residuals(lower, part.rows, colour, marker)
+            draw_residuals(lower, part.rows, colour, marker)
 
 
 #: The style of a limiting law, and its name in a legend.
@@ -242,7 +242,7 @@ def _column(rows, *names):
     return [[row[name] for row in rows] for name in names]
 
 
-def estimates(axes, rows, colour, marker):
+def draw_estimates(axes, rows, colour, marker):
     """Draw the estimates of ``rows`` over their radii; estimates from a strip have full symbols."""
     known = [row for row in rows if row["estimate"] is not None and row["stderr"] is not None]
     rough = [row for row in rows if row["estimate"] is not None and row["stderr"] is None]
@@ -279,7 +279,7 @@ def is_judged(row):
     return row.get("z") is not None and row.get("test") != "certain"
 
 
-def residuals(axes, rows, colour, marker):
+def draw_residuals(axes, rows, colour, marker):
     """Draw the residuals of ``rows`` over their radii, except the certain ones."""
     rows = [row for row in rows if is_judged(row)]
     for shown, symbol, clip in (

@@ -15,11 +15,12 @@ from twodiscs.comparison.measurements import Measurements
 from twodiscs.comparison.observe import Observed
 from twodiscs.comparison.scan import Scan
 from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.table import quantity_of
 from twodiscs.comparison.transmission import Transmission, box_time
 from twodiscs.figures import panels, style
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.draw import OF_A_BOX, draw
-from twodiscs.figures.radius import OVER_RADIUS, add, quantity_of
+from twodiscs.figures.radius import OVER_RADIUS, add
 from twodiscs.figures.style import BLACK, LOOKS, SERIES, name_of, new_figure
 from twodiscs.model.box import Box, scene_of
 from twodiscs.model.checks import InputError, answering, check_choice
@@ -117,7 +118,7 @@ def _draw(result, figure):
     if isinstance(result, Transmission):
         check_choice("figure", figure or "transmission", ["transmission"])
         return _draw_transmission(result)
-    box, rows, fitting, radius = _what(result)
+    box, rows, fitting, radius = _rows_and_figures(result)
     if not fitting:
         table = getattr(result, "attrs", {}).get("table")
         if table is not None and table not in SCENE_TABLES:
@@ -161,7 +162,7 @@ def _beside(result, path, name, axes):
     """Draw quantities over the radius into ``axes`` of another figure, which is returned."""
     if not isinstance(axes, Axes) or axes.name != "rectilinear":
         raise InputError(f"ax must be one plane Axes of matplotlib, not {axes!r:.80}")
-    box, rows, fitting, _ = _what(result)
+    box, rows, fitting, _ = _rows_and_figures(result)
     fitting = [name for name in fitting if name in OVER_RADIUS]
     if not fitting:
         raise InputError(f"result must be over the radius to be drawn in ax, not {result!r:.80}")
@@ -182,9 +183,9 @@ def _show(figure):
         backend.FigureCanvas.new_manager(figure, 1).show()
 
 
-def _what(result):
+def _rows_and_figures(result):
     """Return (box, rows, names of the figures that show them, radius of a trajectory)."""
-    scene = the_scene(result)
+    scene = scene_or_none(result)
     if isinstance(result, Box) or result is scene is not None:
         return result if isinstance(result, Box) else Box.of(scene), [], [*OF_A_BOX], None
     results = [*result] if isinstance(result, list | tuple | Scan) else [result]
@@ -204,7 +205,7 @@ def _what(result):
             rows = [row for item in results for row in item.rows]
             (box,) = boxes
             return box, rows, _figures_of(rows, box), None
-    if (box := the_box(result)) is not None:
+    if (box := box_or_none(result)) is not None:
         table = result.attrs.get("table")
         # None stands for an empty cell.
         rows = result.astype(object).where(result.notna(), None)
@@ -251,7 +252,7 @@ def _figures_of(rows, box):
 
 
 def rows_of(trajectory):
-    """Return the rows of a trajectory, at least two; ``the_scene`` must find its scene."""
+    """Return the rows of a trajectory, at least two; ``scene_or_none`` must find its scene."""
     from twodiscs.comparison.trajectory import require_all_rows
 
     if "event" not in trajectory or len(trajectory) < 2:
@@ -259,7 +260,7 @@ def rows_of(trajectory):
             "trajectory must have at least two rows and the column event, but has "
             f"{len(trajectory)} rows and the columns {', '.join(map(str, trajectory))}"
         )
-    require_all_rows(trajectory, the_scene(trajectory))
+    require_all_rows(trajectory, scene_or_none(trajectory))
     return trajectory.to_dict("records")
 
 
@@ -290,7 +291,7 @@ def animate(trajectory: pd.DataFrame, path: str | PathLike[str]) -> None:
     """
     from twodiscs.figures import animation
 
-    scene = the_scene(trajectory)
+    scene = scene_or_none(trajectory)
     if scene is None or not hasattr(trajectory, "iterrows"):
         raise InputError(f"trajectory must be a result of trajectory(), not {trajectory!r:.80}")
     with style.context():
@@ -370,7 +371,7 @@ def _draw_transmission(result):
     return figure
 
 
-def the_scene(result):
+def scene_or_none(result):
     """Return the ``Scene`` of a result or a trajectory; None for anything else."""
     if isinstance(attributes := getattr(result, "attrs", None), dict):
         try:
@@ -381,7 +382,7 @@ def the_scene(result):
     return scene if isinstance(scene, Scene) else None
 
 
-def the_box(table):
+def box_or_none(table):
     """Return the ``Box`` of a table of exact values or of a loaded one; None for anything else."""
     try:
         return Box(**table.attrs["box"])

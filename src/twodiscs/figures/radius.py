@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from matplotlib.lines import Line2D
 
+from twodiscs.comparison.table import quantity_of
 from twodiscs.figures import curves, panels
 from twodiscs.figures.curves import hop_ends, limits
 from twodiscs.figures.style import BLACK, LOOKS, SERIES, name_of, new_figure
@@ -116,7 +117,7 @@ def draw(name, box, rows):
     series = list(by_quantity.values())
     drawn = [row for part in series for row in part.rows]
     beneath = shown.approach and not _is_unknown(drawn)
-    figure, main, residuals, approach = panels.panels(
+    figure, main, residuals, approach = panels.over_radius(
         box, shown.label, any(map(panels.is_judged, drawn)), beneath
     )
     panels.draw_series(main, residuals, radii, series, bool(shown.single))
@@ -220,11 +221,6 @@ def series_of(box, rows, names, looks):
     return radii, found
 
 
-def quantity_of(row):
-    """Return the quantity of a row of a table, as theory.csv names it."""
-    return row["quantity"] if "quantity" in row else f"{row['event']}_time"
-
-
 def _is_unknown(rows):
     """Return whether the ``rows`` have estimates, but no exact value is known for any of them."""
     measured = [row for row in rows if row.get("estimate") is not None]
@@ -283,7 +279,7 @@ def _approach(axes, box, by_quantity):
             laws = [threshold_time(scene, event) for scene in scenes]
             axes.plot(distances[near], np.array(laws)[near], **panels.LAW)
         rows = [row | {"radius": 1 - row["radius"] / end} for row in part.rows]
-        panels.estimates(axes, [row for row in rows if row["radius"] > 0], colour, marker)
+        panels.draw_estimates(axes, [row for row in rows if row["radius"] > 0], colour, marker)
     low, high = min(shown) / 3, 3 * max(shown)
     axes.set(xscale="log", yscale="log", xlim=(CLOSEST, 1), ylim=(low, high))
     panels.label_decades(axes.yaxis, high / low)
@@ -316,7 +312,7 @@ def draw_pressure(box, rows):
     ]
     label = "pressure over that of an ideal gas"
     judged = any(panels.is_judged(row) for part in series for row in part.rows)
-    figure, main, lower, beneath = panels.panels(box, label, judged, summed)
+    figure, main, lower, beneath = panels.over_radius(box, label, judged, summed)
     panels.draw_series(main, lower, radii, series)
     ideal = {"color": BLACK, "lw": 0.7, "ls": (0, (1, 1.5))}
     main.axhline(1, **ideal)
@@ -375,7 +371,7 @@ def _virials(axes, box, rows, radii):
     ]
     for (colour, marker), part in zip(SERIES, series, strict=False):
         axes.plot(radii, part.exact, color=colour, zorder=5)
-        panels.estimates(axes, part.rows, colour, marker)
+        panels.draw_estimates(axes, part.rows, colour, marker)
     axes.set(xlim=(0, 1.02 * box.last_radius), xlabel="radius $r$")
     axes.set_ylabel(r"virial$\,/\,2\langle E_{\mathrm{k}}\rangle$")
     panels.logarithmic(axes, radii, series)

@@ -60,8 +60,9 @@ class Bin(NamedTuple):
 class IntervalsPoint(Point):
     """Intervals of independent ``chains`` in ``equal`` bins from 0 on, ``overflow`` beyond them.
 
-    ``wide`` bins, which widen with time, have the same intervals again. ``mean`` is the mean of all ``intervals``, ``stderr`` its
-    standard error over chains; ``intervals_squared`` is Σ n² if n differs.
+    ``wide`` bins, which widen with time, have the same intervals again. ``mean`` is the mean of all
+    ``intervals``, ``stderr`` its standard error over chains; ``intervals_squared`` is Σ n² if n
+    differs.
     """
 
     stage: ClassVar[str] = "intervals"

@@ -16,7 +16,7 @@ from twodiscs.theory import channel, plain, three
 from twodiscs.theory.virial import Derivatives, flux_constant
 
 
-def method(scene):
+def exact_method(scene):
     """Return the theory for a ``Scene``: "plain", "three", "channel", or None."""
     if scene.periodic:
         return None
@@ -31,8 +31,8 @@ def known_derivatives(scene, hops=True):
 
     ``hops`` False leaves out the hops in a channel, which take longest.
     """
-    known = method(scene)
-    if known == "plain":
+    name = exact_method(scene)
+    if name == "plain":
         volume, areas = plain.volume_and_areas(Scene(scene.width, scene.height, scene.radius))
         root = math.sqrt(2)
         return Derivatives(
@@ -43,9 +43,9 @@ def known_derivatives(scene, hops=True):
             areas["horizontal_hop"] / root / volume,
             areas["vertical_hop"] / root / volume,
         )
-    if known == "three":
+    if name == "three":
         return three.derivatives(scene)
-    if known == "channel":
+    if name == "channel":
         if is_ordered(scene):
             return channel.derivatives(scene, hops)
         return channel.derivatives(scene.turned(), hops).turned()

@@ -89,7 +89,7 @@ def expected_rates(scene):
     by_class = rates(scene, known)
     summed = {event: sum(by_class[name] for name in parts) for event, parts in PARTS.items()}
     found = guess | {e: rate for e, rate in summed.items() if rate and e in scene.events}
-    if scene.discs >= LARGE and crowding(scene) == DENSEST and not n_discs.method(scene):
+    if scene.discs >= LARGE and crowding(scene) == DENSEST and not n_discs.exact_method(scene):
         found |= {event: max(rate, found[event]) for event, rate in guess.items()}
     return found
 

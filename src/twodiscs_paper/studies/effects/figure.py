@@ -55,8 +55,8 @@ def draw(box, tables):
         for name, look in looks.items():
             own = [r for r in rows if r["scene"] == name and r["quantity"] == f"{event}_time"]
             main.plot(*_curve(tables["effects_curves"], name, event), color=look[0], zorder=5)
-            panels.estimates(main, list(map(_relative, own)), *look)
-            panels.residuals(lower, own, *look)
+            panels.draw_estimates(main, list(map(_relative, own)), *look)
+            panels.draw_residuals(lower, own, *look)
         main.axhline(1, color=GREY, lw=0.5, zorder=0)
         main.set(yscale="log", ylim=SHOWN)
         main.tick_params(which="both", labelbottom=False, labelleft=letter == "a")

@@ -91,7 +91,7 @@ def _of_scene(scene, events, samples, seed):
     found, errors, virial_error = dynamics_rates(scene, events, seed)
     start = {
         "discs": scene.discs, "width": scene.width, "height": scene.height, "radius": scene.radius,
-        "theory": n_discs.method(scene) or "none", "states": initial.method(scene),
+        "theory": n_discs.exact_method(scene) or "none", "states": initial.method(scene),
     }  # fmt: skip
     for event in SHELLS:
         time, _ = _time(scene, event, true.get(event))

@@ -20,11 +20,11 @@ from twodiscs.comparison.transmission import (
     box_time,
     by_clusters,
     by_time,
+    hop_seed,
     of_clusters,
     of_order,
     plateau,
     quiet_time,
-    seed_of,
 )
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.two import strip
@@ -182,7 +182,7 @@ class NearThreshold:
         inertia = self.scene.moment_of_inertia
         kind = f"{self.scene.periodic} {inertia}" if not self.scene.is_plain else ""
         kind += f" {self.scene.friction}" if self.scene.friction else ""
-        return seed_of(self.scene, self.hop, f"{self.name} {kind}", self.seed, what)
+        return hop_seed(self.scene, self.hop, f"{self.name} {kind}", self.seed, what)
 
     def row(self, quantity, method, found, time=None, reference=None, events=None):
         """Return a row; ``reference`` is an exact number, or an ``Estimate`` by another method.
@@ -362,7 +362,7 @@ def one_file(name, box, discs, events, seed):
         pair = Box(box.width, box.height, {"periodic": "x"}).scene(radius_at(box.height / 4, n))
         scene = Scene(box.width * discs / 2, box.height, pair.radius, discs=discs, periodic="x")
         start = start_of(name, scene, "horizontal_hop", 2.0**-n) | {"method": "states"}
-        streams = [seed_of(scene, "horizontal_hop", name, seed, f"{discs} {i}") for i in range(2)]
+        streams = [hop_seed(scene, "horizontal_hop", name, seed, f"{discs} {i}") for i in range(2)]
         sampled = file.sampled_rate(scene, FILE_SAMPLES, streams[0])
         # A power of two, so that the last digits of the rate do not change the time.
         time = 2.0 ** round(math.log2(FOLLOWED * 2 / sampled.value))
@@ -394,7 +394,7 @@ def one_long_file(name, box, radius, friction, known, seed, inertia=None):
 
     def stream(what):
         kind = friction if inertia is None else f"rough {inertia}"
-        return seed_of(scene, "horizontal_hop", name, seed, f"long file {kind} {what}")
+        return hop_seed(scene, "horizontal_hop", name, seed, f"long file {kind} {what}")
 
     def make_row(quantity, method, found, lag=None, **more):
         more["time"] = None if lag is None else lag * STEP * unit
