@@ -7,25 +7,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scalar_many
-from factory import POINTS, through_json
+from factory import POINTS
 
 import twodiscs as td
 from twodiscs.comparison.measurements import Measurements
 from twodiscs.comparison.scene_tables import SCENE_TABLES, Check, Theory
-from twodiscs.comparison.scores import FALSE_ALARM, bonferroni_bound
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import engine
-from twodiscs.dynamics.runs import relative_errors
 from twodiscs.figures.motion import colours
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
-from twodiscs.model.events import AXIS, EVENTS, SHELLS, WALLS
+from twodiscs.model.events import EVENTS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.base import content_of, with_arrays
-from twodiscs.sampling import montecarlo, rounds, starts
-from twodiscs.theory import exact, virial
+from twodiscs.sampling import montecarlo, starts
+from twodiscs.theory import exact
 
 #: With an exact value, and without; between walls, and on a ring.
 SCENES = {
@@ -49,13 +47,6 @@ def test_what_is_known_is_told_from_what_is_impossible():
             assert (areas[event] is None) == (possible and name not in KNOWN)
             assert (times[event] is None) == (not possible or name not in KNOWN)
         assert (exact.volume(scene) is None) == (name not in KNOWN)
-
-
-@pytest.mark.parametrize("name", KNOWN)
-def test_the_virial_theorem_holds_for_exact_rates(name):
-    scene = SCENES[name]
-    total = math.fsum(w * exact.rate(scene, e) for e, w in virial.weights(scene).items())
-    assert total == pytest.approx(1, rel=1e-10)
 
 
 def test_rates_are_those_of_area_and_volume():
@@ -134,25 +125,6 @@ def test_a_wrong_rate_is_found_without_an_exact_value(measured):
     assert {"sum_rule", "flux"} <= failed
 
 
-@pytest.mark.parametrize("name", SCENES)
-def test_another_program_has_the_same_rates(name):
-    """Time averages of one trajectory by textbook formulas; Bonferroni over all comparisons."""
-    scene = SCENES[name]
-    duration, blocks = runs.replica_duration(scene), 3
-    sums, products = runs.run_blocks(scene, scene.events, 5, 0, blocks, duration)
-    replicas = blocks * REPLICAS
-    counted = sums / replicas / duration
-    errors = counted * np.where(sums > 0, relative_errors(sums, products, replicas), 0.0)
-    other, spread = scalar_many.rates(scene, 500_000, 6)
-    classes = {"x": "right_wall", "y": "top_wall"}
-    bound = bonferroni_bound(len(SCENES) * len(SHELLS), FALSE_ALARM)
-    assert bound < 5
-    for event in SHELLS:
-        e, k = EVENTS.index(event), SHELLS.index(classes[AXIS[event]] if event in WALLS else event)
-        error = math.hypot(errors[e], spread[k])
-        assert abs(counted[e] - other[k]) <= 5 * error, (event, counted[e], other[k], error)
-
-
 def test_hits_of_all_walls_are_those_of_the_axes():
     sums, products = runs.run_blocks(SCENES["three"], EVENTS, 1, 0, 1, 8.0)
     right, top, all_walls = (EVENTS.index(e) for e in ("right_wall", "top_wall", "any_wall"))
@@ -174,19 +146,6 @@ def test_expected_rates_are_near_what_is_counted():
         for event, rate in engine.expected_rates(scene).items():
             seen = sums[EVENTS.index(event)] / duration / 2 / REPLICAS
             assert rate == pytest.approx(seen, rel=0.05), (name, event)
-
-
-def test_shards_add_up_to_the_point(measured):
-    """As many processes do it, through JSON."""
-    _, scene, points, _ = measured
-    quantities = [*points["monte_carlo"][0].quantities]
-    run = montecarlo.SamplingRun(scene, quantities, 20_000, 0.02, 4)
-    counting_run = runs.CountingRun(scene, {"disc_collision": 0.02}, 10**6, 3)
-    for work in (run, counting_run):
-        (part,) = work.parts.values()
-        ends = [(0, 1), (1, part.planned)] if part.planned > 1 else [(0, 1)]
-        joined = rounds.joined(part, through_json({each: part.work(*each) for each in ends}))
-        assert work.point({"all": joined}) == work.point({"all": rounds.all_at_once(part)})
 
 
 def test_a_sample_has_what_is_asked_for():

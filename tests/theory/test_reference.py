@@ -19,13 +19,8 @@ from twodiscs_paper.reference import (
     MpScene,
     contact_density,
     exact_numbers,
-    inside,
     largest_radius,
     line,
-    normal_speed,
-    outside,
-    rectangle,
-    sphere,
 )
 
 SCENES = [
@@ -142,37 +137,6 @@ def test_a_scene_takes_numbers_for_exactly_what_they_are():
     assert (q.w, q.h) == (mpf("1.5"), 1)
     assert q.r == mpf("0.1") != mpf(0.1)
     assert (q.a, q.b) == (mpf("0.65"), mpf("0.4"))
-
-
-def test_the_mean_normal_speed_is_that_of_a_unit_vector_in_four_dimensions():
-    assert relative_error(normal_speed(), 2 / (3 * mp.pi)) < 1e-50
-    for d in range(2, 7):
-        assert relative_error(sphere(d), 2 * mp.pi ** (mpf(d) / 2) / mp.gamma(mpf(d) / 2)) < 1e-50
-
-
-def test_rules_are_exact_for_what_they_are_for():
-    def f(x, y):
-        return (3 - x) * (2 - y) ** 2
-
-    assert (
-        relative_error(line(lambda x: x**5 - x**2, mpf(1), mpf(3)), 364 / mpf(3) - 26 / mpf(3))
-        < 1e-100
-    )
-    whole = rectangle(f, mpf(2), mpf(1))
-    assert relative_error(whole, 4 * mpf(7) / 3) < 1e-100
-    # A circle that leaves by the far sides, by the upper one only, and not at all.
-    for rho in ("2.1", "1.5", "0.9"):
-        rho = mpf(rho)
-        with mp.workdps(30):
-            ends = [mpf(0), min(rho, mpf(2))]
-            ends[1:1] = [mp.sqrt(rho**2 - 1)] if rho > 1 else []
-            expected = mp.quad(
-                lambda x, rho=rho: line(lambda y: f(x, y), 0, min(mp.sqrt(abs(rho**2 - x**2)), 1)),
-                ends,
-            )
-            assert relative_error(inside(f, mpf(2), mpf(1), rho), expected) < 1e-25
-        total = inside(f, mpf(2), mpf(1), rho) + outside(f, mpf(2), mpf(1), rho)
-        assert relative_error(total, whole) < 1e-100
 
 
 @pytest.mark.parametrize("scene", SCENES, ids=repr)
