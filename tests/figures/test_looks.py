@@ -23,7 +23,7 @@ def test_looks_of_events_to_come_differ_from_all_others():
 
 def test_events_without_a_look_are_told(monkeypatch):
     monkeypatch.setattr(events, "EVENTS", tuple("abcdefghi"))
-    with pytest.raises(TypeError, match=r"looks\.py has 8 looks, too few for 9 events"):
+    with pytest.raises(TypeError, match=r"style\.py has 8 looks, too few for 9 events"):
         runpy.run_path(style.__file__)
 
 
