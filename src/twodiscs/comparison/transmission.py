@@ -125,7 +125,7 @@ def of_clusters(x, others=0):
 
     A cluster goes on after a passage with a probability q, and there are 1 − q clusters for each
     passage: those of odd n are (1 − q) Σ q^(n−1) = (1 − q)/(1 + q). Passages of ``others``, each at
-    the same rate, make the pair neighbours no more. So q = (1 − e^(−(1 + others) x))/(1 + others).
+    the same rate, make the pair neighbours no more: q = (1 − e^(−(1 + others) x))/(1 + others).
     """
     grown = math.exp((1 + others) * x)
     left = (others * grown + 1) / ((others + 2) * grown - 1)

@@ -133,8 +133,8 @@ def world_lines(box, rows, radius=None):
     """Draw the positions of the discs of a ``Box`` along its longer side, against time.
 
     ``rows`` are the rows of trajectory.csv; the first ones are shown, and discs move freely between
-    them. Of more than ``LINES`` discs there are that number, at equal distances in their order at
-    the start. The ``radius``, if given, is written above.
+    them. If there are more than ``LINES`` discs, this number is drawn, at equal distances in their
+    order at the start. The ``radius``, if given, is written above.
     """
     axis, side = along(box), max(box.width, box.height)
     rows = [row for row in rows if row["event"] not in HOPS][: BENDS * box.discs + 1]
