@@ -148,7 +148,7 @@ def chi2_p(chi2, degrees):
     return float(scipy.special.gammaincc(degrees / 2, chi2 / 2))
 
 
-def bonferroni_bound(comparisons, alarm=FALSE_ALARM):
+def bonferroni_bound(comparisons, alarm):
     """Return the |z| that one of ``comparisons`` exceeds randomly with probability ≤ ``alarm``."""
     return float(-scipy.special.ndtri(alarm / (2 * comparisons)))
 

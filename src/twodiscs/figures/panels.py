@@ -21,8 +21,8 @@ from twodiscs.figures.curves import limits
 from twodiscs.figures.style import BLACK, COLUMN, GREY, SERIES, SIZES, new_figure
 from twodiscs.model.effects import EFFECTS
 
-#: Inches: margins of panels that are placed by hand.
-LEFT, RIGHT = 0.48, 0.1
+#: Inches: the margin of panels that are placed by hand.
+LEFT = 0.48
 
 #: Inches: the panels of curves, of residuals and beneath, with their labels.
 MAIN, LOWER, BENEATH = 2.3, 0.95, 1.7
@@ -146,7 +146,7 @@ def mark(panels, ends):
         drawing.label(panels[0], f"${names}$", (middle, 1), (0, 3), **at_top)
 
 
-def add_panel(figure, bottom, height, left=LEFT, width=COLUMN - LEFT - RIGHT, name=""):
+def add_panel(figure, bottom, height, left, width, name=""):
     """Return new axes at ``left`` and ``bottom``, ``width`` × ``height``, all in inches.
 
     ``name`` is their label, which identifies them among the axes of the figure.

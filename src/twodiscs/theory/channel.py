@@ -291,12 +291,12 @@ def _geometric(vectors, logs, growth, k, log):
     return sums
 
 
-def derivatives(scene, hops=True, tail=TAIL):
+def derivatives(scene, hops=True):
     """Return the ``Derivatives`` of a ``Scene`` in an ordered channel.
 
     Hops in x are impossible. Hops in y, of any pair, take about as long as all the rest; with
     ``hops`` False they are None. Relative errors are less than 1e-12 in a channel longer than the
-    discs in a row, and some 1e-11 (``tail``) in others. If the discs hardly fit, errors are
+    discs in a row, and some 1e-11 (``TAIL``) in others. If the discs hardly fit, errors are
     roundings over the free length. Two or three discs in a short channel have many terms; other
     modules have methods for them.
     """
@@ -318,7 +318,7 @@ def derivatives(scene, hops=True, tail=TAIL):
             continue
         sums = _windowed(np.array(terms))
         change = np.inf if last is None else np.max(np.abs(sums - last)[:4] / np.abs(sums)[:4])
-        if change < tail:
+        if change < TAIL:
             break
         if len(terms) >= TERMS:
             raise InputError(
