@@ -16,7 +16,7 @@ from scipy.stats import binomtest, chi2, norm
 import twodiscs as td
 from twodiscs.model.events import HOPS
 from twodiscs.theory.exact import events_per_interval
-from twodiscs.theory.n_discs import method
+from twodiscs.theory.n_discs import exact_method
 
 #: Two-sided, at 5 sigma.
 ALARM = 2 * norm.sf(5)
@@ -55,7 +55,7 @@ def random_scene(rng, kind):
         box = td.Box(width, 1.0, effects, discs)
         try:
             scene = box.scene(box.last_radius * draw(0.02, 0.97))
-            if discs > 3 and method(scene) is None:
+            if discs > 3 and exact_method(scene) is None:
                 continue  # no exact value is known
             td.simulate(scene, 0.5, seed=0, budget=1)  # says whether starts can be drawn
         except td.InputError:
