@@ -30,9 +30,10 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 READERS = {
     "workflow/rules": (
         "tests/workflow/test_jobs.py",
-        "tests/workflow/test_scenes.py",
-        "tests/workflow/test_run.py",
         "tests/workflow/test_build.py",
+        "tests/workflow/test_scenes.py",
+        "tests/workflow/test_shards.py",
+        "tests/workflow/test_run.py",
     ),
     "workflow/scripts": ("tests/pipeline/test_scripts.py", "tests/workflow/test_build.py"),
     "workflow/explorer": ("tests/pipeline/test_explorer.py",),
@@ -115,7 +116,7 @@ MUTANTS = [
     ("curvature at zero", "np.array([7, -1]) / 6", "np.array([3, -1]) / 2"),
     ("overlap of two shells", "2 * m1 * m2 * overlap", "m1 * m2 * overlap"),
     ("sign of a score", "(expected - count) / error", "(count - expected) / error"),
-    ("two tails", "alarm) / (2 * comparisons)", "alarm) / comparisons"),
+    ("two tails", "ndtri(alarm / (2 * comparisons))", "ndtri(alarm / comparisons)"),
     ("half of the alarm", "judged(rows, alarm / 2)", "judged(rows, alarm)"),
     ("a larger work is lost", "result._again(settings, options)", "result._again(self.settings, options)"),
     ("radii that do not fit are lost", "for result in self], self.refused)", "for result in self])"),
@@ -180,6 +181,7 @@ MUTANTS = [
     ("CSV of another radius", "_print_csv(Theory.rows(Box.of(scene), [scene.radius]))", "_print_csv(Theory.rows(Box.of(scene), [scene.radius / 2]))"),
     ("law of diffusive passages", "DIFFUSIVE = 3 / 4", "DIFFUSIVE = 3 / 2"),
     ("error of dynamics for that of Monte Carlo", "monte_carlo_stderr=spread,", "monte_carlo_stderr=error,"),
+    ("count of the event that is known best", 'count = min((row["count"] for row in some), default=0)', 'count = max((row["count"] for row in some), default=0)'),
 ]
 # fmt: on
 
@@ -282,6 +284,9 @@ def nearest(mutated):
         )
         distance |= dict.fromkeys(border, max(distance.values()) + 1)
     here, names = Path(path), names_in(sources()[path], mutated)
+    same = (REPOSITORY / "tests").rglob(f"test_{here.stem}.py")  # which may run it as a program
+    for test in same:
+        distance.setdefault(test.relative_to(REPOSITORY).as_posix(), 1)
 
     def order(test):
         text = (REPOSITORY / test).read_text(encoding="utf-8")

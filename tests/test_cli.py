@@ -72,6 +72,15 @@ def test_csv_has_the_numbers_of_the_radius(monkeypatch, capsys):
         assert float(rows[f"{event}_time"]["exact"]) == times[event]
 
 
+def test_a_trajectory_begins_at_its_start(monkeypatch, capsys):
+    start = [-0.5, 0.1, 0.5, 0.0, 0.6, 0.8, 0.0, 0.0]
+    words = "--radius", "0.2", "--duration", "1", "--csv", "--start", *start
+    assert not command(monkeypatch, cli, "trajectory", *BOX, *words)
+    first, *_ = csv.DictReader(io.StringIO(capsys.readouterr().out))
+    names = ("x1", "y1", "x2", "y2", "u1", "v1", "u2", "v2")
+    assert [float(first[name]) for name in names] == start
+
+
 def test_effects_are_options(monkeypatch, capsys):
     named = {"radius_ratio": 0.5, "mass_ratio": 2.0, "field": 0.5}
     words = ["--radius-ratio", "0.5", "--mass-ratio", "2", "--field", ".5"]

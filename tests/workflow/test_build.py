@@ -86,7 +86,10 @@ def test_a_formula_off_by_one_percent_fails_the_check_and_is_named(built):
     run = built.snakemake("--cores", "2", *again, "--", "check", passes=False)
     assert run.returncode != 0
     said = run.stdout + run.stderr
-    assert "mean_time, quantity disc_collision_time, method dynamics, radius 0.2 has z" in said
+    sentence = (
+        "full: comparison mean_time, quantity disc_collision_time, method dynamics, radius 0.2"
+    )
+    assert f"{sentence} has z" in said
     assert "Traceback" not in said
     with open(built.path / "results" / "full" / "check.csv", newline="") as file:
         failed = [row["quantity"] for row in csv.DictReader(file) if row["passed"] == "false"]
