@@ -81,6 +81,31 @@ def test_a_trajectory_begins_at_its_start(monkeypatch, capsys):
     assert [float(first[name]) for name in names] == start
 
 
+def test_cost_prints_times_of_errors_as_a_table_and_for_scripts(monkeypatch, capsys):
+    words = "cost", *BOX, "--radius", "0.2", "--errors", "1e-2", "paper", "--shell", "0.1"
+    shown = {}
+    for form in ([], ["--json"], ["--csv"]):
+        assert command(monkeypatch, cli, *words, *form) == 0
+        shown[tuple(form)] = capsys.readouterr().out
+    assert shown[()].startswith(str(Scene(1.5, 1, 0.2)))
+    assert " 0.01 0.0003 " in re.sub(" +", " ", shown[()])
+    rows = json.loads(shown["--json",])
+    table = [*csv.DictReader(io.StringIO(shown["--csv",]))]
+    assert [row["method"] for row in table] == [row["method"] for row in rows]
+    (area,) = (row for row in rows if row["quantity"] == "top_wall_area" if "rej" in row["method"])
+    assert area["floor"] > 3e-4
+    assert area["seconds_0.0003"] is None
+    assert {*rows[0]} >= {"c", "least_error", "least_seconds", "seconds_0.01", "seconds_0.0003"}
+
+
+def test_a_result_for_scripts_has_its_note_beside_it(monkeypatch, capsys):
+    words = "simulate", *BOX, "--radius", "0.2", "--events", "any_wall", "--error", "1e-4"
+    assert command(monkeypatch, cli, *words, "--budget", "1e6", "--csv") == 0
+    shown = capsys.readouterr()
+    assert shown.err.startswith("0.0001 asked for; the budget of 1e6 events ended it at ")
+    assert shown.out.startswith("radius,")
+
+
 def test_effects_are_options(monkeypatch, capsys):
     named = {"radius_ratio": 0.5, "mass_ratio": 2.0, "field": 0.5}
     words = ["--radius-ratio", "0.5", "--mass-ratio", "2", "--field", ".5"]

@@ -406,7 +406,10 @@ def test_the_amount_of_a_trajectory_is_its_duration():
             lambda: td.simulate(SCENE, 0.5, budget=1),
             "budget 1 asked for: the minimum, one block, is 2.4e+05",
         ),
-        (lambda: td.simulate(SCENE, 1e-3, budget=1e7), None),
+        (
+            lambda: td.simulate(SCENE, 1e-3, budget=1e7),
+            "0.001 asked for; the budget of 1e7 events ended it at ",
+        ),
         (lambda: td.simulate(SCENE, duration=100), "duration 100 asked for, 65536 simulated: 1024"),
         (
             lambda: td.transmission(td.Scene(1.5, 1, 0.249), "horizontal_hop", 10),

@@ -33,7 +33,9 @@ EXPECTED = Path(__file__).parents[1] / "paper" / "expected"
 
 #: {public name: a call of it, or a use, with a scene}
 CALLS = {
+    "AccuracyWarning": lambda s: issubclass(td.AccuracyWarning, UserWarning),
     "Box": lambda s: td.Box(1.5, 1.0),
+    "Cost": lambda s: str(td.cost(s)),
     "EFFECTS": lambda s: td.EFFECTS["field"],
     "EVENTS": lambda s: td.EVENTS[0],
     "InputError": lambda s: _refused(),
@@ -41,12 +43,14 @@ CALLS = {
     "Measurement": lambda s: td.sample(s, 1)["volume"].u,
     "Measurements": lambda s: td.sample(s, 1, progress=True).frame(),
     "Observed": lambda s: td.observe(s, _speed, [0.1], 8).frame(),
+    "Price": lambda s: td.cost(s).prices[0].seconds(0.1),
     "Scan": lambda s: td.scan(1.5, 1.0, [0.2], 0.5).frame(),
     "Scene": lambda s: td.Scene(1.5, 1.0, 0.1, field=0.5),
     "Trajectory": lambda s: td.trajectory(s, 2).positions([1.0]),
     "Transmission": lambda s: td.transmission(s, "vertical_hop", 1).frame(),
     "animate": lambda s: td.animate(td.trajectory(s, 2), _file("gif")),
     "areas": lambda s: td.areas(s),
+    "cost": lambda s: td.cost(s, 1e-3).frame(),
     "diffusion": lambda s: td.diffusion(td.Scene(**SCENE, periodic="x"), [0.1], 8),
     "exact": lambda s: td.exact(s),
     "exact_table": lambda s: td.exact_table(1.5, 1.0, [0.2]),

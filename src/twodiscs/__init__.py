@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import Literal, TypedDict
 
+    from twodiscs.comparison.cost import Cost, Price, cost
     from twodiscs.comparison.intervals import Intervals, intervals
     from twodiscs.comparison.load import load, load_result
     from twodiscs.comparison.measurements import Measurement, Measurements, sample, simulate
@@ -45,7 +46,7 @@ if TYPE_CHECKING:
     from twodiscs.comparison.transmission import Transmission, transmission
     from twodiscs.figures.plot import animate, plot
     from twodiscs.model.box import Box
-    from twodiscs.model.checks import InputError
+    from twodiscs.model.checks import AccuracyWarning, InputError
     from twodiscs.model.effects import EFFECTS
     from twodiscs.model.events import EVENTS
     from twodiscs.model.scene import Scene
@@ -93,6 +94,7 @@ __version__ = "0.2.0"
 
 #: {module: its names}; a module is imported at the first use of one of them (PEP 562).
 _NAMES = {
+    "comparison.cost": "Cost Price cost",
     "comparison.intervals": "Intervals intervals",
     "comparison.load": "load load_result",
     "comparison.measurements": "Measurement Measurements sample simulate",
@@ -105,7 +107,7 @@ _NAMES = {
     "comparison.transmission": "Transmission transmission",
     "figures.plot": "animate plot",
     "model.box": "Box",
-    "model.checks": "InputError",
+    "model.checks": "AccuracyWarning InputError",
     "model.effects": "EFFECTS",
     "model.events": "EVENTS",
     "model.scene": "Scene",
@@ -114,11 +116,11 @@ _NAMES = {
 _HOMES = {name: module for module, names in _NAMES.items() for name in names.split()}
 
 __all__ = [
-    "EFFECTS", "EVENTS", "Box", "InputError", "Intervals", "Measurement", "Measurements",
-    "Observed", "Scan", "Scene", "Trajectory", "Transmission", "animate", "areas", "diffusion",
-    "exact", "exact_table", "free_energy", "intervals", "load", "load_result", "mean_times",
-    "observe", "plot", "pressure", "rate", "sample", "scan", "simulate", "starts", "trajectory",
-    "transmission", "volume",
+    "EFFECTS", "EVENTS", "AccuracyWarning", "Box", "Cost", "InputError", "Intervals", "Measurement",
+    "Measurements", "Observed", "Price", "Scan", "Scene", "Trajectory", "Transmission", "animate",
+    "areas", "cost", "diffusion", "exact", "exact_table", "free_energy", "intervals", "load",
+    "load_result", "mean_times", "observe", "plot", "pressure", "rate", "sample", "scan",
+    "simulate", "starts", "trajectory", "transmission", "volume",
 ]  # fmt: skip
 
 

@@ -5,6 +5,7 @@ import csv
 import json
 import sys
 from io import StringIO
+from warnings import simplefilter
 
 import argcomplete
 
@@ -80,7 +81,8 @@ def _parser():
     simulate.add_argument(
         "--duration", type=number, help="the time to simulate, instead of an error"
     )
-    simulate.add_argument("--budget", type=whole_number, default=2e9, help="events at most (2e9)")
+    most = "events at most (those of a day)"
+    simulate.add_argument("--budget", type=whole_number, help=most)
     events = simulate.add_argument(
         "--events", nargs="+", metavar="EVENT", help=f"of {', '.join(EVENTS)} (all)"
     )
@@ -98,6 +100,9 @@ def _parser():
     sample.add_argument("--shell", type=number, default=0.02, help="thickness, a fraction (0.02)")
     _seed(sample)
     _cores(sample)
+    cost = command("cost", _cost, "the processor time of relative errors, by each method")
+    cost.add_argument("--errors", type=error, nargs="+", help="relative (1e-2 1e-3 1e-4 1e-5 1e-6)")
+    cost.add_argument("--shell", type=number, default=0.02, help="thickness, a fraction (0.02)")
     trajectory = command("trajectory", _trajectory, "one trajectory, event by event")
     trajectory.add_argument("--duration", type=number, help="a time (some hops of the rarer kind)")
     trajectory.add_argument(
@@ -197,6 +202,7 @@ def _exact(scene, options):
 
 
 def _simulate(scene, options):
+    simplefilter("ignore", twodiscs.AccuracyWarning)  # the note has the same sentence
     names = "error", "duration", "seed", "budget", "events", "name", "cores"
     _print_measured(twodiscs.simulate(scene, **_arguments(options, names)), options)
 
@@ -211,12 +217,24 @@ def _arguments(options, names):
 
 
 def _print_measured(result, options):
+    if result.note and (options.csv or options.json):
+        print(result.note, file=sys.stderr)
     if options.csv:
         _print_csv(result.rows)
     elif options.json:
         _print_json({row.get("event") or row["quantity"]: row for row in result.rows})
     else:
         write(result)
+
+
+def _cost(scene, options):
+    found = twodiscs.cost(scene, options.errors, shell=options.shell)
+    if options.csv:
+        write(found.frame().to_csv().rstrip("\n"))
+    elif options.json:
+        _print_json(found.rows)
+    else:
+        write(found)
 
 
 def _trajectory(scene, options):

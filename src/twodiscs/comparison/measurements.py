@@ -6,6 +6,7 @@ Their numbers come from rows of the tables, made by the same functions.
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -15,10 +16,11 @@ import numpy as np
 
 from twodiscs.comparison.quantities import Quantities
 from twodiscs.comparison.result import Result, note_of_number, progress_bar, seed_of
-from twodiscs.comparison.scene_tables import Areas, MeanTimes, Theory, Volume
+from twodiscs.comparison.scene_tables import Areas, MeanTimes, Theory, Volume, shortfall
 from twodiscs.comparison.table import quantity_of
 from twodiscs.model.box import Box
 from twodiscs.model.checks import (
+    AccuracyWarning,
     InputError,
     answering,
     check_count,
@@ -405,7 +407,7 @@ def simulate(
     error: float | str | Mapping[Event, float | str] | None = None,
     *,
     duration: float | None = None,
-    budget: float = 2e9,
+    budget: float | None = None,
     events: Event | Iterable[Event] | Iterable[str] | None = None,
     seed: int = 1,
     name: str | None = None,
@@ -417,7 +419,8 @@ def simulate(
     Many independent trajectories start in the invariant measure. Each has the same duration T, a
     power of two that depends on the scene. The mean count in T is exactly T times the rate, for
     every T. Trajectories are added until every relative standard error is below ``error``, or
-    ``budget`` events are simulated; with a ``duration``, until that time is simulated.
+    ``budget`` events are simulated; with a ``duration``, until that time is simulated. ``cost``
+    measures how long an error takes.
 
     Work comes in whole blocks of 1024 trajectories, 2.4e5 events each for a radius of 0.2 in a box
     of 1.5 × 1. Without a ``duration`` the minimum is 32 blocks, 7.7e6 events there, or fewer within
@@ -435,8 +438,9 @@ def simulate(
     duration : float, optional
         The simulated time of all trajectories together, in time. It is rounded up to whole blocks.
         All events are then counted in the same trajectories, rare hops too.
-    budget : float, default 2e9
-        The most wall hits and disc collisions, an integer from 1 on.
+    budget : float, optional
+        The most wall hits and disc collisions, an integer from 1 on. If left out, the error is
+        reached unless it takes about a day.
     events : str or iterable of str, optional
         Events to count, some of ``EVENTS``; if left out, all that exist in the scene.
     seed, name, cores, progress : optional
@@ -452,6 +456,11 @@ def simulate(
     InputError
         For an unknown event, for a number out of range, for both ``error`` and ``duration``, and
         for a ``duration`` with more events than the ``budget``.
+
+    Warns
+    -----
+    AccuracyWarning
+        If the budget ended it before the error was reached. The ``note`` has the same sentence.
 
     Notes
     -----
@@ -472,7 +481,7 @@ def simulate(
 
 
 def run_simulation(
-    scene, error, duration=None, seed=1, budget=2e9, events=None, name=None, cores=1,
+    scene, error, duration=None, seed=1, budget=None, events=None, name=None, cores=1,
     progress=None, kept=None,
 ):  # fmt: skip
     """Return the ``Measurements`` of ``simulate``; the parts ``kept`` are not done again."""
@@ -489,7 +498,8 @@ def run_simulation(
         raise InputError(f"error must have a value for every event, but has none for {missing[0]}")
     # A run of a duration is asked for no error: 1 is the largest that it takes.
     target = {e: 1.0 if timed else check_error("error", errors[e]) for e in tracked}
-    budget, stream = check_count("budget", budget), seed_of(scene, "dynamics", seed, name)
+    budget = None if budget is None else check_count("budget", budget)
+    stream = seed_of(scene, "dynamics", seed, name)
     settings = {"seed": int(seed), "budget": budget, "events": tracked, "name": name}
     if timed:
         from twodiscs.dynamics.runs import TimedRun
@@ -512,13 +522,16 @@ def run_simulation(
         )
     else:
         note = _note_of_error(rows, target, budget, point.events)
+        if missed := shortfall(rows, budget, point.events):
+            warnings.warn(missed, AccuracyWarning, stacklevel=4)
+            note = note or missed
     return Measurements("simulate", scene, rows, settings, point, note)
 
 
 def _note_of_error(rows, target, budget, events):
     """Return the note of a run whose minimum work is far more than was asked for, else None."""
     minimum = f"{events:.2g} wall hits and collisions"
-    if events > 2 * budget:
+    if budget and events > 2 * budget:
         return f"budget {budget:g} asked for: the minimum, one block, is {minimum}"
     possible = [row for row in rows if row["status"] != "impossible"]
     if possible and all(

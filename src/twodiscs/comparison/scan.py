@@ -136,7 +136,7 @@ def scan(
     *,
     duration: float | None = None,
     seed: int = 1,
-    budget: float = 2e9,
+    budget: float | None = None,
     events: Event | Iterable[Event] | Iterable[str] | None = None,
     name: str | None = None,
     cores: int = 1,
@@ -157,8 +157,8 @@ def scan(
         The simulated time at each radius, as in ``simulate``.
     seed : int, default 1
         Seed of the random numbers, from 0 to 2⁶³ − 1. Each radius has different random numbers.
-    budget : float, default 2e9
-        The most wall hits and disc collisions at each radius, an integer from 1 on.
+    budget : float, optional
+        The most wall hits and disc collisions at each radius, as in ``simulate``.
     events : str or iterable of str, optional
         Events to count, some of ``EVENTS``; if left out, all that exist in the scene.
     name, cores, progress : optional

@@ -3,6 +3,7 @@
 The Snakefile reads this module, so NumPy and its users are imported only when rows are made.
 """
 
+import math
 from functools import partial
 
 from twodiscs.comparison.table import (
@@ -22,9 +23,12 @@ from twodiscs.comparison.table import (
     Z,
     by_radius,
 )
-from twodiscs.model.checks import InputError
+from twodiscs.model.checks import InputError, format_number, format_seconds
 from twodiscs.model.events import EVENTS
 from twodiscs.theory.exact import exact, shell_expectation
+
+#: A run that reaches an error below this one has the 100 effective events of an error bar.
+COARSE = 0.1
 
 
 class Grid(Table):
@@ -397,6 +401,39 @@ def _mean_time_row(scene, event, point, exact, count):
     }
 
 
+def shortfall(rows, budget, events=None, seconds=None, ends="ended"):
+    """Return a sentence on the largest error that was not reached, None if all were.
+
+    ``rows`` are of mean_times.csv, or have its event, target, relative_stderr and status. The run
+    had a number of ``events`` within its ``budget``, None for a day, and took some ``seconds``.
+    """
+    missed = [
+        row
+        for row in rows
+        if row["target"]
+        and (
+            row["status"] == "budget"
+            or (row["status"] in ("too-few", "none-seen") and row["target"] < COARSE)
+        )
+    ]
+    if not missed:
+        return None
+    excess = {row["event"]: (row["relative_stderr"] or math.inf) / row["target"] for row in missed}
+    worst = max(missed, key=lambda row: excess[row["event"]])
+    limit = f"budget of {format_number(budget, '.3g')} events" if budget else "limit of a day"
+    event, more = worst["event"], excess[worst["event"]] ** 2
+    text = f"{format_number(worst['target'], 'g')} asked for; the {limit} {ends} it "
+    if not math.isfinite(more):
+        return f"{text}before there are enough events {event} for an error"
+    reached = format_number(worst["relative_stderr"], ".2g")
+    text = f"{text}at {reached} ({event}_time)"
+    if events:
+        text += f"; without a budget {format_number(events * more, '.1g')} events"
+    if events and seconds:
+        text += f", {format_seconds(seconds * more)}"
+    return text
+
+
 class HopHistogram(Table):
     """One row per radius and bin: intervals between hops, from one crossing to the next."""
 
@@ -576,7 +613,9 @@ class Cost(Table):
         "stage": TEXT("monte_carlo, dynamics or intervals"),
         "radius": RADIUS,
         "events": COUNT("events simulated, configurations or intervals drawn"),
-        "seconds": SECONDS("processor time of the job and of its shards; empty if it is not known"),
+        "seconds": SECONDS(
+            "processor time of the work of the job and of its shards; empty if it is not known"
+        ),
     }
 
     @staticmethod

@@ -40,6 +40,9 @@ from twodiscs.theory.exact import replicas_needed
 #: Chains of intervals that share a stream, and the usual budget of their wall and disc events.
 CHAINS, BUDGET = 256, 10**11
 
+#: The work of a day, the most without a budget, in events of the plain ensemble: 1e8 a second.
+DAY = 86400 * 10**8
+
 #: The function of the face that does the work of a stage.
 KINDS = {"monte_carlo": "sample", "dynamics": "simulate", "intervals": "intervals"}
 
@@ -100,8 +103,8 @@ def count_events(scene, target, budget, seed):
 
     ``target`` maps each tracked event to the relative standard error asked for (0 < target ≤ 1);
     blocked hops are counted, but their error is ignored. ``budget`` is the largest number of wall
-    and disc events to simulate; the minimum is one block of replicas. Work goes in rounds (see
-    ``sampling.rounds``).
+    and disc events to simulate, None for the work of a day; the minimum is one block of replicas.
+    Work goes in rounds (see ``sampling.rounds``).
 
     Hops that are rare because of a neck are also counted in strips (``strip``). The budget is
     divided in proportion to the events that each error needs.
@@ -118,7 +121,7 @@ class CountingRun:
 
     scene: Scene
     target: dict
-    budget: int
+    budget: int | None
     seed: int
 
     def __post_init__(self):
@@ -129,9 +132,15 @@ class CountingRun:
             )
         for event, target in self.target.items():
             check_error(f"target of {check_choice('event', event, EVENTS)}", target)
-        check_integer("budget", self.budget)
+        if self.budget is not None:
+            check_integer("budget", self.budget)
         check_integer("seed", self.seed, 0)
         require_room(self.scene)
+
+    @property
+    def most_events(self):
+        """The budget, or without one the number of events of a day, roughly."""
+        return self.budget or DAY / engine_of(self.scene).cost_ratio(self.scene)
 
     @property
     def _events(self):
@@ -150,14 +159,19 @@ class CountingRun:
         """Runs by name, ``SequentialRun``: "all" and the rare hops.
 
         The budget is divided in proportion to the events that the errors need. If it is too small
-        for all of them, each has the same fraction of its events.
+        for all of them, each has the same fraction of its events. Without a budget, this is true of
+        the work of a day.
         """
-        budget = max(1, int(self.budget / engine_of(self.scene).work_per_event(self.scene)))
+        each = engine_of(self.scene).work_per_event(self.scene)
+        budget = max(1, int(self.most_events / each))
         runs = {"all": self._everything(budget)}
         for hop in self._rare:
             runs[hop] = strip.run_of(self.scene, hop, self.target[hop], budget, self.seed)
         events = {name: run.planned * run.block_events for name, run in runs.items()}
         total = sum(events.values())
+        if self.budget is None:
+            work = sum(run.planned * run.block_work for run in runs.values())
+            total = budget * work * each / DAY
         most = min(1.0, budget / total)
         return {
             name: replace(
@@ -266,10 +280,10 @@ class TimedRun(CountingRun):
     def __post_init__(self):
         super().__post_init__()
         rate = engine_of(self.scene).expected_event_rate(self.scene)
-        if self.duration * rate > self.budget:
+        if self.duration * rate > self.most_events:
             raise InputError(
-                f"duration must be below {format_number(self.budget / rate, '.3g')}, where the "
-                f"budget of {format_number(self.budget, 'g')} events is spent, not "
+                f"duration must be below {format_number(self.most_events / rate, '.3g')}, where "
+                f"the budget of {format_number(self.most_events, 'g')} events is spent, not "
                 f"{format_number(self.duration, 'g')}"
             )
 
@@ -288,7 +302,7 @@ class TimedRun(CountingRun):
         each = engine.replica_duration(self.scene) * engine.block_replicas(self.scene)
         blocks, waited = max(1, math.ceil(self.duration / each)), len(self._waited)
         run = replace(
-            self._everything(self.budget),
+            self._everything(self.most_events),
             excess_of=lambda sums, blocks: np.zeros(waited),
             budget=math.inf,
             planned=blocks,

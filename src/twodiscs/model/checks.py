@@ -28,6 +28,27 @@ _SHORT = reprlib.Repr()
 _SHORT.maxlevel = 2
 
 
+class AccuracyWarning(UserWarning):
+    """A simulation ended at its budget, before the error that was asked for.
+
+    Parameters
+    ----------
+    sentence : str
+        The errors and the budget.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> with warnings.catch_warnings(record=True) as found:
+    ...     _ = td.simulate(scene, 1e-3, budget=1e6)
+    >>> found[0].category is td.AccuracyWarning
+    True
+    """
+
+    def __init__(self, sentence: str):
+        super().__init__(sentence)
+
+
 class InputError(ValueError):
     """A user's mistake in an argument, a configuration or a file, in one sentence.
 
@@ -80,6 +101,21 @@ def writing_to(path):
 def format_number(value, form=""):
     """Return a number as the pages write it: 1e60 for Python's 1e+60."""
     return re.sub(r"e\+?(-?)0*(\d)", r"e\1\2", format(value, form))
+
+
+#: (seconds, the unit that they are) from the longest unit down.
+_UNITS = (
+    (365.25 * 86400, "years"), (86400.0, "d"), (3600.0, "h"), (60.0, "min"), (1.0, "s"),
+    (1e-3, "ms"), (1e-6, "µs"),
+)  # fmt: skip
+
+
+def format_seconds(seconds):
+    """Return a time to two digits: 0.12 s, 20 min, 3.5 d; "–" for None and infinity."""
+    if seconds is None or not math.isfinite(seconds):
+        return "–"
+    length, unit = next((pair for pair in _UNITS if seconds >= pair[0]), _UNITS[-1])
+    return f"{format_number(float(f'{seconds / length:.2g}'), 'g')} {unit}"
 
 
 def decimal_hint(value):

@@ -571,17 +571,18 @@ class SamplingRun:
     seed: int
 
     def __post_init__(self):
-        self._sampler  # noqa: B018 - checks what is given
+        self.sampler  # noqa: B018 - checks what is given
 
     @cached_property
-    def _sampler(self):
+    def sampler(self):
+        """The best ``Sampler`` for the scene."""
         sampler, _ = plan(self.scene, self.samples)
         return sampler(self.scene, self.quantities, self.shell, self.seed)
 
     @cached_property
     def parts(self):
         """The ``SequentialRun`` of all samples, {"all": run}."""
-        sampler, samples = self._sampler, plan(self.scene, self.samples)[1]
+        sampler, samples = self.sampler, plan(self.scene, self.samples)[1]
         blocks = samples // sampler.block
 
         def work(first, stop):
@@ -591,7 +592,7 @@ class SamplingRun:
 
     def point(self, pieces):
         """Return the point, given {"all": pieces}."""
-        return self._sampler.point(pieces["all"])
+        return self.sampler.point(pieces["all"])
 
     def run(self, progress=None, cores=1, kept=None):
         """Do all samples in this process and return the point.

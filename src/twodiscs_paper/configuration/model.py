@@ -305,7 +305,7 @@ class SceneBlock(Block):
     """The requested relative standard error of every mean time: a number, a preset (draft 1e-2,
     paper 3e-4, reference 1e-4), or a block with one of these for each event."""
 
-    event_budget: Budget = 2 * 10**9
+    event_budget: Budget = otherwise("the accuracy is reached, unless it takes about a day")
     """The most events that the simulation of one radius may use, even if it has not reached the
     accuracy by then."""
 

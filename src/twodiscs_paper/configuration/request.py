@@ -306,6 +306,7 @@ class Configuration:
                 "height": scene.box.height,
                 "box": " × ".join(f"{side:g}" for side in scene.box.sides),
                 "effects": scene.effects,
+                "event_budget": scene.event_budget,
                 "tables": list(self.tables(scene.name)),
                 "figures": list(self.figures(scene.name)),
             }

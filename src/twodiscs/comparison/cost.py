@@ -1,0 +1,530 @@
+"""What an accuracy costs: the processor time of an error, for each quantity and method.
+
+Independent samples have the relative error √(c/t) after a processor time t. The cost c is the time
+of a block of samples times its squared relative error, so it holds for every error above the floor
+of the method. The variance of a sample of volume or area follows from exact values. The variance of
+counts, and the time of all blocks, come from a pilot: a run of some blocks on this machine.
+"""
+
+from __future__ import annotations
+
+import math
+import platform
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from twodiscs.comparison.scene_tables import shortfall
+from twodiscs.model.checks import (
+    MOST_WITH_VOLUME,
+    answering,
+    check_error,
+    check_fraction,
+    format_number,
+    format_seconds,
+)
+from twodiscs.model.events import EVENTS
+from twodiscs.model.scene import Scene, check_scene
+from twodiscs.points.monte_carlo import WALL_AREAS
+from twodiscs.theory import exact
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: The relative errors whose times are shown.
+ERRORS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+
+#: Processor seconds of a pilot of dynamics, about, and of a pilot that measures the speed only.
+PILOT, OF_SPEED = 0.3, 0.1
+
+#: The fewest initial states of a pilot.
+FEWEST_REPLICAS = 128
+
+#: Fewer counts of an event do not tell their variance. It is then this multiple of the mean, which
+#: is known: a rare hop may be undone soon.
+FEWEST_COUNTS, CLUSTER = 200, 1.3
+
+#: The relative error of exact values of this number of discs, and of more discs in a channel.
+PRECISION, OF_CHANNEL = {2: 1e-15, 3: 1e-14}, 1e-12
+
+
+def machine():
+    """Return the name of the processor, as far as the system tells it."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        lines = ()
+    names = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
+    return next(names, "") or platform.processor() or platform.machine()
+
+
+# Dynamics -----------------------------------------------------------------------------------------
+
+
+class Pilot(NamedTuple):
+    """The mean block of a part of a run: its processor seconds, events and replicas.
+
+    ``errors`` are the relative errors of one block by event, ``first_round`` is the fewest blocks
+    of a run that waits for an error.
+    """
+
+    seconds: float
+    events: float
+    replicas: int
+    errors: dict
+    first_round: int
+
+
+def timed(work, seconds, fewest=1):
+    """Return (sums, number of blocks, processor seconds of a block) of ``work(first, stop)``.
+
+    The blocks take roughly ``seconds``, and are at least ``fewest``.
+    """
+    from twodiscs.sampling.rounds import in_a_thread
+
+    def run(blocks):
+        start = time.thread_time()
+        sums = work(0, blocks)
+        return sums, (time.thread_time() - start) / blocks
+
+    in_a_thread(run, 1)  # compiles or loads the kernel
+    _, first = in_a_thread(run, 1)
+    blocks = max(fewest, int(seconds / max(first, 1e-5)))
+    sums, each = in_a_thread(run, blocks)
+    return sums, blocks, each
+
+
+def pilots(run, seconds=PILOT):
+    """Return {part: ``Pilot``} of a ``CountingRun``: "all", and the rare hops in their strips."""
+    return {name: _pilot(run, name, seconds) for name in run.parts}
+
+
+def _pilot(run, name, seconds):
+    from twodiscs.dynamics.runs import engine_of, relative_errors
+
+    scene, engine, part = run.scene, engine_of(run.scene), run.parts[name]
+    replicas = engine.block_replicas(scene)
+    sums, blocks, each = timed(part.work, seconds, -(-FEWEST_REPLICAS // replicas))
+    if name == "all":
+        replicas_done = blocks * replicas
+        errors = dict(zip(EVENTS, relative_errors(*sums, replicas_done).tolist(), strict=True))
+        for event, count in zip(EVENTS, sums[0].tolist(), strict=True):
+            expected = engine.expected_rate(scene, event) * engine.replica_duration(scene)
+            if count < FEWEST_COUNTS and expected:
+                errors[event] = math.sqrt(CLUSTER / (expected * replicas_done))
+        errors = {event: errors[event] for event in run.target if scene.is_possible(event)}
+    else:
+        error = float(part.excess_of(sums, blocks)[0])
+        if not math.isfinite(error):
+            error = math.sqrt(part.planned / blocks)
+        errors = {name: error * run.target[name]}
+    errors = {event: error * math.sqrt(blocks) for event, error in errors.items()}
+    return Pilot(each, part.events_of(sums) / blocks, replicas, errors, part.first_round)
+
+
+def blocks_wanted(scene, pilots, target):
+    """Return {part: blocks} that a run to the errors ``target``, {event: error}, takes."""
+    from twodiscs.sampling.rounds import MARGIN
+
+    found = {}
+    for name, pilot in pilots.items():
+        own = [e for e in target if e in pilot.errors and (name != "all" or e not in pilots)]
+        noise = max(((pilot.errors[e] / target[e]) ** 2 for e in own), default=0.0)
+        needed = (exact.replicas_needed(scene, e, target[e]) / pilot.replicas for e in own)
+        needed = max(needed, default=0.0) if name == "all" else 0.0
+        wanted = max(MARGIN * noise, needed)
+        found[name] = wanted if wanted > pilot.first_round else pilot.first_round
+    return found
+
+
+class Forecast(NamedTuple):
+    """What a run takes and reaches within its budget; ``reached`` are relative errors by event."""
+
+    seconds: float
+    events: float
+    reached: dict
+
+    def shortfall(self, run):
+        """Return a sentence on the accuracy that a ``CountingRun`` will not reach, or None."""
+        rows = [
+            {
+                "event": event,
+                "target": run.target[event],
+                "relative_stderr": error,
+                "status": "budget" if error > run.target[event] else "reached",
+            }
+            for event, error in self.reached.items()
+        ]
+        return shortfall(rows, run.budget, self.events, self.seconds, "ends")
+
+
+def forecast(run, pilots, planned=False):
+    """Return the ``Forecast`` of a ``CountingRun`` from the ``pilots`` of its parts.
+
+    If its blocks are ``planned``, it does all of these: its jobs are shards.
+    """
+    seconds, events, reached = 0.0, 0.0, {}
+    for name, wanted in blocks_wanted(run.scene, pilots, run.target).items():
+        part, pilot = run.parts[name], pilots[name]
+        affordable = max(1.0, part.budget / max(pilot.events, 1.0))
+        blocks = part.planned if planned else min(wanted, affordable)
+        seconds, events = seconds + blocks * pilot.seconds, events + blocks * pilot.events
+        own = (e for e in pilot.errors if name != "all" or e not in pilots)
+        reached |= {event: pilot.errors[event] / math.sqrt(blocks) for event in own}
+    return Forecast(seconds, events, reached)
+
+
+# Prices -------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Price:
+    """What a quantity costs by a method.
+
+    Parameters
+    ----------
+    quantity, method : str
+        Their names.
+    c : float
+        The processor seconds of a run times its squared relative error.
+    least_seconds : float
+        The processor seconds of the smallest run.
+    floor : float, default 0
+        The relative error that no work removes: of a thick shell, or of rounding.
+
+    Examples
+    --------
+    >>> price = td.Price("volume", "rejection", c=1e-6, least_seconds=0.01)
+    >>> price.least_error, price.seconds(1e-4)
+    (0.01, 100.0)
+    """
+
+    quantity: str
+    method: str
+    c: float
+    least_seconds: float
+    floor: float = 0.0
+
+    @property
+    def least_error(self) -> float:
+        """The relative error of the smallest run."""
+        return max(self.floor, math.sqrt(self.c / self.least_seconds))
+
+    def seconds(self, error: float) -> float | None:
+        """Return the processor time of a relative ``error``.
+
+        Parameters
+        ----------
+        error : float
+            The relative error.
+
+        Returns
+        -------
+        float or None
+            In seconds, at least that of the smallest run; None below the floor.
+
+        Examples
+        --------
+        >>> td.Price("volume", "shells", c=1e-6, least_seconds=0.01, floor=1e-3).seconds(1e-4)
+        """
+        return None if error < self.floor else max(self.least_seconds, self.c / error**2)
+
+
+def _prices_of_times(scene, found):
+    """Yield the prices of mean times from the pilots that were ``found``."""
+    for event in scene.events:
+        for name, pilot in found.items():
+            if event in pilot.errors:
+                method = "dynamics" if name == "all" else "strips"
+                c, least = pilot.errors[event] ** 2 * pilot.seconds, pilot.first_round
+                yield Price(f"{event}_time", method, c, least * pilot.seconds)
+
+
+def _samplers(scene):
+    """Return {method: function that makes a ``Sampler``} of volume and areas."""
+    from twodiscs.sampling import montecarlo
+    from twodiscs.sampling.many.insertions import inserted
+
+    if scene.discs > 2:
+        return {"insertions": inserted} if scene.discs <= MOST_WITH_VOLUME else {}
+    if scene.is_plain:
+        return {"rejection": montecarlo.in_prism, "conditioned": montecarlo.conditioned}
+    return {"rejection": montecarlo.weighted}
+
+
+def _prices_of_samples(scene, shell, seconds=OF_SPEED):
+    """Yield the prices of the volume and of areas by each sampler."""
+    wanted = ["volume", *(f"{event}_area" for event in scene.events if scene.is_possible(event))]
+    for method, make in _samplers(scene).items():
+        sampler = make(scene, wanted, shell, 0)
+        sums, blocks, each = timed(sampler.count, seconds)
+        found = _variances(scene, sampler, sums, blocks)
+        for quantity in wanted:
+            name = method if quantity == "volume" or scene.discs > 2 else f"shells, {method}"
+            if quantity in found:
+                variance, floor = found[quantity]
+                yield Price(quantity, name, variance * each, each, floor)
+
+
+def forecast_of_samples(run, seconds):
+    """Return the ``Forecast`` of a ``SamplingRun`` from a pilot of some ``seconds``."""
+    part = run.parts["all"]
+    sums, blocks, each = timed(run.sampler.count, seconds)
+    found = _variances(run.scene, run.sampler, sums, blocks)
+    errors = {
+        quantity: math.sqrt(found[quantity][0] / part.planned)
+        for quantity in run.quantities
+        if quantity in found
+    }
+    return Forecast(each * part.planned, part.planned * part.block_events, errors)
+
+
+def _variances(scene, sampler, sums, blocks):
+    """Return {quantity: (squared relative error of a block, floor)}, without those not known."""
+    if scene.discs > 2:
+        return _variances_of_weights(scene, sampler, sums, blocks)
+    return _variances_of_hits(scene, sampler.constants["quantities"], sampler.block)
+
+
+def _variances_of_hits(scene, sampled, samples):
+    """Return {quantity: (squared relative error of a number of samples, floor)}, exactly.
+
+    ``sampled`` are the quantities of a ``Sampler``. Samples in the shells of two walls are taken as
+    independent.
+    """
+    means, found = {}, {}
+    for quantity, part in sampled.items():
+        event, value = quantity.removesuffix("_area"), exact.volume(scene)
+        if quantity != "volume":
+            value = exact.shell_expectation(scene, event, part["epsilon"])
+        if share := value / part["measure"]:
+            means[quantity] = share
+            found[quantity] = 1 / share - 1, value
+    if "any_wall_area" not in sampled and {*WALL_AREAS} <= means.keys():
+        right, top = (sampled[wall]["measure"] for wall in WALL_AREAS)
+        hits = [means[wall] for wall in WALL_AREAS]
+        value = right * hits[0] + top * hits[1]
+        both = math.prod(hits) / means["volume"] if "volume" in means else math.prod(hits)
+        square = right**2 * hits[0] + top**2 * hits[1] + 2 * right * top * both
+        found["any_wall_area"] = square / value**2 - 1, 4 * value
+    areas = {"volume": exact.volume(scene)}
+    areas |= {f"{event}_area": area for event, area in exact.areas(scene).items()}
+    return {
+        quantity: (variance / samples, abs(value / areas[quantity] - 1))
+        for quantity, (variance, value) in found.items()
+        if areas[quantity]
+    }
+
+
+def _variances_of_weights(scene, sampler, sums, blocks):
+    """Return {quantity: (squared relative error of a block of insertions, 0)} from their sums."""
+    point = sampler.point({(0, blocks): (sums,)})
+    found = {quantity: point.sampled(quantity) for quantity in point.quantities}
+    found["any_wall_area"] = point.all_walls(scene)
+    return {
+        quantity: (one.estimate.relative_stderr**2 * blocks, 0.0)
+        for quantity, one in found.items()
+        if one is not None and one.estimate is not None
+    }
+
+
+def _price_of_exact(scene):
+    """Yield the price of all exact values, if they are known."""
+    if exact.event_rate(scene) is None:
+        return
+    exact.exact(scene)  # imports what it takes
+    other = scene.with_radius(math.nextafter(scene.radius, 0))  # whose values are in no cache
+    start = time.perf_counter()
+    exact.exact(other)
+    seconds, floor = time.perf_counter() - start, PRECISION.get(scene.discs, OF_CHANNEL)
+    yield Price("all of these", "exact", floor**2 * seconds, seconds, floor)
+
+
+class Cost:
+    """What each quantity of a scene costs by each method; ``cost`` returns one.
+
+    It prints as a table: processor times for relative errors, the error of the smallest run, and
+    the floor, an error that no work removes.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    errors : list of float
+        The relative errors whose times it shows.
+    prices : list of Price
+        A price for each quantity and method.
+    pilots : dict
+        The pilots of dynamics, {part: ``Pilot``}.
+
+    Attributes
+    ----------
+    machine : str
+        The processor on which it was measured.
+
+    Examples
+    --------
+    >>> found = td.cost(scene)
+    >>> found["volume", "rejection"].seconds(1e-4) > found["volume", "rejection"].seconds(1e-3)
+    True
+    """
+
+    def __init__(self, scene, errors, prices, pilots):
+        self.scene, self.errors, self.prices, self.pilots = scene, errors, prices, pilots
+        self.machine = machine()
+
+    def __getitem__(self, key: tuple[str, str]) -> Price:
+        """Return the ``Price`` of a (quantity, method)."""
+        return {(price.quantity, price.method): price for price in self.prices}[key]
+
+    def seconds(self, error: float) -> float:
+        """Return the processor time of ``simulate(scene, error)``: of all mean times together.
+
+        Parameters
+        ----------
+        error : float
+            The relative error of every mean time.
+
+        Returns
+        -------
+        float
+            In seconds, without a budget.
+
+        Examples
+        --------
+        >>> td.cost(scene).seconds(1e-4) > 1
+        True
+        """
+        target = dict.fromkeys(self.scene.events, check_error("error", error))
+        wanted = blocks_wanted(self.scene, self.pilots, target)
+        return sum(wanted[name] * pilot.seconds for name, pilot in self.pilots.items())
+
+    @property
+    def rows(self) -> list[dict[str, object]]:
+        """The rows of ``frame()``; a time below the floor is None."""
+        return [
+            {
+                "quantity": price.quantity,
+                "method": price.method,
+                "c": price.c,
+                "least_error": price.least_error,
+                "least_seconds": price.least_seconds,
+                "floor": price.floor,
+                **{f"seconds_{error:g}": price.seconds(error) for error in self.errors},
+            }
+            for price in self.prices
+        ]
+
+    def frame(self) -> pd.DataFrame:
+        """Return the prices as a table.
+
+        Returns
+        -------
+        DataFrame
+            One row per quantity and method, the index. Its columns are c, in s; the relative error
+            and the seconds of the smallest run; the floor; and the seconds for each error, NaN
+            below the floor.
+
+        Examples
+        --------
+        >>> float(td.cost(scene, 1e-3).frame().loc[("volume", "rejection"), "floor"])
+        0.0
+        """
+        import pandas as pd
+
+        return pd.DataFrame(self.rows).set_index(["quantity", "method"]).astype(float)
+
+    def _texts(self) -> pd.DataFrame:
+        """Return the texts of the printed table."""
+        import pandas as pd
+
+        names = [format_number(error, "g") for error in self.errors]
+        rows = [
+            [
+                price.quantity,
+                price.method,
+                *(format_seconds(price.seconds(error)) for error in self.errors),
+                format_number(price.least_error, ".1e") if price.least_error < 1 else "–",
+                format_number(price.floor, ".1e") if price.floor else "",
+            ]
+            for price in self.prices
+        ]
+        every = [
+            "all mean times",
+            "simulate",
+            *(format_seconds(self.seconds(e)) for e in self.errors),
+        ]
+        columns = ["quantity", "method", *names, "least", "floor"]
+        return pd.DataFrame([[*every, "", ""], *rows], columns=columns)
+
+    @property
+    def _note(self):
+        return (
+            f"Processor time of a relative error, on one core of {self.machine}. Least is the "
+            "error of the smallest run; no work removes the floor."
+        )
+
+    def __str__(self) -> str:
+        return f"{self.scene}\n\n{self._texts().to_string(index=False)}\n\n{self._note}"
+
+    __repr__ = __str__
+
+    def _repr_html_(self) -> str:
+        table = self._texts().to_html(index=False)
+        return f"<p>{escape(str(self.scene))}</p>{table}<p>{escape(self._note)}</p>"
+
+
+@answering
+def cost(
+    scene: Scene, errors: float | Iterable[float] | None = None, *, shell: float = 0.02
+) -> Cost:
+    """Measure what an accuracy costs: processor times for relative errors, by each method.
+
+    Mean times have dynamics, and rare hops strips of initial states next to their surface. Volume
+    and areas have samples of the prism, conditioned samples where the discs hardly fit, or
+    insertions of more than two discs; areas have thin shells. All have the exact value, if it is
+    known. Speeds and the variance of counts are measured by pilots, together about a second.
+
+    Parameters
+    ----------
+    scene : Scene
+        The box, the discs and their effects.
+    errors : float or iterable of float, optional
+        Relative errors, above 0 and at most 1, or presets of ``simulate``; if left out, 1e-2, 1e-3,
+        1e-4, 1e-5 and 1e-6.
+    shell : float, default 0.02
+        The thickness of the shells of areas, as in ``sample``.
+
+    Returns
+    -------
+    Cost
+        It prints as a table; ``frame()`` has its numbers.
+
+    Raises
+    ------
+    InputError
+        For an error or a shell out of range, and if initial states cannot be drawn.
+
+    Examples
+    --------
+    >>> found = td.cost(scene, 1e-3)
+    >>> found["horizontal_hop_time", "dynamics"].seconds(1e-3) < 60
+    True
+    """
+    from twodiscs.dynamics.runs import CountingRun
+
+    if isinstance(errors, str) or not isinstance(errors, Iterable):
+        errors = ERRORS if errors is None else [errors]
+    errors = [check_error("errors", error) for error in errors]
+    check_fraction("shell", shell)
+    run = CountingRun(check_scene(scene), dict.fromkeys(scene.events, 1.0), 10**15, 0)
+    found = pilots(run)
+    prices = [
+        *_prices_of_times(scene, found),
+        *_prices_of_samples(scene, shell),
+        *_price_of_exact(scene),
+    ]
+    return Cost(scene, errors, prices, found)

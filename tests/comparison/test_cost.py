@@ -1,0 +1,205 @@
+"""What an accuracy costs: prices against the errors of real runs, forecasts, and sentences."""
+
+import math
+
+import pytest
+
+import twodiscs as td
+from twodiscs.comparison import cost
+from twodiscs.comparison.result import seed_of
+from twodiscs.comparison.scene_tables import shortfall
+from twodiscs.dynamics.ensemble import REPLICAS
+from twodiscs.dynamics.runs import DAY, CountingRun, replica_duration
+from twodiscs.model.checks import format_seconds
+from twodiscs.sampling.rounds import MARGIN
+
+SCENE = td.Scene(1.5, 1.0, 0.2)
+
+#: Next to the threshold of horizontal hops, which are rare and have strips.
+NEAR = SCENE.with_radius(0.2499)
+
+
+@pytest.fixture
+def blocks(monkeypatch):
+    """Let a pilot have 32 blocks, the first round of a run, each of a millisecond."""
+
+    def timed(work, seconds, fewest=1):
+        return work(0, 32), 32, 1e-3
+
+    monkeypatch.setattr(cost, "timed", timed)
+
+
+def run_of(scene, error, budget=None):
+    """Return the run of ``simulate(scene, error, budget=budget)``."""
+    target = dict.fromkeys(scene.events, error)
+    return CountingRun(scene, target, budget, seed_of(scene, "dynamics", 1, None))
+
+
+@pytest.mark.parametrize("scene", [SCENE, NEAR])
+def test_a_pilot_has_the_errors_of_a_run_of_the_same_blocks(blocks, scene):
+    run, measured = run_of(scene, 1.0), td.simulate(scene, 1.0)
+    found = cost.forecast(run, cost.pilots(run))
+    assert found.seconds == pytest.approx(len(run.parts) * 32e-3)
+    for event, error in found.reached.items():
+        assert error == pytest.approx(measured[f"{event}_time"].relative_stderr, rel=1e-3)
+
+
+def test_a_rare_hop_has_a_price_from_ordinary_states_too(blocks):
+    found = td.cost(NEAR)
+    strips, ordinary = (found["horizontal_hop_time", m] for m in ("strips", "dynamics"))
+    assert ordinary.c > 1e4 * strips.c
+    # Few counts do not tell their variance; it then follows from the exact rate.
+    block = td.rate(NEAR, "horizontal_hop") * replica_duration(NEAR) * REPLICAS
+    assert ordinary.c == pytest.approx(cost.CLUSTER / block * 1e-3)
+
+
+def test_a_time_is_c_over_the_square_of_the_error_between_the_smallest_run_and_the_floor():
+    price = td.Price("any_wall_area", "shells", c=4e-6, least_seconds=0.01, floor=1e-3)
+    assert price.least_error == pytest.approx(0.02)
+    assert [price.seconds(error) for error in (1.0, 0.01, 1e-3)] == pytest.approx([0.01, 0.04, 4.0])
+    assert price.seconds(0.99e-3) is None
+
+
+@pytest.mark.parametrize("shell", [0.02, 0.1])
+@pytest.mark.parametrize(
+    ("scene", "method"),
+    [(SCENE, "rejection"), (SCENE.with_radius(0.38), "conditioned")],
+    ids=["rejection", "conditioned"],
+)
+def test_prices_of_volume_and_areas_are_those_of_samples(monkeypatch, scene, method, shell):
+    """A block of samples has the error that the price says, without having been drawn."""
+    monkeypatch.setattr(cost, "timed", lambda work, seconds: (None, 1, 1e-3))
+    block = 2**20 if method == "rejection" else 2**16
+    measured = td.sample(scene, 64 * block * (1 if method == "rejection" else 64), shell=shell)
+    found = {
+        price.quantity: price
+        for price in cost._prices_of_samples(scene, shell)
+        if price.method.endswith(method)
+    }
+    possible = [name for name, one in measured.items() if one.status != "impossible"]
+    assert [*found] == possible
+    for name, price in found.items():
+        one = measured[name]
+        # The error of an error from n hits is 1/√(4n).
+        near = 5 / math.sqrt(4 * one.count)
+        assert math.sqrt(price.c / 64e-3) == pytest.approx(one.relative_stderr, rel=near + 0.01)
+        if name == "volume":
+            assert price.floor == pytest.approx(0, abs=1e-12)
+        else:
+            row = measured.frame().loc[name]
+            assert price.floor == pytest.approx(abs(row["bias"] / row["exact"]))
+
+
+def test_a_budget_ends_a_run_at_the_error_that_the_forecast_says(blocks):
+    for scene in (SCENE, NEAR):
+        run = run_of(scene, 1e-5, 10**7)
+        with pytest.warns(td.AccuracyWarning):
+            measured = td.simulate(scene, 1e-5, budget=1e7)
+        found = cost.forecast(run, cost.pilots(run))
+        for event, error in found.reached.items():
+            one = measured[f"{event}_time"]
+            # Half a block more or less, and the noise of two errors from 32 blocks.
+            assert error == pytest.approx(one.relative_stderr, rel=0.2)
+        assert found.events == pytest.approx(1e7, rel=0.3)
+        assert "budget of 1e7 events ends it at" in found.shortfall(run)
+
+
+def test_a_forecast_of_shards_has_all_planned_blocks(blocks):
+    run = run_of(SCENE, 1e-4)
+    pilots, part = cost.pilots(run), run.parts["all"]
+    planned = cost.forecast(run, pilots, planned=True)
+    assert planned.seconds == pytest.approx(part.planned * 1e-3)
+    assert cost.forecast(run, pilots).seconds < planned.seconds
+    assert planned.shortfall(run) is None
+
+
+def test_ten_times_the_accuracy_takes_a_hundred_times_as_long(blocks):
+    found = td.cost(NEAR)
+    assert found.seconds(1e-6) == pytest.approx(100 * found.seconds(1e-5))
+    # All times take what the worst of those that share a run takes, and the strips beside it.
+    shared = [
+        p.c for p in found.prices if p.method == "dynamics" and "horizontal" not in p.quantity
+    ]
+    strips = found["horizontal_hop_time", "strips"].c
+    assert found.seconds(1e-5) == pytest.approx(MARGIN * 1e10 * (max(shared) + strips))
+
+
+def test_without_a_budget_a_run_has_a_day():
+    easy = run_of(NEAR, 1e-3).parts
+    assert all(part.budget > 100 * part.planned * part.block_events for part in easy.values())
+    hard = run_of(NEAR, 1e-9)
+    work = sum(part.budget * part.cost_ratio for part in hard.parts.values())
+    assert work == pytest.approx(DAY)
+    assert hard.most_events == DAY
+    # All parts have the same fraction of their events.
+    far = run_of(NEAR, 1e-9, 10**18).parts
+    shares = [part.budget / far[name].budget for name, part in hard.parts.items()]
+    assert shares == pytest.approx([shares[0]] * len(shares))
+
+
+def test_without_a_budget_the_sums_are_those_of_a_large_one():
+    large = td.simulate(NEAR, 3e-3, budget=2e9)
+    assert [m.count for m in td.simulate(NEAR, 3e-3).values()] == [m.count for m in large.values()]
+
+
+# Sentences ----------------------------------------------------------------------------------------
+
+
+def row(event, error, status="budget", target=1e-5):
+    return {"event": event, "relative_stderr": error, "status": status, "target": target}
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        ([row("any_wall", 9e-6, "reached"), row("top_wall", None, "impossible")], None),
+        ([row("any_wall", None, "too-few", 0.5)], None),
+        ([row("any_wall", None, "counted", None)], None),
+        (
+            [row("any_wall", 2e-5), row("top_wall", 9e-5), row("right_wall", 1e-6, "reached")],
+            "1e-5 asked for; the budget of 2e9 events ended it at 9e-5 (top_wall_time); "
+            "without a budget 2e11 events, 27 min",
+        ),
+        (
+            [row("any_wall", 9e-5), row("top_wall", None, "too-few", 0.01)],
+            "0.01 asked for; the budget of 2e9 events ended it before there are enough events "
+            "top_wall for an error",
+        ),
+        (
+            [row("any_wall", None, "none-seen")],
+            "1e-5 asked for; the budget of 2e9 events ended it before there are enough events "
+            "any_wall for an error",
+        ),
+    ],
+)
+def test_a_sentence_says_what_was_not_reached(rows, said):
+    assert shortfall(rows, 2 * 10**9, 2e9, 20.0) == said
+
+
+def test_a_sentence_without_events_and_budget():
+    found = shortfall([row("any_wall", 2e-5)], None)
+    assert found == "1e-5 asked for; the limit of a day ended it at 2e-5 (any_wall_time)"
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [
+        (None, "–"), (math.inf, "–"), (3e-6, "3 µs"), (0.0123, "12 ms"), (59.4, "59 s"),
+        (1200, "20 min"), (7200, "2 h"), (86400, "1 d"), (3.2e9, "100 years"),
+    ],
+)  # fmt: skip
+def test_times_are_written_in_their_unit(seconds, text):
+    assert format_seconds(seconds) == text
+
+
+def test_a_table_says_where_it_was_measured_and_has_a_row_for_all(blocks):
+    found = td.cost(SCENE, [1e-2, 1e-4])
+    lines = str(found).splitlines()
+    assert lines[0] == str(SCENE)
+    assert lines[2].split() == ["quantity", "method", "0.01", "0.0001", "least", "floor"]
+    assert lines[3].split()[:4] == ["all", "mean", "times", "simulate"]
+    assert found.machine in lines[-1]
+    assert len(lines) < 40
+    assert list(found.frame().columns[-2:]) == ["seconds_0.01", "seconds_0.0001"]
+    assert found["all of these", "exact"].floor == 1e-15
+    assert math.isnan(found.frame().loc[("any_wall_area", "shells, rejection"), "seconds_0.0001"])
