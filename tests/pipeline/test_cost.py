@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from twodiscs.comparison.scene_tables import Cost, MeanTimes
 from twodiscs_paper.configuration.load import load
 from twodiscs_paper.pipeline import cost
 
@@ -120,3 +121,84 @@ def test_the_limit_of_a_study_grows_with_what_is_asked_of_it():
 
 
 BLOCK = {"name": "a", "box": {"width": 1.5, "height": 1.0}}
+
+
+# What will be reached, and what was ---------------------------------------------------------------
+
+
+@pytest.fixture
+def blocks(monkeypatch):
+    """Let a pilot have 32 blocks, each of a millisecond."""
+    from twodiscs.comparison import cost
+
+    monkeypatch.setattr(cost, "timed", lambda work, seconds, fewest=1: (work(0, 32), 32, 1e-3))
+
+
+@pytest.mark.parametrize("radius", [0.01, 0.2, 0.24, 0.3, 0.38])
+def test_the_bound_on_the_events_of_an_accuracy_is_not_below_the_plan(radius):
+    for accuracy in (1e-2, 1e-4):
+        request = scene(radii=[radius], accuracy=accuracy, event_budget=1e15)
+        parts = cost.run_at(request, "dynamics", radius).parts
+        events = parts["all"].planned * parts["all"].block_events
+        assert cost._events(request, radius) * 1.07 + parts["all"].block_events >= events
+    assert cost._events(scene(discs=3, radii=[0.1]), 0.1) == float("inf")
+
+
+def test_a_dry_run_says_which_accuracies_are_not_reached(blocks):
+    short = scene(accuracy=1e-5, event_budget=2e9, radii=[0.2, 0.3])
+    lines = cost.shortfalls([short, scene(accuracy=1e-2), scene(event_budget=1e12)])
+    assert [line.partition(":")[0] for line in lines] == ["a, radius 0.2", "a, radius 0.3"]
+    assert all("1e-5 asked for; the budget of 2e9 events ends it at" in line for line in lines)
+    assert "(horizontal_hop_time); without a budget" in lines[0]
+
+
+def test_a_dry_run_measures_at_some_of_many_radii(blocks, monkeypatch):
+    monkeypatch.setattr(cost, "SENTENCES", 1)
+    lines = cost.shortfalls([scene(accuracy=1e-5, event_budget=2e9, radii=[0.2, 0.3, 0.31])])
+    assert lines[1:] == ["2 more radii may stop early: see the target forecast"]
+
+
+def test_a_forecast_has_a_row_for_each_job_and_their_sum(blocks):
+    keys = {"volume": True, "mean_times": True, "hop_histogram": [0.2]}
+    block = BLOCK | {"radii": [0.2, 0.3], "watch": keys, "monte_carlo": {"samples": 1e7}}
+    block |= {"accuracy": 1e-5, "event_budget": 2e9}
+    lines = cost.table(load({"shared": ["stability"], "scenes": [block]})).splitlines()
+    rows = [line.split() for line in lines[2:7]]
+    assert [row[:3] for row in rows] == [
+        ["a", "monte_carlo", "0.2"], ["a", "monte_carlo", "0.3"], ["a", "dynamics", "0.2"],
+        ["a", "dynamics", "0.3"], ["a", "intervals", "0.2"],
+    ]  # fmt: skip
+    # Ten blocks of 2^20 samples, of a millisecond each; the error is that of the exact fraction.
+    assert rows[0][3:5] == ["10", "ms"]
+    assert rows[0][-1] == "volume"
+    assert rows[2][-3] == "1e-5"
+    assert [line for line in lines if line.startswith("a, radius")] != []
+    assert "without the start of 5 jobs; and " in lines[-1]
+
+
+DESCRIBED = {"name": "a", "event_budget": 2 * 10**9}
+
+
+def test_a_build_says_which_accuracies_it_did_not_reach(tmp_path):
+    folder = tmp_path / "a"
+    folder.mkdir()
+    assert cost.missed(tmp_path, DESCRIBED) == []
+    blank = dict.fromkeys(MeanTimes.columns)
+    rows = [
+        blank | {"radius": r, "event": e, "target": 1e-5, "relative_stderr": error, "status": s}
+        for r, e, error, s in [
+            (0.2, "any_wall", 0.9e-5, "reached"), (0.2, "top_wall", 1e-5, "reached"),
+            (0.3, "any_wall", 2e-5, "budget"), (0.3, "top_wall", 3e-5, "budget"),
+        ]
+    ]  # fmt: skip
+    MeanTimes.write(folder / "mean_times.csv", rows)
+    (line,) = cost.missed(tmp_path, DESCRIBED)
+    assert line == (
+        "a, radius 0.3: 1e-5 asked for; the budget of 2e9 events ended it at 3e-5 (top_wall_time)"
+    )
+    # The speed is that of the fastest job: the first ones compile.
+    jobs = [("dynamics", 0.2, 10**9, 10.0), ("dynamics", 0.3, 2 * 10**9, 99.0)]
+    names = ("stage", "radius", "events", "seconds")
+    Cost.write(folder / "cost.csv", [dict(zip(names, job, strict=True)) for job in jobs])
+    (line,) = cost.missed(tmp_path, DESCRIBED)
+    assert line.endswith("at 3e-5 (top_wall_time); without a budget 2e10 events, 3 min")

@@ -9,10 +9,12 @@ from browser import ABSENT, BROWSER, browser
 from checkout import REPOSITORY
 from PIL import Image, ImageDraw
 
-from twodiscs.comparison.scene_tables import MeanTimes
+from twodiscs.comparison.scene_tables import Cost, MeanTimes
 from twodiscs_paper.pipeline.documents.report import (
+    ERRORS,
     KEY,
     KEY_OF_ALL,
+    accuracies,
     contents,
     key_figures,
     mean_times,
@@ -127,3 +129,27 @@ def test_long_names_are_not_wider_than_the_window(report, width, tmp_path):
             chromium.call("Emulation.setEmulatedMedia", features=[feature])
             colours.append(chromium.look("getComputedStyle(document.body).backgroundColor"))
         assert colours == ["rgb(255, 255, 255)", "rgb(21, 23, 26)"]
+
+
+def test_the_section_on_accuracy_has_the_worst_error_and_the_time_of_others(tmp_path):
+    folder, scene = tmp_path / "a", {"name": "a", "event_budget": None}
+    folder.mkdir()
+    assert accuracies(tmp_path, scene) == []
+    blank = dict.fromkeys(MeanTimes.columns)
+    rows = [("any_wall", 0.001), ("top_wall", 0.02), ("right_wall", None)]
+    rows = [
+        blank | {"radius": 0.2, "event": e, "estimate": 2.0, "stderr": error, "target": 1e-2}
+        for e, error in rows
+    ]
+    MeanTimes.write(folder / "mean_times.csv", rows)
+    assert accuracies(tmp_path, scene) == []
+    jobs = [("dynamics", 0.2, 10**7, 3.0), ("dynamics", 0.3, 10**8, 10.0)]
+    names = ("stage", "radius", "events", "seconds")
+    Cost.write(folder / "cost.csv", [dict(zip(names, job, strict=True)) for job in jobs])
+    (row,) = accuracies(tmp_path, scene)
+    assert (row["radius"], row["quantity"], row["asked"]) == (0.2, "top_wall_time", 1e-2)
+    assert row["reached"] == pytest.approx(1e-2)
+    # The job took three seconds, most of them to compile; at the speed of the other it takes one.
+    assert row["seconds"] == "3 s"
+    assert row["times"] == ["1.7 min", "2.8 h", "12 d", "3.2 years"]
+    assert ERRORS == (1e-3, 1e-4, 1e-5, 1e-6)

@@ -1,6 +1,8 @@
 # Shared by all stages: the scenes, the files of the workflow, and the code of the jobs.
 import inspect
 import json
+import re
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -47,6 +49,10 @@ if (days := cost.days(CONFIGURATION.scenes)) > 1:
     logger.warning(
         f"This configuration takes about {float(f'{days:.2g}'):g} days of processor time."
     )
+
+if any(re.fullmatch("--dry-?run|-[a-z]*n[a-z]*", word) for word in sys.argv):
+    for sentence in cost.shortfalls(CONFIGURATION.scenes):
+        logger.warning(sentence)
 
 # The folder of the Python packages.
 PACKAGES = Path(twodiscs.__file__).parents[1]

@@ -162,6 +162,15 @@ use rule verify as renew with:
         points=CONFIGURATION.all_points(),
 
 
+rule forecast:
+    """How long the jobs take on this machine, and the accuracy that they reach, from pilots."""
+    log:
+        f"{RESULTS}/logs/forecast.log",
+    localrule: True
+    script:
+        "../scripts/forecast.py"
+
+
 rule benchmark:
     """How fast the engines are on this machine."""
     input:

@@ -13,7 +13,7 @@ start(snakemake.log[0])
 wildcards, shards = snakemake.wildcards, snakemake.input.get("shards", [])
 box, settings = snakemake.params.box, snakemake.params.work
 scene = Box(**box).scene(float(wildcards.radius))
-run = run_of(wildcards.stage, scene, settings)
+run, before = run_of(wildcards.stage, scene, settings), time.process_time()
 if part := wildcards.get("part"):
     first, stop = int(wildcards.first), int(wildcards.stop)
     parts = {part: {"sums": {(first, stop): run.parts[part].work(first, stop)}}}
@@ -24,4 +24,4 @@ else:
     parts = run.run().parts
 content = content_of(KINDS[wildcards.stage], box | {"radius": scene.radius}, settings, parts)
 of_shards = sum(read_seconds(path) or 0.0 for path in shards)
-write_json(snakemake.output.point, content, round(time.process_time() + of_shards, 2))
+write_json(snakemake.output.point, content, round(time.process_time() - before + of_shards, 2))

@@ -19,11 +19,12 @@ from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.checks import InputError, check_integer
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.load import ConfigError, check_results, load, read
+from twodiscs_paper.pipeline.cost import missed
 
 #: Targets by name, beside the figures and the studies.
 TARGETS = (
     "all", "check", "paper", "report", "animation", "manifest", "provenance", "verify", "renew",
-    "explorer", "benchmark", *FIGURES, *STUDIES,
+    "forecast", "explorer", "benchmark", *FIGURES, *STUDIES,
 )  # fmt: skip
 
 #: The path of the workflow of a wheel, below the folder of the installation.
@@ -124,8 +125,10 @@ def build(path, targets, cores=None, dry_run=False):
         status = end.code
     if status == 0:
         # Snakemake keeps the last workflow of a process among the names of a Snakefile.
-        dag = workflow.workflow.dag
-        print(planned(dag) if dry_run else closing(configuration.results, dag, [path]), end="")
+        dag, scenes = workflow.workflow.dag, configuration.described()
+        print(
+            planned(dag) if dry_run else closing(configuration.results, dag, [path], scenes), end=""
+        )
     return status
 
 
@@ -167,12 +170,13 @@ def _find_a_cache():
         os.environ["XDG_CACHE_HOME"] = str(Path(".snakemake/cache").resolve())
 
 
-def closing(results, dag, configured):
+def closing(results, dag, configured, scenes=()):
     """Return the last lines of a build.
 
     They are the files of its targets, the verdict of the check in the folder of ``results``, and
     the path of the report. If the check or the report were not built
-    and are older than a file of ``configured``, the paths of the configuration, a line says so.
+    and are older than a file of ``configured``, the paths of the configuration, a line says so. The
+    last lines are about accuracies of ``scenes``, as described, that were not reached.
     """
     made = {str(path) for job in dag.jobs for path in job.output}
     lines = [
@@ -191,4 +195,7 @@ def closing(results, dag, configured):
     for path in (passed, report):
         if str(path) not in made and path.exists() and path.stat().st_mtime < last:
             lines += [f"{path} is older than the configuration; the target {path.stem} renews it"]
+    for scene in scenes:
+        if f"{results}/{scene['name']}/mean_times.csv" in made:
+            lines += missed(results, scene)
     return "".join(f"{line}\n" for line in lines)

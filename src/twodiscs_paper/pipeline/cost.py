@@ -3,12 +3,19 @@
 The work of a job is the work of its planned blocks. Their number follows from the exact rates and
 the requested errors, their cost from their contents. Work is counted in events of the plain
 ensemble. The shards of a point are these blocks. A job without shards stops when its errors are
-reached, usually earlier.
+reached, usually earlier. ``forecast`` measures the cost by pilots.
 """
 
 import math
+from itertools import groupby
+from operator import itemgetter
+from pathlib import Path
 
+from twodiscs.comparison.scene_tables import Cost, MeanTimes, shortfall
 from twodiscs.dynamics.runs import run_of
+from twodiscs.model.checks import format_number, format_seconds
+from twodiscs.theory import exact
+from twodiscs_paper.catalogue import STUDIES
 
 #: Events and samples per second of a core, and the largest factor by which effects slow it down.
 EVENTS_PER_SECOND, SAMPLES_PER_SECOND, SLOWER = 1e8, 1e8, 5.0
@@ -26,6 +33,9 @@ PATIENCE, MINUTES = 4.0, 10.0
 
 #: The number of radii from which the cost of all radii is estimated.
 SOME = 100
+
+#: Processor seconds of a pilot at one radius; the most sentences on accuracies not reached.
+PILOT, SENTENCES = 0.1, 8
 
 DAY = 86400.0
 
@@ -51,18 +61,35 @@ def _seconds(scene, stage, work):
     return work / speed * (SLOWER if scene.box.effects else 1.0)
 
 
-def _most(scene, stage):
-    """Return the most work that one radius may take, by its budgets."""
+def _most(scene, stage, radius=None):
+    """Return the most work that one radius may take, by its budgets or for its accuracy.
+
+    The work for the accuracy is an upper bound from exact rates, if a ``radius`` is given.
+    """
     discs = scene.box.discs
     sample, event, interval = 1.0, DEAREST, 1.0
     if "discs" in scene.box.calls_for:
         sample, event = DRAW * discs, max(DEAREST, discs**2 / 2)
         interval = event
+    budget = scene.event_budget or DAY * EVENTS_PER_SECOND
     return {
         "monte_carlo": sample * scene.monte_carlo["samples"],
-        "dynamics": event * scene.event_budget,
+        "dynamics": event * min(budget, math.inf if radius is None else _events(scene, radius)),
         "intervals": interval * scene.histogram["event_budget"],
     }[stage]
+
+
+def _events(scene, radius):
+    """Return the planned events of the errors of dynamics without strips, inf if not known."""
+    one = scene.box.scene(radius)
+    if one.discs > 2 or one.moment_of_inertia is not None:
+        return math.inf  # other numbers of replicas, and bursts
+    every, most = exact.event_rate(one), 0.0
+    for event, error in scene.target.items():
+        if one.is_possible(event):
+            rate = exact.rate(one, event) * one.multiplicity(event)
+            most = max(most, (2 * every / rate + 256 / 6) / error**2)
+    return most
 
 
 def minutes(scene, stage):
@@ -87,12 +114,13 @@ def study_minutes(study, configuration):
 def days(scenes):
     """Return the processor time of all jobs of ``scenes`` at their radii, roughly, in days.
 
-    Theory is used only if the budgets allow for more than a day, and then at some of many radii.
+    Plans are made only if their upper bounds allow for more than a day, at some of many radii.
     """
     total = 0.0
     for scene in scenes:
         for stage, keys in scene.keys.items():
-            total += len(keys) * _seconds(scene, stage, _most(scene, stage)) / DAY
+            most = (_most(scene, stage, radius) for radius in keys.values())
+            total += sum(_seconds(scene, stage, work) for work in most) / DAY
             if total > 1:
                 return sum(_days(scene) for scene in scenes)
     return total
@@ -113,7 +141,7 @@ def shards(scene, stage, radius):
     A point without shards is one job. Shards depend only on the exact rates, so they are known
     before any job runs. A smaller error adds shards to the same ones.
     """
-    if _most(scene, stage) <= scene.shard_events:
+    if _most(scene, stage, radius) <= scene.shard_events:
         return []
     from twodiscs.sampling.rounds import pieces
 
@@ -130,3 +158,108 @@ def shards(scene, stage, radius):
 def _per_shard(scene, part):
     """Return the number of blocks in a shard of a part: a power of two, so that shards stay."""
     return 1 << max(0, math.floor(math.log2(scene.shard_events / part.block_work)))
+
+
+# Pilots -------------------------------------------------------------------------------------------
+
+
+def forecast(scene, stage, radius):
+    """Return the ``Forecast`` of a job from a pilot, and its run."""
+    from twodiscs.comparison import cost
+
+    run = run_at(scene, stage, radius)
+    in_shards = bool(shards(scene, stage, radius))
+    if stage == "dynamics":
+        return cost.forecast(run, cost.pilots(run, PILOT), in_shards), run
+    if stage == "monte_carlo":
+        return cost.forecast_of_samples(run, PILOT), run
+    part = run.parts["all"]
+    each = cost.timed(part.work, PILOT)[-1]
+    return cost.Forecast(each * part.planned, part.planned * part.block_events, {}), run
+
+
+def _is_short(scene, radius):
+    """Return whether the budget of dynamics at a ``radius`` may end it before its accuracy."""
+    if scene.event_budget and _events(scene, radius) <= scene.event_budget:
+        return False
+    parts = run_at(scene, "dynamics", radius).parts.values()
+    return any(part.budget <= 1.1 * part.planned * part.block_events for part in parts)
+
+
+def shortfalls(scenes):
+    """Return sentences on the accuracies that budgets keep ``scenes`` from, from pilots."""
+    short = [
+        (scene, radius)
+        for scene in scenes
+        for radius in scene.keys["dynamics"].values()
+        if _is_short(scene, radius)
+    ]
+    found = [
+        (f"{scene.name}, radius {radius!r}", *forecast(scene, "dynamics", radius))
+        for scene, radius in short[:SENTENCES]
+    ]
+    lines = [f"{where}: {text}" for where, one, run in found if (text := one.shortfall(run))]
+    if len(short) > SENTENCES:
+        lines.append(f"{len(short) - SENTENCES} more radii may stop early: see the target forecast")
+    return lines
+
+
+def taken(results, scene):
+    """Return {stage: ({radius: (events, seconds)}, events per second)} of the jobs of a build.
+
+    ``scene`` is one of ``Configuration.described``, whose tables are in the folder ``results``. The
+    speed is that of the fastest job: the first jobs compile.
+    """
+    path, found = Path(results, scene["name"], "cost.csv"), {}
+    for row in Cost.read(path) if path.exists() else ():
+        jobs = found.setdefault(row["stage"], {})
+        jobs[row["radius"]] = row["events"], row["seconds"]
+    return {
+        stage: (jobs, max((n / s for n, s in jobs.values() if s), default=None))
+        for stage, jobs in found.items()
+    }
+
+
+def missed(results, scene):
+    """Return sentences on the accuracies that the dynamics of a build did not reach.
+
+    The arguments are those of ``taken``.
+    """
+    path, found = Path(results, scene["name"], "mean_times.csv"), []
+    jobs, speed = taken(results, scene).get("dynamics", ({}, None))
+    table = MeanTimes.read(path) if path.exists() else ()
+    for radius, rows in groupby(table, itemgetter("radius")):
+        events, _ = jobs.get(radius, (None, None))
+        seconds = events / speed if events and speed else None
+        if text := shortfall([*rows], scene["event_budget"], events, seconds):
+            found.append(f"{scene['name']}, radius {radius!r}: {text}")
+    return found
+
+
+def table(configuration):
+    """Return the forecast of a ``Configuration`` as text: a row for each job, and their sum."""
+    from tabulate import tabulate
+
+    from twodiscs.comparison.cost import machine
+
+    rows, lines, total = [], [], 0.0
+    for scene in configuration.scenes:
+        for stage, keys in scene.keys.items():
+            for radius in keys.values():
+                one, run = forecast(scene, stage, radius)
+                worst = max(one.reached, key=one.reached.get, default="")
+                asked = format_number(scene.target[worst], "g") if stage == "dynamics" else ""
+                error = format_number(one.reached[worst], ".1e") if worst else ""
+                taken = format_seconds(one.seconds)
+                rows.append((scene.name, stage, repr(radius), taken, asked, error, worst))
+                total += one.seconds
+                if stage == "dynamics" and (text := one.shortfall(run)):
+                    lines.append(f"{scene.name}, radius {radius!r}: {text}")
+    studies = [STUDIES[name] for name in configuration.shared if name in STUDIES]
+    of_studies = sum(study_seconds(study, configuration) for study in studies)
+    headers = ("scene", "stage", "radius", "time", "asked", "reached", "by")
+    lines.append(
+        f"{format_seconds(total)} on one core of {machine()}, without the start of {len(rows)} jobs"
+        + (f"; and {format_seconds(of_studies)} of studies" if studies else "")
+    )
+    return "\n".join([tabulate(rows, headers, disable_numparse=True), "", *lines])

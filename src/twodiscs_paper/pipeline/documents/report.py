@@ -8,6 +8,7 @@ import re
 from base64 import b64encode
 from datetime import date
 from io import BytesIO
+from itertools import groupby
 from operator import itemgetter
 from pathlib import Path, PurePosixPath
 
@@ -15,10 +16,13 @@ from markupsafe import Markup, escape
 from PIL import Image, ImageSequence
 
 from twodiscs.comparison.measurements import measurement
-from twodiscs.comparison.scene_tables import Check, Cost, Grid, MeanTimes
+from twodiscs.comparison.scene_tables import SCENE_TABLES, Check, Cost, Grid, MeanTimes
+from twodiscs.comparison.table import quantity_of
 from twodiscs.figures.catalogue import ANIMATION, GEOMETRY
 from twodiscs.model.box import Box
+from twodiscs.model.checks import format_number, format_seconds
 from twodiscs_paper.catalogue import ENTRIES
+from twodiscs_paper.pipeline.cost import missed, taken
 from twodiscs_paper.pipeline.results.provenance import commit, versions
 
 #: The large figures of the section of a scene, of which it has ``SOME``, and of the section of all
@@ -29,6 +33,11 @@ KEY_OF_ALL = ("tails", "distributions", "passages", "effects", "accuracy_cost_by
 
 #: The report opens on all mean times if they have at most this number of rows.
 FEW = 60
+
+#: The tables that have an error for each radius, by the stage that makes them, and the errors whose
+#: time the report has.
+ACCURATE = {"dynamics": "mean_times", "monte_carlo": "volume"}
+ERRORS = (1e-3, 1e-4, 1e-5, 1e-6)
 
 #: Pixels: the width of a thumbnail.
 THUMBNAIL = 320
@@ -79,6 +88,36 @@ def mean_times(folder, scene):
         event = quantity.removesuffix("_time").replace("_", " ")
         by_radius.setdefault(row["radius"], []).append([event, value, error or status, exact, z])
     return by_radius
+
+
+def accuracies(folder, scene):
+    """Return the rows of the section on accuracy: what the jobs of a scene reached in what time.
+
+    A row is a stage at a radius: the relative error asked for and the largest one that was reached,
+    with its quantity, the processor time, and the times that ``ERRORS`` take at the same speed.
+    """
+    jobs_of, rows = taken(folder, scene), []
+    for stage, name in ACCURATE.items():
+        path = Path(folder, scene["name"], f"{name}.csv")
+        jobs, speed = jobs_of.get(stage, ({}, None))
+        table = SCENE_TABLES[name].read(path) if path.exists() else ()
+        for radius, of_radius in groupby(table, itemgetter("radius")):
+            known = {row["stderr"] / row["estimate"]: row for row in of_radius if row["stderr"]}
+            events, seconds = jobs.get(radius, (None, None))
+            if known and events and speed:
+                reached = max(known)
+                times = [events / speed * (reached / error) ** 2 for error in ERRORS]
+                rows.append(
+                    {
+                        "radius": radius,
+                        "quantity": quantity_of(known[reached]),
+                        "asked": known[reached].get("target"),
+                        "reached": reached,
+                        "seconds": format_seconds(seconds),
+                        "times": [format_seconds(time) for time in times],
+                    }
+                )
+    return rows
 
 
 def figure(folder, path, scenes):
@@ -182,6 +221,11 @@ def contents(folder, files, scenes):
     return {
         "few": sum(len(rows) for radii in measured.values() for rows in radii.values()) <= FEW,
         "measured": {name: radii for name, radii in measured.items() if radii},
+        "accuracies": {
+            scene["name"]: rows for scene in scenes if (rows := accuracies(folder, scene))
+        },
+        "errors": [format_number(error, "g") for error in ERRORS],
+        "missed": [line for scene in scenes for line in missed(folder, scene)],
         "agreements": [agreed for scene in scenes if (agreed := agreement(folder, scene))],
         "commit": commit(Path(__file__).parent),
         "date": date.today(),
@@ -207,5 +251,6 @@ def page(template, shown):
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     environment.filters["short"] = short
+    environment.filters["error"] = lambda x: "–" if x is None else format_number(x, ".2g")
     environment.filters["three_digits"] = lambda x: f"{x:.3g}"  # as in check.passed
     return environment.from_string(template).render(shown)
