@@ -16,7 +16,7 @@ from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.style import LOOKS
 from twodiscs.model.events import HOPS, SHELLS
 from twodiscs.theory import exact, laws, virial
-from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES
+from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES, read_table
 from twodiscs_paper.drawings import DRAW
 from twodiscs_paper.studies.effects import figure as effects
 from twodiscs_paper.studies.passages import figure as passages
@@ -46,6 +46,7 @@ def drawn(name):
     """Return {label of the panel, or its place: axes} of a figure of the committed tables."""
     entry = (FIGURES | STUDY_FIGURES)[name]
     tables = {name: table(name) for name in (*entry.tables, *entry.main_tables)}
+    tables |= {name: read_table(EXPECTED.parents[1] / path) for name, path in entry.kept.items()}
     with style.context():
         figure = DRAW[name](PAPER, tables) if name in DRAW else draw(name, PAPER, tables)
     return {axes.get_label() or i: axes for i, axes in enumerate(figure.axes)}
@@ -111,10 +112,14 @@ def cases():
 
 
 def _over_cube_root(row):
-    """Return a ``row`` on κ of a horizontal hop as one on (1 − κ)(w − σ)/∛(σ²(h − 2σ))."""
+    """Return a ``row`` on κ of a horizontal hop as one on (1 − κ)(w − σ)/∛(σ²(h − 2σ)).
+
+    Its distance becomes the sixth root.
+    """
     sigma = 2 * row["radius"]
     factor = (row["width"] - sigma) / math.cbrt(sigma**2 * (row["height"] - 2 * sigma))
-    return row | {"estimate": (1 - row["estimate"]) * factor, "stderr": row["stderr"] * factor}
+    moved = {"estimate": (1 - row["estimate"]) * factor, "stderr": row["stderr"] * factor}
+    return row | moved | {"distance": row["distance"] ** (1 / 6)}
 
 
 def _passages():
@@ -126,6 +131,8 @@ def _passages():
         kappa, times = of(own, quantity="coefficient"), of(own, quantity="passage_time")
         yield "passages", "times", *look, _columns(times, "distance")
         if inertia is None:
+            kept = read_table(EXPECTED.parent / "long_run" / "passages" / "passages.csv")
+            kappa = [*kappa, *of(kept, quantity="coefficient", scene="h/4")]
             kappa = [_over_cube_root(row) for row in kappa]
         yield "transmission", "rough" if inertia else "smooth", *look, _columns(kappa, "distance")
         shown = [2.0**-n for n in passages.SHOWN.get(inertia, ())]

@@ -397,7 +397,7 @@ def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small):
         limit = [row for row in rows if row["method"] == "limit"]
         for module in (figure, figure_transmission, figure_diffusion, figure_files):
             for some in (rows, limit, []):
-                assert module.draw(Box(1.0, 4.0), {"passages": some})
+                assert module.draw(Box(1.0, 4.0), {"passages": some, "kept": []})
 
 
 def test_scores_have_the_errors_of_both_estimates():

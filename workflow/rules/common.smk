@@ -130,8 +130,10 @@ def shards(w):
 
 
 def figure_reads(w):
-    """Return {name: path} of the tables that a figure reads."""
-    return CONFIGURATION.figure_reads(ENTRIES[w.figure], w.get("scene"))
+    """Return {name: path} of the tables that a figure reads, long runs that are kept among them."""
+    entry = ENTRIES[w.figure]
+    kept = {name: source(path) for name, path in entry.kept.items()}
+    return CONFIGURATION.figure_reads(entry, w.get("scene")) | kept
 
 
 def radius(w):

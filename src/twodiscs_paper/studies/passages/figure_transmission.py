@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from twodiscs.figures import drawing, panels
+from twodiscs.figures import panels
 from twodiscs.figures.curves import QUARTERS
 from twodiscs.figures.style import BLACK, BLUE, GREY, SKY, VERMILLION
 from twodiscs.model.box import Box
@@ -21,7 +21,10 @@ from twodiscs_paper.studies.passages.figure import (
 #: Colour and marker of further boxes and hops of smooth discs.
 OTHERS = ((SKY, "P"), (BLACK, "D"))
 
-#: {quantity: colour, marker, name} of residuals.
+#: The distances that are named above the panel of smooth discs, and the end of its abscissa.
+NAMED, END = (4, 8, 12, 16, 20), 0.55
+
+#: {quantity: colour, marker, name} of residuals, each in a panel of its own.
 RESIDUAL_LOOKS = {
     "slope": (BLUE, "o", r"$\kappa'(0)$, from exact"),
     "plateau": (VERMILLION, "s", r"$\kappa$, by $\kappa(t)$ and by clusters"),
@@ -29,34 +32,66 @@ RESIDUAL_LOOKS = {
 
 
 def draw(box, tables):
-    """Draw the rows of passages.csv: smooth discs at every threshold, rough discs at one."""
+    """Draw the rows of passages.csv: smooth discs at every threshold, rough discs at one.
+
+    Long runs of smooth discs are ``kept`` rows; they go closer to the threshold.
+    """
     rows = tables["passages"]
-    figure, (smooth, rough, lower) = panels.stacked(smooth=2.3, rough=2.3, residuals=1.4)
+    heights = {"smooth": 2.35, "rough": 1.85, "slope": 0.95, "plateau": 1.2}
+    figure, (smooth, rough, *lower) = panels.stacked(**heights)
     if is_empty(figure, smooth, rows, box):
         return figure
     main, hop, _, ours = measured(rows, box)
-    _smooth(smooth, rows, ours)
+    _smooth(smooth, rows, ours, tables["kept"])
     _rough(rough, ours, place(main, hop))
-    residuals(lower, select(rows, friction=None), RESIDUAL_LOOKS)
+    for axes, (quantity, look) in zip(lower, RESIDUAL_LOOKS.items(), strict=True):
+        residuals(axes, select(rows, friction=None), {quantity: look})
+    lower[0].set_xlabel("")
+    lower[0].tick_params(which="both", labelbottom=False)
     return figure
 
 
-def _smooth(axes, rows, ours):
-    """Draw 1 − κ of smooth discs over ∛(σ²ε)/A, at every threshold of every scene."""
+def _smooth(axes, rows, ours, kept):
+    """Draw 1 − κ of smooth discs in units of ∛(σ²ε)/A over δ^(1/6), at every threshold.
+
+    The correction of the law is of this relative order, so a line leads to the limit c.
+    """
     others = iter(OTHERS)
-    coefficients = select(rows, quantity="coefficient", moment_of_inertia=None, friction=None)
-    for scene, event in dict.fromkeys((row["scene"], row["event"]) for row in coefficients):
-        own = select(coefficients, scene=scene, event=event)
-        distance, value, error = columns(own, "distance", "estimate", "stderr")
-        where = place(Box(own[0]["width"], own[0]["height"]), event)
-        look = LOOKS[None] if own[0] in ours else next(others)
-        unit = np.array([cube_root(row) for row in own])
-        points(axes, distance, (1 - value) / unit, error / unit, look, where)
+    looks = {}
+    for some, filled in ((rows, False), (kept, True)):
+        found = select(some, quantity="coefficient", moment_of_inertia=None, friction=None)
+        found = [row for row in found if row["scene"] != "pause"]
+        for scene, event in dict.fromkeys((row["scene"], row["event"]) for row in found):
+            own = select(found, scene=scene, event=event)
+            where = place(Box(own[0]["width"], own[0]["height"]), event)
+            is_ours = any(row in ours for row in own)
+            if where not in looks:
+                looks[where] = LOOKS[None] if is_ours else next(others)
+            x, value, error = _units(own)
+            points(axes, x, value, error, looks[where], None if filled else where, filled)
     for row in select(rows, quantity="amplitude"):
-        axes.axhline(row["estimate"], color=BLACK, lw=0.8, ls=(0, (4, 2)), zorder=5,
-                     label=r"$c$, at $\delta=0$")  # fmt: skip
-    label = r"$(1-\kappa)\,A/\sigma^{2/3}\varepsilon^{1/3}$"
-    scale(axes, (4e-5, 0.25), (0, 2), label, "linear", loc="lower left")
+        c = row["estimate"]
+        axes.errorbar([0], [c], [row["stderr"]], color=BLACK, marker="*", markersize=5, ls="",
+                      clip_on=False, zorder=6, label=r"$c$, in the limit")  # fmt: skip
+        close = select(kept, quantity="coefficient", event="horizontal_hop", scene="h/4")
+        if close:
+            x, value, error = _units(close)
+            slope = np.sum((value - c) * x / error**2) / np.sum(x**2 / error**2)
+            axes.plot([0, END], [c, c + slope * END], color=GREY, lw=0.8, zorder=1)
+    axes.set(xlim=(0, END), ylim=(0.6, 1.6), xlabel=r"sixth root of the distance, $\delta^{1/6}$")
+    axes.set_ylabel(r"$(1-\kappa)\,A/\sigma^{2/3}\varepsilon^{1/3}$")
+    above = axes.secondary_xaxis("top")
+    above.set_xticks([2 ** (-n / 6) for n in NAMED], [f"$2^{{-{n}}}$" for n in NAMED])
+    axes.tick_params(which="both", top=False)
+    axes.set_title("(a)   at $\\delta=$", loc="left", pad=4)
+    axes.legend(loc="lower right")
+
+
+def _units(rows):
+    """Return (δ^(1/6), (1 − κ) in units of ∛(σ²ε)/A, its error) of ``rows``, as arrays."""
+    distance, value, error = columns(rows, "distance", "estimate", "stderr")
+    unit = np.array([cube_root(row) for row in rows])
+    return distance ** (1 / 6), (1 - value) / unit, error / unit
 
 
 def place(box, hop):
@@ -71,18 +106,23 @@ def cube_root(row):
 
 
 def _rough(axes, ours, where):
-    """Draw κ of rough discs, with ``where`` above the legend."""
+    """Draw κ of rough discs and the powers fitted to them, with ``where`` above the legend."""
     for inertia, look in LOOKS.items():
         own = select(ours, quantity="coefficient", moment_of_inertia=inertia)
-        if own and inertia is not None:
-            distance, value, error = columns(own, "distance", "estimate", "stderr")
-            points(axes, distance, value, error, look, rf"$I={inertia:g}$")
-    _power(axes, 1 / 2, r"$\delta^{1/2}$", 2e-3, 0.009)
-    scale(axes, (1e-3, 0.1), (0.007, 0.5), r"$\kappa$, rough discs", title=where)
-
-
-def _power(axes, power, name, start, height):
-    """Draw a power law that starts at (``start``, ``height``)."""
-    x = np.array([start, 20 * start])
-    axes.plot(x, height * (x / x[0]) ** power, color=GREY, lw=0.8, zorder=1)
-    drawing.label(axes, name, (x[1], height * 20**power), (3, 0), ha="left", color=GREY)
+        if not own or inertia is None:
+            continue
+        distance, value, error = columns(own, "distance", "estimate", "stderr")
+        name = rf"$I={inertia:g}$"
+        for fit in select(ours, quantity="last_exponent", moment_of_inertia=inertia):
+            name += rf",  $\delta^{{{fit['estimate']:.2f}}}$"
+            last = slice(-fit["replicas"], None)
+            weights = (value[last] / error[last]) ** 2
+            height = np.average(
+                np.log(value[last] / distance[last] ** fit["estimate"]), weights=weights
+            )
+            ends = distance[last][[0, -1]]
+            axes.plot(
+                ends, np.exp(height) * ends ** fit["estimate"], color=look[0], lw=0.7, zorder=1
+            )
+        points(axes, distance, value, error, look, name)
+    scale(axes, (1.5e-3, 0.03), (0.01, 0.25), r"$\kappa$, rough discs", title=where)

@@ -160,16 +160,20 @@ STUDY = Study(
             Caption(
                 """
                 Transmission coefficient κ near the radius r_c at which hops become blocked, w/4 or
-                h/4, over the distance δ = (r_c − r)/r_c. (a) Smooth discs: 1 − κ, multiplied by the
+                h/4, at distances δ = (r_c − r)/r_c. (a) Smooth discs: 1 − κ, multiplied by the
                 range A along the hop and divided by ∛(εσ²), with σ = 2r and the room ε that the
-                discs leave in the neck. It would be constant if 1 − κ fell as ∛ε. Dashed: its limit
-                c for δ → 0, which is computed in that limit. (b) Rough discs: κ falls, and its
-                slope depends on their moment of inertia I, in units of mr². The grey line is for a
-                separation that diffuses in the neck. (c) Residuals z in standard errors, from exact
-                values or between two estimators. Error bars are one standard error.
+                discs leave in the neck. Full symbols are long runs. The star is the limit c for δ →
+                0, which is computed in that limit. The correction to it is of the relative order of
+                δ to the power 1/6, so that a straight line leads to it; the slope of the grey line
+                is fitted to the long runs at h/4. (b) Rough discs: κ falls, with local exponents
+                that depend on their moment of inertia I, in units of mr². Lines are powers fitted
+                to the last distances. (c), (d) Residuals z in standard errors: of the slope of κ(t)
+                at 0 from its exact value, and between two estimators of κ. Error bars are one
+                standard error.
                 """
             ),
             tables=("passages",),
+            kept={"kept": "paper/long_run/passages/passages.csv"},
         ),
         "friction": Entry(
             "Passages with friction",
