@@ -45,7 +45,7 @@ class Entry:
     tables that the figure reads. A figure of no scene also reads the ``main_tables`` of the first
     scene without effects, if there are any. ``kept`` are the long runs that it reads, {name:
     path of a table from the root of the sources}. ``needs`` are quantities, named as in theory.csv,
-    or ``hop_histogram`` or ``trajectory``. The figure shows the ones that the scene computes, and is
+    or ``hop_histogram`` or ``trajectory``. The figure shows those that the scene computes, and is
     made if there is at least one. A drawing needs nothing: it takes only the sides of the box, and
     shows equal discs between walls. The figure is not made for scenes with an effect in
     ``without``; ``discs`` counts as an effect if there are more than two.
