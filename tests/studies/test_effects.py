@@ -2,6 +2,7 @@
 
 import json
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from factory import Laws, written
 from figure_cases import shown_texts, unclear
 from matplotlib.colors import to_rgba
+from numba.core.errors import NumbaError
 
 from twodiscs.comparison.scene_tables import MeanTimes, Theory
 from twodiscs.dynamics.ensemble import REPLICAS
@@ -190,16 +192,19 @@ def test_rows_of_shares(rows):
 
 # The figure ---------------------------------------------------------------------------------------
 
-RATIOS = {"plain": 1.0, "plain_walls": 1.05}
+RATIOS = {"without_effects": 1.0, "plain": 0.99, "plain_walls": 1.05}
 
 
 def costs():
     """Return rows of effects_cost.csv: ratios of 0.5, 0.6, … in their order."""
-    ratios = RATIOS | {name: 0.5 + 0.1 * i for i, name in enumerate(NAMES)}
+    ratios = RATIOS | {name: 0.5 + 0.1 * i for i, name in enumerate((*NAMES, *cost.MORE))}
+    ratios["all effects"] = 0.007
     start = {"benchmark": "effects", "unit": "1/s"}
     return [
-        EffectsCost.empty(**start, variant=name, value=1e8 * ratio, ratio=ratio)
-        for name, ratio in ratios.items()
+        EffectsCost.empty(
+            **start, variant=name, value=1e8 * ratio, ratio=ratio, instructions=4000 + i
+        )
+        for i, (name, ratio) in enumerate(ratios.items())
     ]
 
 
@@ -265,11 +270,18 @@ def test_a_curve_ends_where_its_event_does(drawn):
     np.testing.assert_allclose(y[np.isfinite(y)], 1.25, rtol=1e-12)
 
 
-def test_costs_are_over_the_plain_scene(drawn):
+def test_bars_are_the_times_over_the_package_without_effects(drawn):
+    """A bar ends at its ratio, and its number of instructions stands beside it."""
     axes = panel(drawn, "d")
-    shown = [line.get_xdata()[0] for line in axes.lines if line.get_marker() not in ("None", "")]
-    expected = [1 / row["ratio"] for row in costs() if row["variant"] != "plain"]
-    assert shown == pytest.approx(expected)
+    ends = [bar.get_x() + bar.get_width() for bar in axes.patches]
+    assert ends == pytest.approx([1 / row["ratio"] for row in costs()])
+    numbers = {text.get_text(): text.xy[1] for text in axes.texts}
+    assert numbers == {
+        f"{1 / row['ratio']:.3g}; {row['instructions']}": i for i, row in enumerate(costs())
+    }
+    names = [label.get_text() for label in axes.get_yticklabels()]
+    assert names[0].startswith("no effect")
+    assert names[3:] == [*NAMES, *cost.MORE]
 
 
 def test_looks_differ_however_many_scenes():
@@ -285,17 +297,37 @@ def test_costs_are_of_every_scene_and_of_what_is_watched(monkeypatch):
     """The speeds are fabricated: seconds are the events of the plain scene, halved without hops."""
     watched = {}
 
-    def lockstep(blocks, scene, events):
+    def lockstep(blocks, scene=cost.SCENE, events=EVENTS, bare=None):
         watched[scene.has_effects, tuple(events)] = scene
         return 2.0 if scene.has_effects else 4.0, 1.0 if events == EVENTS else 0.5
 
     monkeypatch.setattr(cost, "lockstep", lockstep)
+    monkeypatch.setattr(cost, "package_without_effects", lambda: "bare")
+    monkeypatch.setattr(cost, "instructions", lambda work, package: 10 if package == "bare" else 20)
     rows = EffectsCost.rows({}, {name: BOXES[name] for name in ("torus", "rough")})
     assert {row["variant"]: row["ratio"] for row in rows} == {
-        "plain": 1.0, "torus": 1.0, "rough": 0.5, "plain_walls": 2.0
+        "without_effects": 1.0, "plain": 1.0, "torus": 1.0, "rough": 0.5, "plain_walls": 2.0,
+        "friction": 0.5, "all effects": 1.0,
     }  # fmt: skip
     assert (True, ("disc_collision",)) in watched
     assert (False, (*WALLS, "any_wall")) in watched
+    assert {row["variant"] for row in rows if row["instructions"] == 10} == {"without_effects"}
+
+
+@pytest.mark.slow
+def test_the_package_without_effects_counts_the_same_and_has_none():
+    """Its plain kernel has the same sums and as many instructions; an effect cannot be compiled."""
+    name = cost.package_without_effects()
+    ours, bare = (
+        import_module(f"{package}.dynamics.two.lockstep") for package in ("twodiscs", name)
+    )
+    plain = PLAIN.scene(0.2), EVENTS, 1, 0, 2, 32.0
+    for found, due in zip(bare.run_blocks(*plain), ours.run_blocks(*plain), strict=True):
+        np.testing.assert_array_equal(found, due)
+    counted = cost.instructions(lambda: cost.lockstep(1), "twodiscs")
+    assert cost.instructions(lambda: cost.lockstep(1, bare=name), name) == counted
+    with pytest.raises(NumbaError):
+        bare.run_blocks(ROUGH, EVENTS, 1, 0, 1, 1.0)
 
 
 def test_the_power_of_the_number_of_discs_is_that_of_the_times():

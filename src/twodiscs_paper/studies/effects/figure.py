@@ -3,8 +3,9 @@
 import json
 
 import numpy as np
+from matplotlib.ticker import FixedLocator
 
-from twodiscs.figures import panels
+from twodiscs.figures import drawing, panels
 from twodiscs.figures.curves import limits
 from twodiscs.figures.style import (
     BLACK,
@@ -37,6 +38,9 @@ MARKERS = ("o", "s", "^", "D", "v", "P")
 
 #: The range of the ratios; curves leave it only near the ends of the radii.
 SHOWN = (0.22, 22)
+
+#: Where the bars of costs begin, and the space for the numbers beside the longest one, a factor.
+COST_FROM, COST_ROOM = 0.5, 60.0
 
 
 def draw(box, tables):
@@ -100,20 +104,30 @@ def _relative(row):
     }
 
 
+#: Names of variants in the panel of costs, if they differ from those in the table.
+VARIANTS = {
+    "without_effects": "no effect\nin the package",
+    "plain_walls": "plain, no hops",
+}
+
+
 def _costs(axes, rows, looks):
-    """Draw the time per event of each scene, over the time per event of the plain scene."""
-    others = [row for row in rows if row["variant"] != "plain"]
-    for i, row in enumerate(others):
-        colour, marker = looks.get(row["variant"], (GREY, "o"))
-        axes.plot([1, 1 / row["ratio"]], [i, i], color=colour)
-        axes.plot(1 / row["ratio"], i, **panels.open_symbol(colour, marker))
-    axes.axvline(1, color=GREY, lw=0.5, zorder=0)
-    names = ["plain,\nno hops" if r["variant"] == "plain_walls" else r["variant"] for r in others]
-    axes.set_yticks(range(len(others)), names)
+    """Draw the time per event of each variant, over the time of a package without effects.
+
+    Beside each bar stand this ratio and the number of machine instructions of the kernel.
+    """
     longest = max(1 / row["ratio"] for row in rows)
-    axes.set(ylim=(len(others) - 0.5, -0.5), xlim=(0, 1.12 * longest))
-    axes.set_xlabel("time / that of plain")
+    axes.set(xscale="log", xlim=(COST_FROM, longest * COST_ROOM), ylim=(len(rows) - 0.4, -0.6))
+    for i, row in enumerate(rows):
+        colour = looks.get(row["variant"], (GREY,))[0]
+        axes.barh(i, 1 / row["ratio"] - COST_FROM, 0.62, COST_FROM, color=colour)
+        at, text = (1 / row["ratio"], i), f"{1 / row['ratio']:.3g}; {row['instructions']}"
+        drawing.label(axes, text, at, (3, 0), ha="left", fontsize=6.8)
+    axes.axvline(1, color=GREY, lw=0.5, zorder=0)
+    axes.set_yticks(range(len(rows)), [VARIANTS.get(r["variant"], r["variant"]) for r in rows])
+    axes.set_xlabel("relative time")
     axes.tick_params(axis="y", length=0)
+    axes.xaxis.set_major_locator(FixedLocator([1, 10, 100]))
     axes.set_title("(d)  time per event", loc="left", pad=panels.ABOVE)
 
 

@@ -92,12 +92,14 @@ class EffectsCost(Table):
     columns = {
         "benchmark": TEXT("the name of the measurement"),
         "variant": TEXT(
-            "the engine or method; in effects, the scene of config/scenes, or plain: the scene "
-            "without effects, or plain_walls: the same without detection of hops"
+            "the engine or method. effects: the scene of config/scenes, friction or all effects; "
+            "without_effects: a package whose sources have no effects; plain: a scene without "
+            "effects; plain_walls: the same without detection of hops"
         ),
         "value": Column(float, "see unit", "median over the repetitions"),
         "unit": TEXT("unit of the value"),
         "ratio": NUMBER("how many times better than the baseline of the same run; empty for a fit"),
+        "instructions": COUNT("effects: machine instructions of the compiled kernel"),
     }
 
     @staticmethod
@@ -156,10 +158,11 @@ STUDY = Study(
                 smaller than the symbols. Vertical lines mark h/4 and w/4, where hops of plain discs
                 become blocked, and their largest radius. The torus has neither hops nor walls.
                 Residuals z beneath are in standard errors, with guide lines at ±2 and ±5. (d)
-                Processor time per wall hit or disc collision at r = 0.2, divided by the time for
-                plain discs with all events counted. Leaving a periodic cell takes as much time as
-                an event, but is not counted. Crosses are estimates from too few events for an
-                error bar.
+                Processor time per wall hit or disc collision at r = 0.2, divided by the time in a
+                copy of the package from which all effects are removed; beside each bar this ratio,
+                and the machine instructions of the compiled kernel. Leaving a periodic cell, or a
+                kick of friction, takes time but is not counted. Crosses are estimates from too few
+                events for an error bar.
                 """
             ),
             tables=("effects", "effects_cost", "effects_curves"),
