@@ -420,3 +420,11 @@ def test_everything_of_many_discs_leaves_out_what_monte_carlo_cannot_sample():
     assert at_most.areas == EVENTS
     assert (more.volume, more.areas) == (False, ())
     assert more.mean_times == at_most.mean_times == EVENTS
+
+
+def test_described_scenes_name_the_events_that_dynamics_detects():
+    box = {"width": 1.5, "height": 1.0}
+    some = {"name": "some", "box": box, "watch": {"mean_times": ["top_wall", "disc_collision"]}}
+    none = {"name": "none", "box": box, "watch": {"volume": True, "mean_times": False}}
+    described = load.load({"scenes": [some, none]}).described()
+    assert [scene["detected"] for scene in described] == [["disc_collision", "top_wall"], []]

@@ -89,9 +89,12 @@ def test_an_animation_stands_still_at_the_picture_that_is_shown_longest(tmp_path
 #: Scenes whose names are long, with words in them or none, or whose sides are.
 LONG = [
     {"name": "plate-of-the-air-table-in-metres", "box": "1.2 × 0.8", "effects": {}},
-    {"name": "a" * 64, "box": "2 × 1", "effects": {"discs": 3, "periodic": "x"}},
+    {
+        "name": "a" * 64, "box": "2 × 1", "effects": {"discs": 3, "periodic": "x"},
+        "detected": ["disc_collision", "top_wall"],
+    },
     {"name": "micro", "box": "3.25e-06 × 1.25e-05", "effects": {"mass_ratio": 0.5}},
-]
+]  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -110,6 +113,13 @@ def report():
 def test_boxes_are_described_in_sentences(report):
     for text in ("1.2 × 0.8", "2 × 1, with 3 discs, periodic x", "with mass ratio 0.5"):
         assert f"{text}.</p>" in report
+
+
+def test_each_scene_has_its_effects_and_events(report):
+    plain, three, unequal = report.split("Effects compiled: ")[1:]
+    assert plain.startswith("none. Events detected:\nnone.")
+    assert three.startswith("periodic x. Events detected:\ndisc collision, top wall.")
+    assert unequal.startswith("mass ratio 0.5.")
 
 
 @pytest.mark.skipif(BROWSER is None, reason=ABSENT)

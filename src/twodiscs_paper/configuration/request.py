@@ -307,6 +307,7 @@ class Configuration:
                 "box": " × ".join(f"{side:g}" for side in scene.box.sides),
                 "effects": scene.effects,
                 "event_budget": scene.event_budget,
+                "detected": list(scene.target),
                 "tables": list(self.tables(scene.name)),
                 "figures": list(self.figures(scene.name)),
             }

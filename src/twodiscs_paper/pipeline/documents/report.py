@@ -196,6 +196,8 @@ def section(folder, paths, scenes, scene=None):
     return {
         "animation": movie(folder, movies[0], scenes) if movies else None,
         "box": scene and scene["box"],
+        "compiled": [text for text in effects if not text.endswith(" discs")],
+        "detected": [event.replace("_", " ") for event in (scene or {}).get("detected", ())],
         "effects": effects,
         "figures": [figure(folder, path, scenes) for path in key],
         "name": scene and scene["name"],
@@ -207,7 +209,7 @@ def section(folder, paths, scenes, scene=None):
 def contents(folder, files, scenes):
     """Return the values of the template for the ``files`` in ``folder``, relative to ``folder``.
 
-    ``scenes`` are [{"name": …, "box": "1.5 × 1.0", "effects": {…}}].
+    ``scenes`` are [{"name": …, "box": "1.5 × 1.0", "effects": {…}, "detected": [event, …]}].
     """
     by_name = {scene["name"]: scene for scene in scenes}
     paths = [path for path in map(PurePosixPath, files) if path.suffix in (".csv", ".png")]
