@@ -172,7 +172,8 @@ FIGURES = {
             plain="""
             The ordinate is the separation of the discs along the longer side. Dots mark the hops,
             at which the separation changes sign. A hop is often undone soon, before collisions have
-            scrambled the motion.
+            scrambled the motion. (c) A hop that is not undone soon, at the same scale; this panel
+            is left out if there is none.
             """,
             other="""
             With two discs the ordinate is their separation in one direction, and dots mark its

@@ -5,6 +5,7 @@ from itertools import groupby, takewhile
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import to_rgb
+from matplotlib.ticker import MaxNLocator
 
 from twodiscs.figures import panels
 from twodiscs.figures.style import (
@@ -47,29 +48,57 @@ def draw_trajectory(box, rows, radius=None):
     apart = np.array([row[f"{axis}2"] - row[f"{axis}1"] for row in rows])
     hops = times[[row["event"] == hop for row in rows]]
 
-    figure = new_figure(2 * PANEL, layout="constrained")
-    whole, close = figure.subplots(2)
     length = (times[-1] - times[0]) * min(MOST, CLOSE / len(rows))
     start, end = _crowded(hops, length, times[0], times[-1])
     gaps = np.diff(hops[(hops > start) & (hops < end)])
     if gaps.size and gaps.min() < APART * length:
         length = max(gaps.min() / APART, length / 10)
         start, end = _crowded(hops, length, times[0], times[-1])
-    for axes, thick, size in ((whole, 0.3, 2.2), (close, 0.7, 3)):
-        axes.set(xlabel="time $t$", ylabel=f"${axis}_2-{axis}_1$")
+    stretches = [(start, end)]
+    lone = _lone(hops, length, times[0], times[-1])
+    if lone is not None:
+        stretches.append((lone - length / 2, lone + length / 2))
+    letters = "bc"[: len(stretches)]
+
+    figure = new_figure(2 * PANEL, layout="constrained")
+    panel = figure.subplot_mosaic([["a"] * len(letters), [*letters]])
+    for name, axes in panel.items():
+        thick, size = (0.3, 2.2) if name == "a" else (0.7, 3)
         axes.axhline(0, color=GREY, lw=0.5, zorder=1)
         axes.plot(times, apart, color=BLUE, lw=thick, zorder=2)
         axes.plot(hops, 0 * hops, "o", color=VERMILLION, markersize=size, mew=0, zorder=3)
+        axes.set(xlabel="time $t$", ylabel=f"${axis}_2-{axis}_1$")
     reach = 1.08 * np.abs(apart).max()
-    whole.set(xlim=(times[0], times[-1]), ylim=(-reach, reach))
-    close.set(xlim=(start, end), ylim=(-reach, reach))
-    whole.axvspan(start, end, color=ORANGE, alpha=0.45, lw=0, zorder=0, label="stretch in (b)")
+    panel["a"].set(xlim=(times[0], times[-1]), ylim=(-reach, reach))
+    for name, (first, last), colour in zip(letters, stretches, (ORANGE, SKY), strict=False):
+        panel[name].set(xlim=(first, last), ylim=(-reach, reach))
+        label = f"stretch in ({name})"
+        panel["a"].axvspan(first, last, color=colour, alpha=0.45, lw=0, zorder=0, label=label)
+        panels.title(panel[name], name)
+    if lone is not None:
+        panel["c"].set_ylabel("")
+        panel["c"].tick_params(labelleft=False)
+        for name in letters:
+            panel[name].xaxis.set_major_locator(MaxNLocator(4))
     if hops.size:
-        whole.plot([], [], ls="", marker="o", markersize=2.2, color=VERMILLION, label="hops")
-    figure.legend(loc="outside lower center", ncols=2)
-    panels.title(whole, "a", box, panels.of_radius(radius))
-    panels.title(close, "b")
+        panel["a"].plot([], [], ls="", marker="o", markersize=2.2, color=VERMILLION, label="hops")
+    figure.legend(loc="outside lower center", ncols=3)
+    panels.title(panel["a"], "a", box, panels.of_radius(radius))
     return figure
+
+
+def _lone(hops, length, start, end):
+    """Return the time of the hop farthest from all others, None if another is within ``length``.
+
+    The stretch of ``length`` around it is between ``start`` and ``end``.
+    """
+    if len(hops) < 2:
+        return None
+    gaps = np.diff(hops, prepend=-np.inf, append=np.inf)
+    nearest = np.minimum(gaps[:-1], gaps[1:])
+    nearest[(hops < start + length / 2) | (hops > end - length / 2)] = 0
+    at = int(np.argmax(nearest))
+    return hops[at] if nearest[at] > length else None
 
 
 def shown_hop(box):
