@@ -35,7 +35,7 @@ as 1/√N.
 import math
 from typing import NamedTuple
 
-from twodiscs.model.checks import InputError, check_choice, check_integer
+from twodiscs.model.checks import InputError, check_choice
 from twodiscs.model.events import DECLARED, WALLS
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.theory import plain
@@ -46,7 +46,7 @@ def flux_constant(components):
 
     2/π, 4/(3π), 16/(15π) in two, four and six dimensions.
     """
-    half = check_integer("components", components) / 2
+    half = components / 2
     return math.exp(math.lgamma(half) - math.lgamma(half + 0.5)) / math.sqrt(math.pi)
 
 
