@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from inspect import signature
 
 import numpy as np
 import pytest
@@ -20,7 +19,6 @@ from factory import (
 )
 
 from twodiscs.comparison.scene_tables import (
-    SCENE_TABLES,
     Areas,
     Cost,
     Grid,
@@ -33,7 +31,6 @@ from twodiscs.comparison.scene_tables import (
 )
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
-from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.dynamics import StripCount
 from twodiscs.points.intervals import Bins
@@ -56,22 +53,6 @@ def test_an_exact_value_that_is_not_there_is_named(theory, laws):
     point = laws[0].monte_carlo(np.random.default_rng(1), 1000)
     with pytest.raises(ValueError, match=r"theory\.csv has no volume at radius 0\.11"):
         Volume.rows(theory, {"monte_carlo": [replace(point, radius=0.11)]})
-
-
-def test_the_order_of_points_is_of_no_consequence(theory, laws):
-    rng = np.random.default_rng(6)
-    points = {
-        "monte_carlo": [law.monte_carlo(rng, 10**7) for law in laws],
-        "dynamics": [law.dynamics(rng, replicas=256, relative=1e-2) for law in laws],
-        "intervals": [law.intervals(rng) for law in laws[:3]],
-    }
-    turned = {stage: some[::-1] for stage, some in points.items()}
-    for name in ("volume", "areas", "mean_times", "hop_histogram", "check"):
-        make = SCENE_TABLES[name].rows
-        given = {"box": BOX} if "box" in signature(make).parameters else {}
-        rows = make(theory=theory, points=points, **given)
-        assert rows == make(theory=theory, points=turned, **given)
-        assert rows
 
 
 # Exact rows -------------------------------------------------------------------------------------
@@ -397,35 +378,6 @@ def test_all_walls_have_counts_of_their_own():
     assert row["estimate"] == part.measure * part.hits / point.samples
     watched = Areas.rows(Box.of(scene), exact_of(scene), {"monte_carlo": [point]}, ("right_wall",))
     assert watched == []
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_mean_times_of_what_is_counted(name, tmp_path):
-    scene = SCENES[name]
-    point = Laws(scene).dynamics(np.random.default_rng(3), events=scene.events)
-    found = MeanTimes.rows(Box.of(scene), exact_of(scene), {"dynamics": [point]})
-    MeanTimes.write(tmp_path / "mean_times.csv", found)
-    assert [row["event"] for row in found] == list(scene.events)
-    for row in found:
-        assert row["ergodic_components"] == scene.ergodic_components
-        if row["exact"] is None:
-            assert (row["status"], row["z"], row["estimate"]) == ("impossible", 0.0, None)
-        else:
-            assert row["status"] == "reached"
-            assert abs(row["z"]) <= 5
-
-
-def test_an_event_out_of_reach_must_not_be_seen():
-    """In this field no disc has the energy to touch the top."""
-    scene = Scene(1.5, 1.0, 0.1, field=1.0)
-    events = ("top_wall", "right_wall")
-    point = Laws(scene).dynamics(np.random.default_rng(3), events=events)
-    theory = exact_of(scene)
-    _, row = MeanTimes.rows(Box.of(scene), theory, {"dynamics": [point]})
-    assert (row["event"], row["status"], row["z"]) == ("top_wall", "impossible", 0.0)
-    point.counts["top_wall"] = point.products["top_wall*top_wall"] = 1
-    _, row = MeanTimes.rows(Box.of(scene), theory, {"dynamics": [point]})
-    assert row["z"] == -math.inf
 
 
 def test_plain_points_keep_to_right_and_top():
