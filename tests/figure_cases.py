@@ -85,7 +85,7 @@ def simulated(rng, scene, event, exact, relative):
     row = {"radius": scene.radius, "event": event, "exact": exact, "count": 1000}
     row |= {"replicas": 1000, "duration": 100.0, "target": relative, "bound": None}
     row |= {"ergodic_components": scene.ergodic_components, "relative_stderr": relative}
-    row |= {"starts": "invariant", "share": 1.0, "copies": scene.multiplicity(event)}
+    row |= {"starts": "invariant", "share": 1.0, "copies": scene.copies(event)}
     nothing = {"estimate": None, "stderr": None, "relative_stderr": None, "count": 0}
     if exact is None:
         return row | nothing | {"z": 0.0, "status": "impossible", "test": "certain"}

@@ -54,7 +54,7 @@ MUTANTS = [
     ("conserved momentum", " + spin) - len(self.conserved)", " + spin)"),
     ("rough walls keep momentum", "return tuple(self.periodic) if self.moment_of_inertia is None else ()", "return tuple(self.periodic)"),
     ("wrong radius in the lowest potential", "m1 * max(apart + r2 - r1, 0.0)", "m1 * max(apart + r1 - r2, 0.0)"),
-    ("multiplicity of confined walls", "(1 + scene.identical) * scene.share(event.name)", "(1 + scene.identical)"),
+    ("copies of confined walls", "(1 + scene.identical) * scene.share(event.name)", "(1 + scene.identical)"),
     ("mirror images of the right wall", 'mirrored = event.axis == "x" or not scene.field', "mirrored = not scene.field"),
     ("reach of the top", "self.field * (self.height - 2 * self.radius)", "self.field * (self.height - self.radius)"),
     ("swapped axis of a threshold", 'self.width if AXIS[hop] == "y"', 'self.width if AXIS[hop] == "x"'),

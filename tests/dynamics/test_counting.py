@@ -110,8 +110,8 @@ def test_walls_that_symmetry_makes_equal_are_counted_together():
     left, right = (
         runs.run_blocks(scene, EVENTS, 1, 0, 4, 32.0, order=(side, 0)) for side in (-1, 1)
     )
-    expected = scene.multiplicity("right_wall") * 32.0 / mean_times(scene)["right_wall"]
-    assert scene.multiplicity("right_wall") == 2
+    expected = scene.copies("right_wall") * 32.0 / mean_times(scene)["right_wall"]
+    assert scene.copies("right_wall") == 2
     at = {event: e for e, event in enumerate(EVENTS)}
     for sums, products in (left, right):
         error = relative_errors(sums, products, 4 * REPLICAS)[at["right_wall"]]

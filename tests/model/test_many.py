@@ -56,8 +56,8 @@ def test_names():
     scene = Scene(1.5, 1.0, 0.1, discs=5)
     assert scene.velocity_components == 10
     assert Scene(1.5, 1.0, 0.1, discs=5, periodic="x").velocity_components == 9
-    assert scene.multiplicity("right_wall") == 10
-    assert scene.multiplicity("disc_collision") == 1
+    assert scene.copies("right_wall") == 10
+    assert scene.copies("disc_collision") == 1
     assert scene.turned() == Scene(1.0, 1.5, 0.1, discs=5)
     assert not is_ordered(scene)
     assert is_ordered(Scene(3.0, 0.6, 0.18, discs=5))
@@ -90,7 +90,7 @@ def test_a_scene_of_more_discs():
     assert scene.calls_for == {"discs": 3}
     assert scene.events == EVENTS
     assert scene.velocity_components == 6
-    assert scene.multiplicity("top_wall") == 6
+    assert scene.copies("top_wall") == 6
     assert scene.largest_radius == box.largest_radius == scene.largest_radius
     assert (scene.unit("volume"), scene.unit("any_wall_area")) == ("length⁶", "length⁵")
     assert str(scene) == "3 discs of radius 0.15 in a box of 1.5 × 1.0"

@@ -217,5 +217,5 @@ def test_two_discs_are_those_of_a_scene():
     from twodiscs.theory.exact import rate
 
     for event, found in rates(scene, n_discs.known_derivatives(scene)).items():
-        multiplicity = scene.multiplicity(event)
-        assert found == pytest.approx(multiplicity * rate(scene, event), rel=1e-13)
+        copies = scene.copies(event)
+        assert found == pytest.approx(copies * rate(scene, event), rel=1e-13)

@@ -78,7 +78,7 @@ def sum_rule(scene, point):
     The rates are averages over all replicas of a dynamics ``point``, whether they can reach a wall
     or not. A wall's rate has the hits of all walls and discs that are equal by symmetry.
     """
-    rates = {e: scene.share(e) / scene.multiplicity(e) / point.duration for e in SUM_RULE}
+    rates = {e: scene.share(e) / scene.copies(e) / point.duration for e in SUM_RULE}
     return point.combination({e: w * rates[e] for e, w in virial.weights(scene).items()})
 
 
@@ -106,7 +106,7 @@ def flux_time(scene, event, point):
     events = [event]
     if event == "any_wall":
         events = [wall for wall in ("right_wall", "top_wall") if wall in scene.events]
-    weight = float(len(events) and scene.multiplicity(events[0])) if event == "any_wall" else 1.0
+    weight = float(len(events) and scene.copies(events[0])) if event == "any_wall" else 1.0
     weights = {f"{name}_area": weight for name in events}
     if not {"volume", *weights} <= point.quantities.keys():
         return None

@@ -306,7 +306,7 @@ class Measurements(Result, Mapping[str, Measurement]):
             ratio = means[k] / number if self.kind == "simulate" else number / means[k]
             found[one.quantity] = one.value * ratio
         if self.kind == "sample" and "any_wall_area" not in names and {*WALL_AREAS} <= found.keys():
-            copies = (self.scene.multiplicity(wall.removesuffix("_area")) for wall in WALL_AREAS)
+            copies = (self.scene.copies(wall.removesuffix("_area")) for wall in WALL_AREAS)
             found["any_wall_area"] = sum(
                 n * found[wall] for n, wall in zip(copies, WALL_AREAS, strict=True)
             )

@@ -358,7 +358,7 @@ def _mean_time_row(scene, event, point, exact, count):
     from twodiscs.points.estimates import has_error_bar
     from twodiscs.theory.exact import replicas_needed
 
-    target, copies = point.target[event], scene.multiplicity(event)
+    target, copies = point.target[event], scene.copies(event)
     estimate, bound = count.estimate(copies), None
     if target is None or (count.share == 1 and point.in_strip(event)):
         status = "counted"

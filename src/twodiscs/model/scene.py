@@ -461,7 +461,7 @@ class Scene:
         declared = DECLARED[event]
         return 0.5 if declared.kind == "wall" and self.confined["xy".index(declared.axis)] else 1.0
 
-    def multiplicity(self, event):
+    def copies(self, event):
         """Return the number of events with the rate of ``event`` by symmetry.
 
         By mirror images and for equal discs, four pairs of a disc and a wall have the same rate. If
@@ -469,7 +469,7 @@ class Scene:
         mirror image along y. It is 2N for walls of more than two discs, and 1 for all events except
         wall hits.
         """
-        return self._geometry.multiplicity(self, DECLARED[event])
+        return self._geometry.copies(self, DECLARED[event])
 
     @cached_property
     def events(self) -> tuple[str, ...]:

@@ -46,7 +46,7 @@ class Count:
     def time(self, copies=1):
         """Return the time T · copies/share; over ⟨N⟩ it is the mean time between events.
 
-        ``copies`` is the number of events that count as one (``Scene.multiplicity``).
+        ``copies`` is the number of events that count as one (``Scene.copies``).
         """
         return self.duration * copies / self.share
 

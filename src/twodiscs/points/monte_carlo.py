@@ -208,7 +208,7 @@ class InsertionPoint(SampledPoint):
         walls = [wall for wall in WALL_AREAS if wall.removesuffix("_area") in scene.events]
         if not {*walls} <= self.quantities.keys():
             return None
-        weights = {wall: scene.multiplicity(wall.removesuffix("_area")) for wall in walls}
+        weights = {wall: scene.copies(wall.removesuffix("_area")) for wall in walls}
         misses = min(estimates.effective_misses(*self._sums(wall)) for wall in walls)
         return self._sampled(*self.total(weights), misses)
 

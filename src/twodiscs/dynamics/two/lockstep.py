@@ -57,7 +57,7 @@ def facing(position, side, gravity):
     return position * side > 0.0
 
 
-# A wall event counts the hits of all pairs of a disc and a wall in ``Scene.multiplicity``.
+# A wall event counts the hits of all pairs of a disc and a wall in ``Scene.copies``.
 
 
 def _wall_seen(event):
@@ -193,7 +193,7 @@ def unpack(counting, i):
 
 def expected_rate(scene, event):
     """Return the exact rate of all events that count as ``event``."""
-    return exact.rate(scene, event) * scene.multiplicity(event)
+    return exact.rate(scene, event) * scene.copies(event)
 
 
 def replica_duration(scene):

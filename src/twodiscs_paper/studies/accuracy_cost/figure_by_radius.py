@@ -70,5 +70,5 @@ def _prediction(box, event, radii, counts):
     """Return the seconds at ``radii``; ``counts`` is events per second times error²."""
     scenes = [box.scene(float(radius)) for radius in radii]
     total = [event_rate(scene) for scene in scenes]
-    times = [mean_times(scene)[event] / scene.multiplicity(event) for scene in scenes]
+    times = [mean_times(scene)[event] / scene.copies(event) for scene in scenes]
     return np.array(total) * np.array(times) / counts

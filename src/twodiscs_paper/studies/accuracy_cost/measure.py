@@ -250,7 +250,7 @@ def times(scene, events, counts, replicas, duration):
     """Return {quantity: mean time} from ``counts`` of ``events`` in ``replicas``."""
     with np.errstate(divide="ignore"):
         return {
-            f"{event}_time": float(scene.multiplicity(event) * duration * replicas / np.float64(n))
+            f"{event}_time": float(scene.copies(event) * duration * replicas / np.float64(n))
             for event, n in zip(events, counts, strict=True)
         }
 
@@ -462,7 +462,7 @@ def predicted_events(scene, event, error=TARGET):
 
     For a Poisson process, error⁻² of these events are needed; the rates are exact.
     """
-    time = exact.mean_times(scene)[event] / scene.multiplicity(event)
+    time = exact.mean_times(scene)[event] / scene.copies(event)
     return exact.event_rate(scene) * time / error**2
 
 

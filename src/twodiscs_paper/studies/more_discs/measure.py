@@ -10,7 +10,7 @@ import numpy as np
 
 from twodiscs.dynamics.many import engine
 from twodiscs.model.events import DECLARED, SHELLS
-from twodiscs.model.many import multiplicity
+from twodiscs.model.many import copies
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial, insertions
 from twodiscs.theory import n_discs
@@ -59,7 +59,7 @@ def _time(scene, event, rate, error=0.0):
     if not rate:
         return None, None
     # The mean is over all initial states, for two discs too, so that all numbers of discs compare.
-    time = multiplicity(scene, DECLARED[event]) / rate / math.sqrt(scene.discs / 2)
+    time = copies(scene, DECLARED[event]) / rate / math.sqrt(scene.discs / 2)
     return time, time * error / rate
 
 

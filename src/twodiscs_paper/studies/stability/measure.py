@@ -617,9 +617,7 @@ def coverage_rows(box, seed, repetitions=REPETITIONS):
             if sum(estimates.has_error_bar(*m) for m in moments) < repetitions / 2:
                 yield judged(start, event, None, status="too-few")
                 continue
-            intervals = [
-                estimates.mean_time(*m, scene.multiplicity(event) * duration) for m in moments
-            ]
+            intervals = [estimates.mean_time(*m, scene.copies(event) * duration) for m in moments]
             share = sum(i is not None and i.covers(times[event]) for i in intervals) / repetitions
             found = {"exact": 0.95, "stderr": math.sqrt(0.95 * 0.05 / repetitions)}
             yield judged(start, event, share, low, high, status="counted", **found)
