@@ -176,6 +176,11 @@ def test_a_sentence_says_what_was_not_reached(rows, said):
     assert shortfall(rows, 2 * 10**9, 2e9, 20.0) == said
 
 
+def test_a_sentence_on_a_part_that_had_too_small_a_share_of_the_budget():
+    found = shortfall([row("any_wall", 2e-5)], 10**9, 1e8)
+    assert found.endswith("ended it at 2e-5 (any_wall_time); a budget of 4e9 is enough")
+
+
 def test_a_sentence_without_events_and_budget():
     found = shortfall([row("any_wall", 2e-5)], None)
     assert found == "1e-5 asked for; the limit of a day ended it at 2e-5 (any_wall_time)"

@@ -427,6 +427,8 @@ def shortfall(rows, budget, events=None, seconds=None, ends="ended"):
         return f"{text}before there are enough events {event} for an error"
     reached = format_number(worst["relative_stderr"], ".2g")
     text = f"{text}at {reached} ({event}_time)"
+    if events and budget and events * more < budget:  # a part of the run has not used its share
+        return f"{text}; a budget of {format_number(1.1 * budget * more, '.1g')} is enough"
     if events:
         text += f"; without a budget {format_number(events * more, '.1g')} events"
     if events and seconds:
