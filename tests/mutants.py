@@ -183,7 +183,7 @@ MUTANTS = [
     ("error of dynamics for that of Monte Carlo", "monte_carlo_stderr=spread,", "monte_carlo_stderr=error,"),
     ("count of the event that is known best", 'count = min((row["count"] for row in some), default=0)', 'count = max((row["count"] for row in some), default=0)'),
     ("rows of a trajectory back in time", "free = np.diff(time) >= 0", "free = np.ones(len(time) - 1, bool)"),
-    ("start of a trajectory in the shell", "scene, options.duration, seed=options.seed, start=options.start, name=options.name", "scene, options.duration, seed=options.seed, name=options.name"),
+    ("start of a trajectory in the shell", '_arguments(options, ("duration", "seed", "start", "name"))', '_arguments(options, ("duration", "seed", "name"))'),
     ("name of a scene in the verdict", '(path.parent.name if path.stem == "check" else path.stem, read_table(path))', "(path.stem, read_table(path))"),
 ]
 # fmt: on
