@@ -129,11 +129,16 @@ def shards(w):
     return [f"{folder}/{part}-{first}-{stop}.json" for part, first, stop in pieces]
 
 
+# The long runs that figures read: their paths are known only while this file is read.
+KEPT = {
+    figure: {name: source(path) for name, path in entry.kept.items()}
+    for figure, entry in ENTRIES.items()
+}
+
+
 def figure_reads(w):
     """Return {name: path} of the tables that a figure reads, long runs that are kept among them."""
-    entry = ENTRIES[w.figure]
-    kept = {name: source(path) for name, path in entry.kept.items()}
-    return CONFIGURATION.figure_reads(entry, w.get("scene")) | kept
+    return CONFIGURATION.figure_reads(ENTRIES[w.figure], w.get("scene")) | KEPT[w.figure]
 
 
 def radius(w):
