@@ -185,6 +185,7 @@ MUTANTS = [
     ("rows of a trajectory back in time", "free = np.diff(time) >= 0", "free = np.ones(len(time) - 1, bool)"),
     ("start of a trajectory in the shell", '_arguments(options, ("duration", "seed", "start", "name"))', '_arguments(options, ("duration", "seed", "name"))'),
     ("name of a scene in the verdict", '(path.parent.name if path.stem == "check" else path.stem, read_table(path))', "(path.stem, read_table(path))"),
+    ("room of a long box", "room = long - 4 * scene.radius", "room = long - 2 * scene.radius"),
 ]
 # fmt: on
 
@@ -330,9 +331,16 @@ def failure(folder, files):
 
 
 def main(words, most):
+    there = []
+    for mutant in MUTANTS:
+        try:
+            file_of(mutant[1])
+            there.append(mutant)
+        except LookupError as error:
+            print(f"{mutant[0]}: NOT THERE: {error}", flush=True)
     wanted = [
         m
-        for m in MUTANTS
+        for m in there
         if not words or any(w.removeprefix("./") in f"{file_of(m[1])} {m[0]}" for w in words)
     ]
     with tempfile.TemporaryDirectory() as home, ThreadPoolExecutor(2) as threads:
