@@ -42,8 +42,8 @@ def draw(box, tables):
     large = np.array([DIFFUSIVE, SHOWN[1]])
     upper.plot(large, DIFFUSIVE / large, label=r"$1$ and $3/(4x)$", **style)
     for exponent, name, side in (
-        (-1.5, r"$-\frac{3}{2}$  Bowles, Mon, Percus 2004", 5),
-        (-2.0, r"$-2$  Mon 2009", 3),
+        (-1.5, r"$-\frac{3}{2}$  long necks: $u$ diffuses", 5),
+        (-2.0, r"$-2$  short necks: one flight", 3),
     ):
         lower.axhline(exponent, color=GREY, lw=0.8, ls=(0, (4, 2)), zorder=1)
         at = (SHOWN[0], exponent) if exponent == -1.5 else (SHOWN[1], exponent)

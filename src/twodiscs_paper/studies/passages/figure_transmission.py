@@ -126,3 +126,6 @@ def _rough(axes, ours, where):
             )
         points(axes, distance, value, error, look, name)
     scale(axes, (1.5e-3, 0.03), (0.01, 0.25), r"$\kappa$, rough discs", title=where)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(lambda x, _: f"{x:g}" if f"{x:e}"[0] in "25" else "")

@@ -186,8 +186,8 @@ STUDY = Study(
                 discs leave in the neck and σ = 2r. Dashed: the limits of ballistic discs, 1, and of
                 discs that diffuse through the neck, 3/(4x). (b) The local power of the distance r_c
                 − r with which the time τ/κ between passages grows, from one distance to the next.
-                Dashed: the powers that were found for diffusive and for ballistic discs. Error bars
-                are one standard error.
+                Dashed: the powers of a pair that diffuses through the neck, and of one that crosses
+                it in one flight. Error bars are one standard error.
                 """
             ),
             tables=("passages",),
