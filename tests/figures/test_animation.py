@@ -96,6 +96,13 @@ def test_the_first_lone_hop_of_the_rarer_kind_is_shown():
     assert times.tolist() == list(range(400 - BEFORE, 400 + AFTER + 1))
 
 
+def test_many_discs_are_shown_from_the_start_for_as_long_as_a_hop_of_two():
+    rows = at((300.0, "vertical_hop"), (400.0, "disc_collision"))
+    times, hop, start = animation.frame_times(rows, 1.0, discs=3)
+    assert (hop, start) == (None, 0.0)
+    assert times.tolist() == list(range(BEFORE + AFTER + 1))
+
+
 def test_hops_that_are_never_alone_and_trajectories_that_are_too_short():
     times, hop, centre = animation.frame_times(
         at((3.0, "vertical_hop"), (4.0, "vertical_hop")), 1.0
