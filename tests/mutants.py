@@ -186,6 +186,7 @@ MUTANTS = [
     ("start of a trajectory in the shell", '_arguments(options, ("duration", "seed", "start", "name"))', '_arguments(options, ("duration", "seed", "name"))'),
     ("name of a scene in the verdict", '(path.parent.name if path.stem == "check" else path.stem, read_table(path))', "(path.stem, read_table(path))"),
     ("room of a long box", "room = long - 4 * scene.radius", "room = long - 2 * scene.radius"),
+    ("ratio of another box in the errata", "return right, ratios[0], radius", "return right, ratios[-1], radius"),
 ]
 # fmt: on
 

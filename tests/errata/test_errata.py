@@ -116,6 +116,17 @@ def test_ratios(label, ratio):
     assert verdicts()[label]["ratio"] == pytest.approx(float(ratio), rel=1e-15)
 
 
+def test_a_ratio_is_that_in_the_box_of_the_source_at_the_radius_of_the_row():
+    reported = {REGIMES[name][0][2] for name in REGIMES}
+    compared = {}
+    for label, row in verdicts().items():
+        if row["ratio"] is not None and row["radius"] in reported:
+            q = MpScene.of(errata.WIDTH, errata.HEIGHT, row["radius"])
+            compared[label] = float(errata.ratio_of(BY_LABEL[label], q))
+            assert row["ratio"] == pytest.approx(compared[label], rel=1e-12), label
+    assert len({*compared.values()}) > 5
+
+
 def test_a_formula_is_reported_where_it_fails():
     assert verdicts()["AreaChoque"]["radius"] == 0.3
     assert verdicts()["AreaChoque"]["ratio"] < 0
