@@ -187,6 +187,7 @@ MUTANTS = [
     ("name of a scene in the verdict", '(path.parent.name if path.stem == "check" else path.stem, read_table(path))', "(path.stem, read_table(path))"),
     ("room of a long box", "room = long - 4 * scene.radius", "room = long - 2 * scene.radius"),
     ("ratio of another box in the errata", "return right, ratios[0], radius", "return right, ratios[-1], radius"),
+    ("samples among the events of the report", 'int(cost["events"][cost["stage"] == "dynamics"].sum())', 'int(cost["events"].sum())'),
 ]
 # fmt: on
 

@@ -1,5 +1,6 @@
 """The parts of the report: the figures it opens on, its numbers."""
 
+import shutil
 from base64 import b64decode
 from io import BytesIO
 from pathlib import PurePosixPath
@@ -15,6 +16,7 @@ from twodiscs_paper.pipeline.documents.report import (
     KEY,
     KEY_OF_ALL,
     accuracies,
+    agreement,
     contents,
     key_figures,
     mean_times,
@@ -49,6 +51,16 @@ def test_the_largest_deviation_has_the_digits_of_the_verdict(z):
     row = {"bound": 99, "independent": True, "status": "sampled", "z": z}
     said = page("largest |z| {{ largest | three_digits }};", {"largest": abs(z)})
     assert said in verdict([("small", [row])])[1]
+
+
+def test_the_events_of_the_agreement_are_those_of_dynamics(tmp_path):
+    (tmp_path / "paper").mkdir()
+    for name in ("check", "grid"):
+        shutil.copy(REPOSITORY / "paper" / "expected" / "paper" / f"{name}.csv", tmp_path / "paper")
+    counts = {"dynamics": 7, "monte_carlo": 100}
+    rows = [Cost.empty(stage=stage, radius=0.1, events=n) for stage, n in counts.items()]
+    Cost.write(tmp_path / "paper" / "cost.csv", rows)
+    assert agreement(tmp_path, {"name": "paper"})["events"] == 7
 
 
 def test_mean_times_are_those_of_their_table():
