@@ -90,12 +90,15 @@ def test_studies_read_only_what_there_is(default):
 
 def test_budgets_follow_the_main_scene_within_limits():
     def parameters(study, budget):
-        scene = {"name": "a", "box": {"width": 1.5, "height": 1}, "event_budget": budget}
+        scene = {"name": "a", "box": {"width": 1.5, "height": 1}}
+        scene |= {} if budget is None else {"event_budget": budget}
         return STUDIES[study].parameters(load({"scenes": [scene | {"radii": [0.1]}]}))
 
     tails = [parameters("tails", budget) for budget in (10**4, 10**8, 10**12)]
     assert [one["replicas"] for one in tails] == [4_000, 5_000, 100_000]
     assert [one["samples"] for one in tails] == [2, 5, 100]
+    for name in ("tails", "distributions", "passages", "stability", "more_discs"):
+        assert parameters(name, None) == parameters(name, 2 * 10**9)
     found = [parameters("distributions", budget)["events"] for budget in (10**4, 10**8, 10**12)]
     assert found == [2**16, 250_000, 2**22]
 

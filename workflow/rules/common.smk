@@ -45,7 +45,8 @@ PARTS = {name: study.parts(CONFIGURATION) for name, study in ALLOWED.items()}
 # The studies by the names of their tables.
 MADE_BY = {table.name(): study for study in ALLOWED.values() for table in study.tables}
 
-if (days := cost.days(CONFIGURATION.scenes)) > 1:
+# Jobs read this file, too, and need no forecast.
+if workflow.is_main_process and (days := cost.days(CONFIGURATION.scenes)) > 1:
     logger.warning(
         f"This configuration takes about {float(f'{days:.2g}'):g} days of processor time."
     )

@@ -29,6 +29,9 @@ GATHERED = {
 #: edit of the configured thickness from running these jobs again.
 NO_SHELL = 0.5
 
+#: The events to which studies are scaled if the main scene has no budget.
+USUAL_EVENTS = 2 * 10**9
+
 
 @dataclass(frozen=True)
 class Quantities:
@@ -197,6 +200,11 @@ class Configuration:
     def main(self):
         """The first scene without effects, or None."""
         return next(iter(self.plain), None)
+
+    @property
+    def study_events(self):
+        """The events to which studies are scaled: the budget of the main scene, or the usual."""
+        return self.main.event_budget or USUAL_EVENTS
 
     @cached_property
     def folders(self):

@@ -67,7 +67,7 @@ class Distributions(Table):
 
 def _parameters(configuration):
     return {
-        "events": scaled(configuration.main.event_budget, 400, 2**16, 2**22),
+        "events": scaled(configuration.study_events, 400, 2**16, 2**22),
         "scenes": [
             {
                 "box": scene.box.parameters(),

@@ -56,7 +56,7 @@ class MoreDiscs(Table):
 
 
 def _parameters(configuration):
-    budget = configuration.main.event_budget
+    budget = configuration.study_events
     return {
         "events": scaled(budget, 500, 10**5, 10**8),
         "samples": scaled(budget, 4000, 10**4, 10**7),

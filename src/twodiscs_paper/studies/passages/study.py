@@ -110,7 +110,7 @@ BLOCKED = 0.28
 def _parts(configuration):
     """Return {name: parameters} of the parts; each part has its own random streams."""
     parts, seed = {}, {"seed": configuration.seed}
-    events = {"events": scaled(configuration.main.event_budget, 800, 2**19, 2**25)}
+    events = {"events": scaled(configuration.study_events, 800, 2**19, 2**25)}
     for scene in configuration.plain:
         own = {"name": scene.name, "box": scene.box.parameters()} | events | seed
         first = scene == configuration.main

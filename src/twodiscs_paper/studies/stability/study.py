@@ -63,7 +63,7 @@ class Stability(Table):
 
 
 def _parameters(configuration):
-    ordinary = scaled(configuration.main.event_budget, 8, 10**7, 25 * 10**7)
+    ordinary = scaled(configuration.study_events, 8, 10**7, 25 * 10**7)
     return {**main_box(configuration), "hard": ordinary // 10, "ordinary": ordinary}
 
 

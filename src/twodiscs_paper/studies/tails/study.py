@@ -51,7 +51,7 @@ class Tails(Table):
 
 
 def _parameters(configuration):
-    budget = configuration.main.event_budget
+    budget = configuration.study_events
     return {
         **main_box(configuration),
         "replicas": scaled(budget, 20_000, 4_000, 100_000),
