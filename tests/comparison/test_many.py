@@ -60,7 +60,14 @@ def test_rates_are_those_of_area_and_volume():
     assert areas["any_wall"] == pytest.approx(6 * (areas["right_wall"] + areas["top_wall"]))
 
 
-@pytest.fixture(scope="module", params=SCENES)
+#: Those whose rows are of another kind: exact, not known, on a ring, in a channel.
+QUICK = ("three", "four", "four on a ring", "eight in a channel")
+
+
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(n, marks=[] if n in QUICK else pytest.mark.slow) for n in SCENES],
+)
 def measured(request):
     """A scene, its points as they come back from files, and the rows of its check."""
     scene = SCENES[request.param]

@@ -78,6 +78,7 @@ def test_bursts_of_collisions_have_no_error_bar():
     assert wrong <= bars <= 4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("radius", [0.24, 0.2475])
 def test_rough_discs_with_an_error_bar_are_covered(radius):
     """Mean square deviate within five sigma of 1, of those that have an error bar."""

@@ -117,7 +117,7 @@ SCALAR = {
 }
 
 
-@pytest.mark.parametrize("name", SCALAR)
+@pytest.mark.parametrize("name", [*[*SCALAR][:-1], ROUGH_RING])
 def test_another_program_has_the_same_rates(name):
     """Time averages of one trajectory: batches of some ten thousand events are independent."""
     scene = SCALAR[name]

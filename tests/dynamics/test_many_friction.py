@@ -91,6 +91,7 @@ def test_kicks_belong_to_replicas_not_to_blocks(monkeypatch):
         monkeypatch.setattr(engine, "large_grid", lambda scene: None)
 
 
+@pytest.mark.slow
 def test_both_kernels_have_the_same_kicks(monkeypatch):
     """Rows and states are the same, before roundings have grown."""
     duration = engine.duration_of(CHANNEL, 160)

@@ -108,7 +108,7 @@ def test_reversed_discs_come_back(scene):
     [
         (replace(BOX, discs=5, radius=0.1), 0.0),
         pytest.param(replace(BOX, discs=5, radius=0.1), 2.0, marks=pytest.mark.slow),
-        (RING, 0.0),
+        pytest.param(RING, 0.0, marks=pytest.mark.slow),
         pytest.param(RING, 2.0, marks=pytest.mark.slow),
     ],
 )

@@ -99,7 +99,7 @@ def test_the_past_is_as_the_future():
         five(one.value, other.value, math.hypot(one.stderr, other.stderr))
 
 
-@pytest.mark.parametrize("inertia", [None, 0.5])
+@pytest.mark.parametrize("inertia", [None, pytest.param(0.5, marks=pytest.mark.slow)])
 def test_odd_clusters_are_what_is_left_of_the_correlation(inertia):
     """Hops are so rare that the gap hardly matters, and the error is far smaller."""
     scene = Scene(1.5, 1.0, 0.249, moment_of_inertia=inertia)

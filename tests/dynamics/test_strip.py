@@ -52,7 +52,7 @@ NECKS = {
 }
 
 #: Each of them has another kernel, which takes seconds to compile.
-SLOW = "unequal", "balls", "channel", "tube", "falling"
+SLOW = "unequal", "balls", "channel", "tube", "falling", "field"
 COUNTED = [
     pytest.param(*neck, id=name, marks=[pytest.mark.slow] if name in SLOW else [])
     for name, neck in NECKS.items()

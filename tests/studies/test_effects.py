@@ -221,6 +221,7 @@ def drawn(rows):
         return figure.draw(None, tables)
 
 
+@pytest.mark.slow
 def test_texts_of_the_figure_stand_clear(drawn):
     with style.context():
         assert unclear(drawn) == []
