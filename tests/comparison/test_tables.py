@@ -121,12 +121,7 @@ CHECK_ROW = {
     "status": "none-seen",
     "test": "exact-tail",
 }
-COST_ROW = {
-    "stage": "dynamics",
-    "radius": 1e-05,
-    "events": 2**53 + 1,
-    "seconds": 0.1 + 0.2,
-}
+COST_ROW = {"stage": "dynamics", "radius": 1e-05, "events": 2**53 + 1, "seconds": 0.1 + 0.2}
 
 
 @pytest.mark.parametrize(("table", "row"), [(Check, CHECK_ROW), (Cost, COST_ROW)])
