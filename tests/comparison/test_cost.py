@@ -12,6 +12,7 @@ from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.runs import DAY, CountingRun, replica_duration
 from twodiscs.model.checks import format_seconds
 from twodiscs.sampling.rounds import MARGIN
+from twodiscs.theory import exact
 
 SCENE = td.Scene(1.5, 1.0, 0.2)
 
@@ -208,3 +209,49 @@ def test_a_table_says_where_it_was_measured_and_has_a_row_for_all(blocks):
     assert list(found.frame().columns[-2:]) == ["seconds_0.01", "seconds_0.0001"]
     assert found["all of these", "exact"].floor == 1e-15
     assert math.isnan(found.frame().loc[("any_wall_area", "shells, rejection"), "seconds_0.0001"])
+
+
+# Pilots -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("seconds", "fewest"), [(0.0, 7), (0.0, 1)])
+def test_a_pilot_has_at_least_its_fewest_blocks(seconds, fewest):
+    calls = []
+
+    def work(first, stop):
+        calls.append((first, stop))
+        return stop
+
+    sums, number, each = cost.timed(work, seconds, fewest)
+    assert (sums, number) == (fewest, fewest)
+    # The first call compiles, the second measures one block.
+    assert calls == [(0, 1), (0, 1), (0, fewest)]
+    assert each >= 0
+
+
+def test_a_run_has_its_first_round_whatever_is_asked_and_the_replicas_of_bursts():
+    pilot = cost.Pilot(1e-3, 1e5, 1024, {"disc_collision": 0.1}, 32)
+    for error, blocks in ((1.0, 32), (0.1, 32), (0.02, 32), (0.001, MARGIN * 1e4)):
+        found = cost.blocks_wanted(SCENE, {"all": pilot}, {"disc_collision": error})
+        assert found == {"all": pytest.approx(blocks)}
+    rough = td.Scene(1.5, 1.0, 0.24999, moment_of_inertia=0.1)
+    needed = exact.replicas_needed(rough, "disc_collision", 0.02) / 1024
+    assert needed > 8
+    pilot = pilot._replace(first_round=8, errors={"disc_collision": 0.01})
+    found = cost.blocks_wanted(rough, {"all": pilot}, {"disc_collision": 0.02})
+    assert found == {"all": pytest.approx(needed)}
+
+
+@pytest.mark.parametrize(
+    ("scene", "floor"),
+    [(SCENE, 1e-15), (td.Scene(1.5, 1.0, 0.15, discs=3), 1e-14),
+     (td.Scene(4.0, 1.0, 0.3, discs=4), 1e-12)],
+)  # fmt: skip
+def test_exact_values_have_the_precision_of_their_theory(scene, floor):
+    (price,) = cost._price_of_exact(scene)
+    assert price.floor == price.least_error == pytest.approx(floor)
+    assert price.seconds(floor * 1.01) == price.least_seconds
+
+
+def test_without_exact_values_they_have_no_price():
+    assert [*cost._price_of_exact(td.Scene(1.5, 1.0, 0.12, discs=4))] == []
