@@ -113,13 +113,13 @@ def _configuration(path):
     """Return the configuration, with only the scene of a table; None if it is not known."""
     for folder in (path.parent, path.parent.parent):
         try:
-            known = json.loads((folder / "configuration.json").read_text(encoding="utf-8"))
+            configuration = json.loads((folder / "configuration.json").read_text(encoding="utf-8"))
         except (OSError, ValueError):
             continue
-        if folder == path.parent or not isinstance(known, Mapping):
-            return known
-        scenes = [s for s in known.get("scenes", []) if s.get("name") == path.parent.name]
-        return {**known, "scenes": scenes}
+        if folder == path.parent or not isinstance(configuration, Mapping):
+            return configuration
+        scenes = [s for s in configuration.get("scenes", []) if s.get("name") == path.parent.name]
+        return {**configuration, "scenes": scenes}
     return None
 
 

@@ -163,14 +163,14 @@ def _of_rates(scene, constant, factors):
 
 def _measured(result, rows, name, constant, factors):
     """Return the ``Measurement`` of a constant plus factors times measured rates."""
-    scene, some = result.scene, [rows[event] for event in factors]
+    scene, counted = result.scene, [rows[event] for event in factors]
     power = "²³"[len(scene.axes) - 2]
     unit = "" if name.endswith("factor") else f"energy/length{power}"
     due = _of_rates(scene, constant, factors)
-    count = min((row["count"] for row in some), default=0)
-    if not some:
+    count = min((row["count"] for row in counted), default=0)
+    if not counted:
         return Measurement(name, constant, 0.0, due, None, count, "exact", unit)
-    if any(row["estimate"] is None for row in some):
+    if any(row["estimate"] is None for row in counted):
         return Measurement(name, None, None, due, None, count, "derived", unit)
     # A time is that of the trajectories that can have the event, which are a share of all.
     pressure = constant + sum(

@@ -109,8 +109,8 @@ class Stage:
         beneath = BOTTOM + STRIP + GAP
         more = panels.of_radius(radius)
         up = 0 if panels.is_short(box, radius) else self.above
-        room = LARGER * panels.room(box, more) + up / 72
-        self.figure = new_figure(beneath + inches * height + TOP + room, ACROSS)
+        heading = LARGER * panels.heading_inches(box, more) + up / 72
+        self.figure = new_figure(beneath + inches * height + TOP + heading, ACROSS)
         self.figure.set_dpi(DPI)
         self.spare = spare = (ACROSS - LEFT - RIGHT - inches * width) / 2
         x, y = width / 2, height / 2

@@ -38,8 +38,8 @@ def draw(box):
     corners = [_seen(corner) for corner in product(*((-n, n) for n in _sizes(halves)))]
     x, y = zip(*corners, strict=True)
     extent = (min(x), max(x), min(y), max(y))
-    room = COLUMN - 2 * LEFT
-    inches = drawing.scale(extent[1] - extent[0], extent[3] - extent[2], room, PRISM)
+    across = COLUMN - 2 * LEFT
+    inches = drawing.scale(extent[1] - extent[0], extent[3] - extent[2], across, PRISM)
     squares = BOTTOM + side + TOP
     figure = new_figure(squares + BETWEEN + inches * (extent[3] - extent[2]))
     middle = (COLUMN - inches * (extent[1] - extent[0])) / 2

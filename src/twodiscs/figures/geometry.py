@@ -315,9 +315,9 @@ def draw_shells(box):
     short = min(width, height)
     radius, epsilon = SHELL_RADIUS * short, SHELL_THICKNESS * short
     a, b = width / 2 - radius, height / 2 - radius
-    room = COLUMN - SHELL_LEFT - SHELL_GAP - SHELL_RIGHT
-    side = min(room / (1 + a / b), SHELL_TALLEST)
-    left = SHELL_LEFT + (room - side * (1 + a / b)) / 2
+    across = COLUMN - SHELL_LEFT - SHELL_GAP - SHELL_RIGHT
+    side = min(across / (1 + a / b), SHELL_TALLEST)
+    left = SHELL_LEFT + (across - side * (1 + a / b)) / 2
     figure = new_figure(SHELL_BELOW + side + SHELL_ABOVE)
     square = drawing.add_axes(figure, left, SHELL_BELOW, side / (2 * b), (-b, b, -b, b))
     _hop(square, b, epsilon)

@@ -205,7 +205,7 @@ def heading(box, more=""):
     return [",  ".join(pieces[i : i + PIECES]) for i in range(0, len(pieces), PIECES)]
 
 
-def room(box, more=""):
+def heading_inches(box, more=""):
     """Return the inches that lines of the ``heading`` beyond the first one take."""
     return LINE * (len(heading(box, more)) - 1)
 
@@ -340,9 +340,9 @@ def logarithmic(axes, radii, series):
     shown = [value for part in series for value in part.exact[clear] if value > 0]
     shown += [value for value in seen if value]
     low, high = min(shown, default=1.0), max(shown, default=1.0)
-    room = max((high / low) ** 0.06, (LEAST * low / high) ** 0.5)
+    margin = max((high / low) ** 0.06, (LEAST * low / high) ** 0.5)
     axes.set_yscale("log")
-    axes.set_ylim(low / room, high * room)
+    axes.set_ylim(low / margin, high * margin)
     label_decades(axes.yaxis, high / low)
 
 

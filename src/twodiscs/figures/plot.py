@@ -189,7 +189,7 @@ def _rows_and_figures(result):
     if isinstance(result, Box) or result is scene is not None:
         return result if isinstance(result, Box) else Box.of(scene), [], [*OF_A_BOX], None
     results = [*result] if isinstance(result, list | tuple | Scan) else [result]
-    results = [one for some in results for one in (some if isinstance(some, Scan) else [some])]
+    results = [one for item in results for one in (item if isinstance(item, Scan) else [item])]
     for kind in (Measurements, Intervals):
         if results and all(isinstance(item, kind) for item in results):
             boxes = {Box.of(item.scene) for item in results}

@@ -225,9 +225,9 @@ def sums_of_others(counts, products=None, replicas=None):
     for event in reversed(EVENTS):
         rest = [e for e in EVENTS if e != event and e not in derived and counts.get(e)]
         terms = chain.from_iterable(combinations(rest, n) for n in range(1, len(rest) + 1))
-        for some in terms if counts.get(event) else ():
-            if sum(counts[e] for e in some) == counts[event]:
-                weights = {e: -1 if e in some else 1 for e in EVENTS if e in (*some, event)}
+        for addends in terms if counts.get(event) else ():
+            if sum(counts[e] for e in addends) == counts[event]:
+                weights = {e: -1 if e in addends else 1 for e in EVENTS if e in (*addends, event)}
                 if not products or combination(weights, counts, products, replicas).stderr == 0:
                     derived.add(event)
     return derived
