@@ -181,7 +181,7 @@ MUTANTS = [
     ("CSV of another radius", "_print_csv(Theory.rows(Box.of(scene), [scene.radius]))", "_print_csv(Theory.rows(Box.of(scene), [scene.radius / 2]))"),
     ("law of diffusive passages", "DIFFUSIVE = 3 / 4", "DIFFUSIVE = 3 / 2"),
     ("error of dynamics for that of Monte Carlo", "monte_carlo_stderr=spread,", "monte_carlo_stderr=error,"),
-    ("count of the event that is known best", 'count = min((row["count"] for row in some), default=0)', 'count = max((row["count"] for row in some), default=0)'),
+    ("count of the event that is known best", 'count = min((row["count"] for row in counted), default=0)', 'count = max((row["count"] for row in counted), default=0)'),
     ("rows of a trajectory back in time", "free = np.diff(time) >= 0", "free = np.ones(len(time) - 1, bool)"),
     ("start of a trajectory in the shell", '_arguments(options, ("duration", "seed", "start", "name"))', '_arguments(options, ("duration", "seed", "name"))'),
     ("name of a scene in the verdict", '(path.parent.name if path.stem == "check" else path.stem, read_table(path))', "(path.stem, read_table(path))"),
