@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from figure_cases import PAPER, bars, draw, points, tables_of
+from matplotlib.patches import StepPatch
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.transmission import box_time
@@ -36,7 +37,10 @@ def table(name):
     """Return the rows of a committed table; costs, which are times, are made up."""
     if name == "effects_cost":
         variants = ["plain", *dict.fromkeys(row["scene"] for row in table("effects"))]
-        return [TABLES[name].empty(variant=v, ratio=1 / (1 + i)) for i, v in enumerate(variants)]
+        return [
+            TABLES[name].empty(variant=v, ratio=1 / (1 + i), instructions=4000 + i)
+            for i, v in enumerate(variants)
+        ]
     folder = EXPECTED / "paper" if name in SCENE_TABLES else EXPECTED
     return TABLES[name].read(folder / f"{name}.csv")
 
@@ -333,15 +337,19 @@ def test_residuals_are_those_of_the_table():
 
 
 def test_the_panels_of_stability_are_those_of_the_table():
-    rows, (volume, areas) = table("stability"), style.SERIES[:2]
+    rows, (volume, _) = table("stability"), style.SERIES[:2]
     shares = of(rows, part="sampling", case="largest radius", method="conditioned")
     due = {(-row["distance"], row["value"]) for row in shares}
     assert points(drawn("stability")["c"], *volume) == due
     estimates = of(rows, part="estimates", status="sampled")
-    for look, is_volume in ((volume, True), (areas, False)):
-        due = [row["z"] for row in estimates if (row["quantity"] == "volume") == is_volume]
-        shown = points(drawn("stability")["d"], *look)
-        assert sorted(z for z, _ in shown) == sorted(due)
+    extremes = [row for row in of(rows, part="extremes") if row["z"] is not None]
+    axes, edges = drawn("stability")["d"], np.arange(-5, 6)
+    counts = [np.histogram([r["z"] for r in own], edges)[0] for own in (estimates, extremes)]
+    for bars_of, due in zip(axes.containers, counts, strict=True):
+        assert [bar.get_height() for bar in bars_of] == [*due]
+    (law,) = [patch for patch in axes.patches if isinstance(patch, StepPatch)]
+    assert law.get_data().values.sum() == pytest.approx(sum(map(sum, counts)), rel=1e-6)
+    assert law.get_data().values[5] / law.get_data().values[6] == pytest.approx(2.5116, rel=1e-4)
     theory, end = of(rows, part="theory"), "largest radius"
     for panel, own in (
         ("a", of(theory, case=end)),
@@ -369,9 +377,19 @@ def test_the_panels_of_stability_of_runs_are_those_of_the_table():
     ):
         due = {max(sign * row["value"], 1e-17) for row in of(rows, quantity=quantity)}
         assert {x for x, _ in points(axes["a"], colour, marker)} == due != set()
-    for quantity, look in zip(("contact_time", "wall_time"), style.SERIES, strict=False):
-        due = {row["value"] for row in of(rows, part="times", quantity=quantity)}
+    for method, quantity, look in (
+        ("stable", "contact_time", style.SERIES[0]),
+        ("stable", "wall_time", style.SERIES[1]),
+        ("textbook", "contact_time", (style.VERMILLION, "x")),
+    ):
+        due = {row["value"] for row in of(rows, part="times", quantity=quantity, method=method)}
         assert {x for x, _ in points(axes["b"], *look)} == due != set()
+    extremes = of(rows, part="extremes")
+    places = [*dict.fromkeys(row["case"] for row in extremes)]
+    for event, look in LOOKS.items():
+        own = [row for row in of(extremes, quantity=f"{event}_time") if row["z"] is not None]
+        due = {(row["z"], places.index(row["case"])) for row in own}
+        assert points(axes["e"], *look) == due != set()
     returns = of(rows, part="reversal", quantity="return_error")
     radii = sorted({row["radius"] for row in returns})
     for radius, look in zip(radii, (*style.SERIES, (style.ORANGE, "v")), strict=True):

@@ -1,6 +1,7 @@
 """The table and the figure of stability: the measured errors are right, and mistakes are found."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +13,8 @@ from twodiscs.comparison import scores
 from twodiscs.comparison.scene_tables import Theory, Volume
 from twodiscs.figures import style
 from twodiscs.model.box import Box
+from twodiscs.model.checks import InputError
+from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS, SHELLS
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.separations import draw_constants
@@ -20,6 +23,7 @@ from twodiscs_paper.studies.stability import figure, figure_runs
 from twodiscs_paper.studies.stability import measure as stability
 from twodiscs_paper.studies.stability.study import Stability
 
+EXPECTED = Path(__file__).parents[2] / "paper" / "expected" / "stability.csv"
 PAPER = Box(1.5, 1.0)
 BOXES = [
     PAPER, Box(1.0, 1.5), Box(1.0, 1.0), Box(2.0, 1.0), Box(3.0, 1.0), Box(1.98, 1.0),
@@ -199,33 +203,108 @@ def test_conditioned_blocks_add_up():
 @pytest.mark.parametrize("box", [PAPER, Box(1e6, 1e-6)], ids=str)
 def test_predicted_times_are_right_to_a_few_roundings(box):
     rows = list(stability.time_rows(box, seed=4))
-    assert len(rows) == 8
-    assert all(row["passed"] for row in rows)
-    assert all(row["count"] >= 350 for row in rows)
-    assert all(0.05 < row["value"] < 4 for row in rows)
+    ours = [row for row in rows if row["method"] == "stable"]
+    assert len(ours) == 8
+    assert all(row["passed"] for row in ours)
+    assert all(row["count"] >= 350 for row in ours)
+    assert all(0.05 < row["value"] < 4 for row in ours)
 
 
-def test_the_textbook_discriminant_would_not_pass(monkeypatch):
-    def textbook(dx, dy, _dz, du, dv, _dw, sigma):
-        a, b, c = du**2 + dv**2, dx * du + dy * dv, dx * dx + dy * dy - sigma * sigma
-        discriminant = b * b - a * c
-        return c, (math.sqrt(discriminant) if discriminant > 0 else math.nan) - b, b < 0
+def test_the_formula_of_textbooks_loses_digits_and_contacts_of_distant_discs():
+    """Over a distance of 10⁹ radii the discriminant keeps nothing of σ²."""
+    rows = list(stability.time_rows(PAPER, seed=4))
+    textbook = {row["case"]: row for row in rows if row["method"] == "textbook"}
+    contacts = [row for row in rows if row["quantity"] == "contact_time"]
+    ours = {row["case"]: row for row in contacts if row["method"] == "stable"}
+    assert len(textbook) == len(ours) == 6
+    assert textbook["from very far"]["value"] > 1e5 * stability.TIME_BOUND
+    assert textbook["grazing"]["value"] > stability.TIME_BOUND
+    assert textbook["from very far"]["count"] < ours["from very far"]["count"]
+    assert textbook["head-on"]["count"] == ours["head-on"]["count"]
+    # The same formula: a contact after the time 0.6, with nothing to cancel.
+    gap, speed, approaches = stability.textbook_quotient(-1.0, 0.0, None, 1.0, 0.0, None, 0.4)
+    assert gap / speed == pytest.approx(0.6, rel=1e-15)
+    assert approaches
+    assert not stability.textbook_quotient(-1.0, 0.0, None, -1.0, 0.0, None, 0.4)[2]
 
-    monkeypatch.setattr(stability, "contact_quotient", textbook)
-    rows = {row["case"]: row for row in stability.time_rows(PAPER, seed=4)}
-    assert rows["grazing"]["passed"] is False
-    assert rows["from very far"]["passed"] is False
 
-
-def test_misses_and_false_hits_are_infinite_errors(monkeypatch):
+def test_misses_and_false_hits_are_infinite_errors():
     hit, miss = (-1.0, 0.1, 1.0, 0.0, 0.4), (-1.0, 0.5, 1.0, 0.0, 0.4)
     assert stability.contact_error(*hit) < 1
     assert stability.contact_error(*miss) == 0
     assert stability.contact_error(-1.0, 0.4, 1.0, 0.0, 0.4) is None
-    monkeypatch.setattr(stability, "contact_quotient", lambda *inputs: (1.0, math.nan, True))
-    assert stability.contact_error(*hit) == math.inf
-    monkeypatch.setattr(stability, "contact_quotient", lambda *inputs: (1.0, 1.0, True))
-    assert stability.contact_error(*miss) == math.inf
+    assert stability.contact_error(*hit, lambda *inputs: (1.0, math.nan, True)) == math.inf
+    assert stability.contact_error(*hit, lambda *inputs: (math.nan, 1.0, True)) == math.inf
+    assert stability.contact_error(*miss, lambda *inputs: (1.0, 1.0, True)) == math.inf
+
+
+# Extreme scenes -----------------------------------------------------------------------------------
+
+
+def test_the_extremes_are_those_of_every_effect():
+    """Both ends of each range, as far as they allow to follow the discs."""
+    scenes = stability.EXTREMES.values()
+    for name in ("mass_ratio", "radius_ratio"):
+        values = {getattr(scene, name) for scene in scenes}
+        assert {EFFECTS[name].low, EFFECTS[name].high} <= values
+    assert {EFFECTS["moment_of_inertia"].low, EFFECTS["moment_of_inertia"].high} <= {
+        scene.moment_of_inertia for scene in scenes
+    }
+    used = {name for scene in scenes for name in scene.effects}
+    assert used == EFFECTS.keys()
+    assert {scene.discs for scene in scenes} == {2, 3, 16}
+    for case, scene in stability.EXTREMES.items():
+        if "hardly" in case:
+            with pytest.raises(InputError, match="does not fit"):
+                scene.with_radius(scene.radius * 1.03)
+
+
+def test_rows_of_extremes_are_their_mean_times():
+    """A plain box of 1e6 × 1e-6, where most events are never seen, and an ordinary one."""
+    scenes = {"long": stability.EXTREMES["1e6 by 1e-6"], "ordinary": stability.PAPER}
+    rows = list(stability.extreme_rows(1, scenes))
+    assert failed(rows) == []
+    for case, scene in scenes.items():
+        own = {row["quantity"]: row for row in rows if row["case"] == case}
+        for event, time in exact.mean_times(scene).items():
+            assert own[f"{event}_time"]["exact"] == time
+    few = {row["quantity"]: row for row in rows if row["case"] == "long"}
+    assert few["disc_collision_time"]["z"] is few["virial"]["z"] is None
+    assert few["disc_collision_time"]["passed"] is None
+    assert few["top_wall_time"]["passed"] is True
+    virial = next(r for r in rows if r["case"] == "ordinary" and r["quantity"] == "virial")
+    assert abs(virial["value"] - 1) < 5 * virial["stderr"] < 0.05
+
+
+def test_a_wrong_time_in_an_extreme_scene_does_not_pass(monkeypatch):
+    times = exact.mean_times
+    monkeypatch.setattr(
+        exact, "mean_times", lambda scene: {e: 1.05 * t for e, t in times(scene).items()}
+    )
+    wrong = failed(stability.extreme_rows(1, {"ordinary": stability.PAPER}))
+    assert {row["quantity"] for row in wrong} >= {"any_wall_time", "disc_collision_time"}
+
+
+def test_a_bound_that_says_something_is_judged(monkeypatch):
+    """Of two counts without a normal law one is too improbable, the other may be anything."""
+    cells = {"exact": 1.0, "estimate": None, "stderr": None, "status": "none-seen"}
+    cells |= {"comparison": "mean_time", "method": "dynamics", "test": "cluster-bound"}
+    found = [cells | {"quantity": "a_time", "z": 6.0}, cells | {"quantity": "b_time", "z": 0.0}]
+    found.append(cells | {"quantity": "c_time", "z": 0.0, "test": "certain"})
+    monkeypatch.setattr(stability, "comparisons", lambda *_: found)
+    one, other = stability.extreme_rows(1, {"ordinary": stability.PAPER})
+    assert (one["quantity"], one["z"], one["passed"]) == ("a_time", 6.0, False)
+    assert (other["quantity"], other["z"], other["passed"]) == ("b_time", None, None)
+
+
+def test_the_expected_table_has_every_extreme_scene_and_all_pass():
+    """Some 100 residuals are held to five standard errors."""
+    rows = [row for row in Stability.read(EXPECTED) if row["part"] == "extremes"]
+    assert {row["case"] for row in rows} == stability.EXTREMES.keys()
+    assert all(row["passed"] is True for row in rows if row["z"] is not None)
+    assert all(row["passed"] is None for row in rows if row["z"] is None)
+    for case in stability.EXTREMES:
+        assert any(row["case"] == case and row["passed"] is True for row in rows), case
 
 
 # The jobs and the figure --------------------------------------------------------------------------
@@ -238,8 +317,10 @@ def quick(monkeypatch):
         "SHARE_PROPOSALS": 1, "ESTIMATE_PROPOSALS": 1, "REVERSED": 200, "WINDOW": 64,
     }.items():  # fmt: skip
         monkeypatch.setattr(stability, name, value)
-    rows = stability.coverage_rows
+    rows, extremes = stability.coverage_rows, stability.extreme_rows
     monkeypatch.setattr(stability, "coverage_rows", lambda box, seed: rows(box, seed, 3))
+    one = {"ordinary": stability.PAPER}
+    monkeypatch.setattr(stability, "extreme_rows", lambda seed: extremes(seed, one))
 
 
 GIVEN = {"box": PAPER, "seed": 1, "ordinary": 2000, "hard": 1000}
@@ -251,7 +332,7 @@ def test_table_and_figure_of_any_box(box, quick, tmp_path):
     assert rows == again
     parts = {row["part"] for row in rows}
     assert parts == {
-        "theory", "sampling", "estimates", "times", "dynamics", "reversal", "coverage"
+        "theory", "sampling", "estimates", "times", "dynamics", "extremes", "reversal", "coverage"
     }  # fmt: skip
     with style.context():
         for module in (figure, figure_runs):

@@ -1,9 +1,11 @@
 """How theory and sampling behave in numerically hard cases: parts of stability.csv."""
 
+import numpy as np
 from matplotlib.ticker import FixedLocator, LogLocator, NullLocator
+from scipy.special import ndtr
 
 from twodiscs.figures import drawing, panels
-from twodiscs.figures.style import BLUE, GREY, ORANGE, SERIES, VERMILLION, new_figure
+from twodiscs.figures.style import BLACK, BLUE, GREY, ORANGE, SERIES, VERMILLION, new_figure
 
 #: Inches: the width of two columns, the height of a panel, margins, the gap between panels.
 WIDTH, HEIGHT = 7.0, 1.5
@@ -13,6 +15,9 @@ BOUND = {"color": GREY, "lw": 0.6, "ls": (0, (4, 2)), "zorder": 0}
 #: Errors that are exactly zero are drawn here.
 NOTHING = 1e-17
 
+#: Residuals are counted up to this size, which no test passes.
+LARGEST_Z = 5
+
 
 def draw(box, tables):
     """Draw the rows of stability.csv on theory and sampling, for the ``box`` of the first scene."""
@@ -21,8 +26,7 @@ def draw(box, tables):
     _largest(panel(figure, "a"), parts.get("theory", []))
     _thresholds(panel(figure, "b"), parts.get("theory", []))
     _shares(panel(figure, "c"), parts.get("sampling", []))
-    estimates = parts.get("estimates", [])
-    _estimates(panel(figure, "d", 0.5), estimates, radii_of(estimates))
+    _scores(panel(figure, "d"), parts.get("estimates", []), parts.get("extremes", []))
     panels.title(figure.axes[0], "", box)
     return figure
 
@@ -35,15 +39,15 @@ def by_part(rows):
     return parts
 
 
-def panel(figure, name, names=0.0, beside=0.0):
+def panel(figure, name, names=0.0, beside=0.0, lowest=0.0):
     """Return new axes in one of the four quarters, with their letter ``name``.
 
     ``names`` and ``beside`` are the widths, in inches, of texts at the left and at the right of the
-    panel.
+    panel. The quarters begin at the height ``lowest``, in inches.
     """
     place = "abcd".index(name)
     left, across = panels.LEFT + place % 2 * WIDTH / 2, WIDTH / 2 - panels.LEFT - RIGHT
-    bottom = BOTTOM + (1 - place // 2) * (HEIGHT + BETWEEN)
+    bottom = lowest + BOTTOM + (1 - place // 2) * (HEIGHT + BETWEEN)
     axes = panels.add_panel(figure, bottom, HEIGHT, left + names, across - names - beside, name)
     corner = {"xycoords": "axes fraction", "ha": "left", "va": "bottom"}
     drawing.label(axes, f"({name})", (0, 1), (2 - 72 * (panels.LEFT + names), 3), **corner)
@@ -164,24 +168,21 @@ def lines(axes, names):
         axes.axhline(i, color=GREY, lw=0.25, alpha=0.5, zorder=0)
 
 
-def _estimates(axes, rows, radii):
-    """Draw the residuals of the conditioned estimates."""
-    places = {key: i for i, key in enumerate(radii)}
-    lines(axes, list(radii.values()))
-    for look, volume, name in ((SERIES[0], True, "$V$"), (SERIES[1], False, "areas")):
-        points = [
-            (row["z"], places[row["case"], row["radius"]])
-            for row in rows
-            if (row["quantity"] == "volume") == volume and row["status"] == "sampled"
-        ]
-        x, y = zip(*points, strict=True) if points else ([], [])
-        axes.plot(x, y, ls="", label=name, clip_on=False, **panels.open_symbol(*look, 0.8))
-    for z in (-5, 5):
-        axes.axvline(z, **BOUND)
-    axes.axvline(0, color=GREY, lw=0.5, zorder=0)
-    axes.set(xlim=(-6.5, 6.5), xlabel="residual $z$ of estimates")
-    axes.xaxis.set_major_locator(FixedLocator([-5, 0, 5]))
-    heading(axes)
+def _scores(axes, estimates, extremes):
+    """Draw how many residuals are how large, beside the normal law of as many of them."""
+    edges = np.linspace(-LARGEST_Z, LARGEST_Z, 2 * LARGEST_Z + 1)
+    groups = {
+        "volume and areas": [row["z"] for row in estimates if row["status"] == "sampled"],
+        "extreme scenes": [row["z"] for row in extremes if row["z"] is not None],
+    }
+    axes.hist(
+        groups.values(), edges, stacked=True, label=[*groups], color=(BLUE, ORANGE), rwidth=0.85
+    )
+    number = sum(map(len, groups.values()))
+    law = number * np.diff(ndtr(edges))
+    axes.stairs(law, edges, color=BLACK, lw=0.8, label="normal law")
+    axes.set(xlim=(edges[0], edges[-1]), xlabel="residual $z$", ylabel=f"count of {number}")
+    axes.legend(loc="upper left")
 
 
 def heading(axes):

@@ -25,6 +25,7 @@ from twodiscs_paper.studies.stability.figure import (
     BOUND,
     HEIGHT,
     NOTHING,
+    RIGHT,
     TOP,
     WIDTH,
     by_part,
@@ -36,6 +37,12 @@ from twodiscs_paper.studies.stability.figure import (
     select,
 )
 
+#: The symbol of times by the formula of textbooks; the look of the sum rule of virials.
+TEXTBOOK, VIRIAL = {"color": VERMILLION, "marker": "x", "markersize": 3.4}, (GREY, "o")
+
+#: Inches: the lowest panel, with its labels, and the space for the names of its scenes.
+LOWEST, NAMES = 2.75, 1.1
+
 #: Colour and marker of each quantity of the runs of many events.
 WORST = {"energy_error": (BLUE, "o"), "smallest_gap": (VERMILLION, "s"), "excess": (GREEN, "^")}
 
@@ -43,12 +50,13 @@ WORST = {"energy_error": (BLUE, "o"), "smallest_gap": (VERMILLION, "s"), "excess
 def draw(box, tables):
     """Draw the rows of stability.csv on dynamics, for the ``box`` of the first scene."""
     parts = by_part(tables["stability"])
-    figure = new_figure(TOP + 2 * HEIGHT + BETWEEN + BOTTOM, WIDTH)
+    figure = new_figure(LOWEST + TOP + 2 * HEIGHT + BETWEEN + BOTTOM, WIDTH)
     runs = parts.get("dynamics", [])
-    _runs(panel(figure, "a", 0.5, 0.3), runs, radii_of(runs))
-    _times(panel(figure, "b", 0.85), parts.get("times", []))
-    _reversal(panel(figure, "c"), parts.get("reversal", []))
-    _coverage(panel(figure, "d"), parts.get("coverage", []))
+    _runs(panel(figure, "a", 0.5, 0.3, LOWEST), runs, radii_of(runs))
+    _times(panel(figure, "b", 0.85, 0.0, LOWEST), parts.get("times", []))
+    _reversal(panel(figure, "c", lowest=LOWEST), parts.get("reversal", []))
+    _coverage(panel(figure, "d", lowest=LOWEST), parts.get("coverage", []))
+    _extremes(figure, parts.get("extremes", []))
     panels.title(figure.axes[2], "", box)
     return figure
 
@@ -80,18 +88,52 @@ def _runs(axes, rows, radii):
     drawing.label(axes, "events", (1, -0.6), (4, 5), fontsize=6.9, **beside)
 
 
+def _named(row):
+    """Return the name of a kind of approach, to the other disc or to a wall."""
+    return f"wall, {row['case']}" if row["quantity"] == "wall_time" else row["case"]
+
+
 def _times(axes, rows):
     """Draw the worst errors of predicted times."""
-    walls = {"wall_time": "wall, "}
-    lines(axes, [walls.get(row["quantity"], "") + row["case"] for row in rows])
-    for i, row in enumerate(rows):
+    names = dict.fromkeys(map(_named, rows))
+    contacts = select(rows, quantity="contact_time", method="stable")
+    found = {row["case"]: row["count"] for row in contacts}
+    lines(axes, [*names])
+    for row in rows:
         look = SERIES[0] if row["quantity"] == "contact_time" else SERIES[1]
-        axes.plot(row["value"], i, **panels.open_symbol(*look))
-    axes.set(xscale="log", xlim=(0.1, 20))
+        symbol = TEXTBOOK if row["method"] == "textbook" else panels.open_symbol(*look)
+        at = row["value"], [*names].index(_named(row))
+        axes.plot(*at, **symbol)
+        missed = found.get(row["case"], 0) - row["count"]
+        if row["method"] == "textbook" and missed:
+            drawing.label(axes, f"{missed} missed", at, (5, 0), ha="left", fontsize=6.9)
+    axes.set(xscale="log", xlim=(0.1, 1e11))
     axes.set_xlabel(r"error / ($2^{-52}\times$ conditioning)", x=1, ha="right")
     axes.xaxis.set_minor_formatter(NullFormatter())
     for row in rows[:1]:
         axes.axvline(row["high"], **BOUND)
+
+
+def _extremes(figure, rows):
+    """Draw the residuals of the mean times in extreme scenes, a line for each scene."""
+    across = WIDTH - panels.LEFT - NAMES - RIGHT
+    axes = panels.add_panel(figure, BOTTOM, LOWEST - BOTTOM - TOP, panels.LEFT + NAMES, across, "e")
+    corner = {"xycoords": "axes fraction", "ha": "left", "va": "bottom"}
+    drawing.label(axes, "(e)", (0, 1), (2 - 72 * (panels.LEFT + NAMES), 3), **corner)
+    cases = [*dict.fromkeys(row["case"] for row in rows)]
+    lines(axes, cases)
+    for event, look in (LOOKS | {"virial": VIRIAL}).items():
+        own = [row for row in rows if row["quantity"] in (event, f"{event}_time")]
+        own = [row for row in own if row["z"] is not None]
+        x, y = [row["z"] for row in own], [cases.index(row["case"]) for row in own]
+        name = "virial theorem" if event == "virial" else name_of(event)
+        axes.plot(x, y, ls="", label=name, **panels.open_symbol(*look))
+    axes.set(xlim=(-6.5, 6.5), xlabel="residual $z$ of mean times")
+    for z in (-5, 5):
+        axes.axvline(z, **BOUND)
+    axes.axvline(0, color=GREY, lw=0.5, zorder=0)
+    tight = {"handletextpad": 0.1, "columnspacing": 0.8, "borderaxespad": 0.0}
+    axes.legend(loc="lower right", bbox_to_anchor=(1, 1.01), ncols=7, **tight)
 
 
 # Reversal and coverage ----------------------------------------------------------------------------

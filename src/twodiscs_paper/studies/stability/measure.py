@@ -8,21 +8,24 @@ References are computed with mpmath, from the same doubles that the methods take
 """
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 from mpmath import mp, mpf
 
 from twodiscs.comparison import scores
-from twodiscs.comparison.scene_tables import Areas, Theory, Volume
+from twodiscs.comparison.check import comparisons
+from twodiscs.comparison.scene_tables import Areas, MeanTimes, Theory, Volume
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import after_event, contact_quotient, law_of, wall_quotient
 from twodiscs.dynamics.two.follow import find_events, new_rows, put_state, state_at
 from twodiscs.dynamics.two.path import advance
-from twodiscs.model.box import shortest_decimal
+from twodiscs.model.box import Box, shortest_decimal
 from twodiscs.model.checks import LARGEST_INTEGER
 from twodiscs.model.events import EVENTS, HOPS
+from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.estimates import LinearFit, mean_of
 from twodiscs.sampling import montecarlo
@@ -91,10 +94,10 @@ def judged(start, quantity, value, low=None, high=None, z=None, **cells):
     """Return a row of stability.csv on a measured ``value``, and whether it passes.
 
     It passes if it is within ``low`` and ``high`` and |z| ≤ 5, as far as these are given. Without
-    any of them, or without a value, ``passed`` is empty.
+    any of them, or without a value, ``passed`` is empty; but a bound may have a z without a value.
     """
     passed = None
-    if value is not None and any(bound is not None for bound in (low, high, z)):
+    if (value is not None or z) and any(bound is not None for bound in (low, high, z)):
         passed = (
             (low is None or value >= low)
             and (high is None or value <= high)
@@ -272,18 +275,25 @@ def exact_contact(dx, dy, du, dv, sigma):
         return time, sum(map(abs, slopes)) / root
 
 
-def contact_error(dx, dy, du, dv, sigma):
+def textbook_quotient(dx, dy, _dz, du, dv, _dw, sigma):
+    """Return (gap, speed, whether the discs approach) by the textbook: (−b − √(b² − ac))/a."""
+    a, b, c = du * du + dv * dv, dx * du + dy * dv, dx * dx + dy * dy - sigma * sigma
+    discriminant = b * b - a * c
+    return -b - math.sqrt(discriminant) if discriminant > 0 else math.nan, a, b < 0
+
+
+def contact_error(dx, dy, du, dv, sigma, quotient=contact_quotient):
     """Return the error of the predicted time to contact over ``EPSILON`` × conditioning.
 
     It is None if roundings of the inputs decide between hit and miss. It is infinite if a contact
-    is missed, or predicted without a contact.
+    is missed, or predicted without a contact. The ``quotient`` predicts it.
     """
-    gap, speed, approach = contact_quotient(dx, dy, None, du, dv, None, sigma)
+    gap, speed, approach = quotient(dx, dy, None, du, dv, None, sigma)
     impact, graze = abs(dx * dv - dy * du), sigma * math.hypot(du, dv)
     if abs(impact - graze) <= 8 * EPSILON * (abs(dx * dv) + abs(dy * du) + graze):
         return None
     true, conditioning = exact_contact(dx, dy, du, dv, sigma)
-    hit = bool(approach and speed > 0)
+    hit = bool(approach and speed > 0 and not math.isnan(gap))
     if true is None or not hit:
         return 0.0 if hit == (true is not None) else math.inf
     return float(abs(mpf(max(gap / speed, 0.0)) - true) / (EPSILON * conditioning))
@@ -333,10 +343,17 @@ def time_rows(box, seed, cases=400):
     generator = np.random.default_rng(seed)
     radius = ordinary_radii(box)[1]
     for case, flights in approaches(2 * radius, generator, cases).items():
-        errors = [contact_error(*state, 2 * radius) for state in flights]
-        known = [error for error in errors if error is not None]
         start = start_of("times", case)
-        yield judged(start, "contact_time", max(known), high=TIME_BOUND, count=len(known))
+        for method, quotient, bound in (
+            ("stable", contact_quotient, TIME_BOUND),
+            ("textbook", textbook_quotient, None),
+        ):
+            errors = [contact_error(*state, 2 * radius, quotient) for state in flights]
+            known = [error for error in errors if error is not None]
+            # A contact that the textbook misses has no time, and does not count.
+            times = [error for error in known if bound or math.isfinite(error)]
+            cells = {"high": bound, "method": method, "count": len(times)}
+            yield judged(start, "contact_time", max(times), **cells)
 
     half = box.width / 2 - radius
     for case, powers in (("from anywhere", (-12, 0)), ("velocity almost 0", (-323, -307))):
@@ -346,9 +363,8 @@ def time_rows(box, seed, cases=400):
             wall_error(float(position), float(velocity), half)
             for position, velocity in zip(positions, velocities, strict=True)
         ]
-        yield judged(
-            start_of("times", case), "wall_time", max(errors), high=TIME_BOUND, count=cases
-        )
+        cells = {"high": TIME_BOUND, "method": "stable", "count": cases}
+        yield judged(start_of("times", case), "wall_time", max(errors), **cells)
 
 
 # Long runs --------------------------------------------------------------------------------------
@@ -441,6 +457,64 @@ def dynamics_rows(box, seed, ordinary, hard):
         start = start_of("dynamics", case, radius, distance) | {"count": found["events"]}
         for quantity, bound in bounds.items():
             yield judged(start, quantity, float(found[quantity]), **bound)
+
+
+# Extreme scenes ---------------------------------------------------------------------------------
+
+PAPER = Scene(1.5, 1.0, 0.2)
+
+
+def _hardly_fitting(width, height, distance, discs=2, **effects):
+    """Return a scene at the relative ``distance`` below its largest radius."""
+    box = Box(width, height, effects, discs)
+    return box.scene(box.largest_radius * (1 - distance))
+
+
+#: Scenes for a sceptic: each effect at its extremes, discs that hardly fit, very long boxes.
+EXTREMES = {
+    "1e6 by 1e-6": Scene(1e6, 1e-6, 2e-7),
+    "1e-6 by 1e6": Scene(1e-6, 1e6, 2e-7),
+    "mass ratio 1e3": replace(PAPER, radius_ratio=0.5, mass_ratio=1e3),
+    "mass ratio 1e-3": replace(PAPER, radius_ratio=0.5, mass_ratio=1e-3),
+    "radius ratio 1e3": replace(PAPER, radius=2e-4, radius_ratio=1e3, mass_ratio=2.0),
+    "radius ratio 1e-3": replace(PAPER, radius_ratio=1e-3, mass_ratio=2.0),
+    "inertia 1e-3": replace(PAPER, moment_of_inertia=1e-3),
+    "inertia 1": replace(PAPER, moment_of_inertia=1.0),
+    "friction 1e-6": replace(PAPER, friction=1e-6),
+    "friction 1e4": replace(PAPER, friction=1e4),
+    "field 1e-9": replace(PAPER, field=1e-9),
+    "field 5": replace(PAPER, field=5.0),
+    "depth 1e6": replace(PAPER, depth=1e6),
+    "depth 2r(1 + 1e-4)": replace(PAPER, depth=0.4 * (1 + 1e-4)),
+    "torus, hardly fits": _hardly_fitting(1.5, 1.0, 1e-2, periodic="xy"),
+    "3 discs, hardly fit": _hardly_fitting(1.5, 1.0, 1e-6, discs=3),
+    "16 discs, hardly fit": _hardly_fitting(4.0, 4.0, 2e-2, discs=16),
+    "16 discs in a channel": Scene(9.92, 0.6, 0.29, discs=16),
+}
+
+#: The relative error asked for in them, and the events: most kicks of strong friction are no event.
+EXTREME_ERROR, EXTREME_EVENTS, KICKED = 1e-2, 2 * 10**6, {"friction 1e4": 10**8}
+
+
+def extreme_rows(seed, scenes=EXTREMES):
+    """Yield the mean times in extreme ``scenes``, and the sum rule of virials, by dynamics.
+
+    A count without a normal law is tested by a bound. If the bound says nothing, z is empty.
+    """
+    for i, (case, scene) in enumerate(scenes.items()):
+        box, events = Box.of(scene), KICKED.get(case, EXTREME_EVENTS)
+        target = dict.fromkeys(scene.events, EXTREME_ERROR)
+        point = runs.count_events(scene, target, events, other_seed(seed, i))
+        theory = Theory.rows(box, [scene.radius])
+        times = MeanTimes.rows(box, theory, {"dynamics": [point]})
+        start = start_of("extremes", case, scene.radius)
+        for found in comparisons(box, [], [], times, [], [point]):
+            if found["test"] == "certain":
+                continue
+            z = found["z"] if found["test"] == "normal" else found["z"] or None
+            kept = {name: found[name] for name in ("exact", "stderr", "status", "method")}
+            quantity = "virial" if found["comparison"] == "sum_rule" else found["quantity"]
+            yield judged(start, quantity, found["estimate"], z=z, count=point.events, **kept)
 
 
 # Reversal ---------------------------------------------------------------------------------------
@@ -633,5 +707,6 @@ def rows(box, seed, ordinary, hard):
     yield from estimate_rows(box, seed)
     yield from time_rows(box, seed)
     yield from dynamics_rows(box, seed, ordinary, hard)
+    yield from extreme_rows(seed)
     yield from reversal_rows(box, seed)
     yield from coverage_rows(box, seed)

@@ -15,8 +15,8 @@ class Stability(Table):
         "part": TEXT(
             "theory: relative errors against 50 digits; sampling: accepted share of the "
             "proposals; estimates: conditioned Monte Carlo; times: errors of predicted times; "
-            "dynamics: worst of a run; reversal: reversed velocities, and the Lyapunov exponent; "
-            "coverage: of 95 % intervals"
+            "dynamics: worst of a run; extremes: mean times in extreme scenes; reversal: reversed "
+            "velocities, and the Lyapunov exponent; coverage: of 95 % intervals"
         ),
         "quantity": TEXT(
             "the measured quantity. theory: for areas and mean_times the worst of them. times: "
@@ -25,16 +25,17 @@ class Stability(Table):
             "centre beyond its range, both in units of the largest power of two in the side of "
             "the box; lanes_lost, trajectories that became infinite or stuck. reversal: exponent, "
             "per event; return_error, after count events and back; events_retraced, the number of "
-            "events at which it is 2⁻²⁶. coverage: the event"
+            "events at which it is 2⁻²⁶. coverage: the event. extremes: <event>_time, or virial, "
+            "the sum rule"
         ),
         "method": TEXT(
-            "stable, or closed-form in plain doubles; conditioned draws, or rejection from the "
-            "prism"
+            "stable, or closed-form in plain doubles, or the textbook's quadratic formula; "
+            "conditioned draws, or rejection from the prism; dynamics, or initial states in a strip"
         ),
         "case": TEXT(
             "ordinary, tiny (1e-9 of the shorter side), or the limit nearby: h/4, w/4, largest "
-            "radius. times: how the discs approach. reversal: by the way out and back (return), "
-            "or by a small separation"
+            "radius. times: how the discs approach. extremes: the scene. reversal: by the way out "
+            "and back (return), or by a small separation"
         ),
         "radius": RADIUS,
         "distance": NUMBER("radius/limit − 1, for the limit named in case"),
@@ -46,8 +47,9 @@ class Stability(Table):
         "low": SEE_QUANTITY("smallest value that passes"),
         "high": SEE_QUANTITY("largest value that passes"),
         "status": TEXT(
-            "estimates: as in areas.csv; coverage: counted, or too-few if most repetitions have "
-            "no interval; reversal: long if the path stays exact for more than 2000 events"
+            "estimates: as in areas.csv; extremes: as in check.csv; coverage: counted, or too-few "
+            "if most repetitions have no interval; reversal: long if the path stays exact for more "
+            "than 2000 events"
         ),
         "passed": TRUTH(
             "whether low ≤ value ≤ high and |z| ≤ 5, as far as these are given; empty without them"
@@ -84,8 +86,8 @@ STUDY = Study(
                 areas and mean times as computed here, below the largest radius. (b) The same on
                 both sides of the radii where a hop becomes blocked. (c) Accepted share of proposed
                 configurations, by rejection from the prism and by the conditioned sampler of
-                initial states. (d) Residuals z of volume and areas by this sampler. A radius
-                without symbols has too few samples in its shells for an error bar.
+                initial states. (d) Number of residuals z of each size: of volume and areas by this
+                sampler at hard radii, and of mean times in extreme scenes, beside the normal law.
                 """
             ),
             tables=("stability",),
@@ -99,12 +101,15 @@ STUDY = Study(
                 in a long run: error of the energy, overlap of the discs, distance of centres beyond
                 their range. Symbols at 0 are exact zeros. (b) Worst error of predicted times to a
                 contact (circles) and to a wall (squares), against 50 digits, for many kinds of
-                approach. (c) Velocities are reversed after n events: error of return after n more
-                events, against the binary digits that the Lyapunov exponent λ per event costs. The
-                line is one rounding that grows at this rate. The legend has the number of events
-                after which half of the digits are lost, and in brackets the number that λ predicts.
+                approach. Crosses are the quadratic formula of textbooks. (c) Velocities are
+                reversed after n events: error of return after n more events, against the binary
+                digits that the Lyapunov exponent λ per event costs. The line is one rounding that
+                grows at this rate. The legend has the number of events after which half of the
+                digits are lost, and in brackets the number that λ predicts.
                 (d) Share of 95 % intervals that contain the exact mean time, over independent
-                repetitions. Crosses are events too rare for an interval.
+                repetitions. Crosses are events too rare for an interval. (e) Residuals of mean
+                times, and of the virial theorem, in extreme scenes: each effect at its extremes, or
+                discs that hardly fit. Rare events without an error bar are left out.
                 """
             ),
             tables=("stability",),
