@@ -1,4 +1,4 @@
-"""The pictures of README.md and docs: one panel each, drawn for the size at which it is shown.
+"""The pictures of README.md and docs, most of one panel, drawn for the size at which one sees them.
 
     python docs/make/pictures.py results docs
 
@@ -12,12 +12,15 @@ from pathlib import Path
 from twodiscs.figures import style
 from twodiscs.figures.draw import draw as draw_figure
 from twodiscs.model.box import Box
-from twodiscs_paper.catalogue import ENTRIES, TABLES
+from twodiscs_paper.catalogue import ENTRIES, TABLES, read_table
 from twodiscs_paper.drawings import DRAW
 
 #: The box of the pictures and its scene, the first of config/config.yaml.
 BOX = Box(1.5, 1.0)
 SCENE = "paper"
+
+#: Pictures that are whole figures.
+WHOLE = {"model": "model", "cost": "accuracy_cost", "price": "accuracy_cost_by_radius"}
 
 #: {picture: (figure, number of the panel, abscissa if it is written beneath another panel)}
 PANELS = {
@@ -25,8 +28,6 @@ PANELS = {
     "tails": ("tails", 0, r"interval $t/\tau$"),
     "hazard": ("distributions", 0, ""),
     "effects": ("effects", 0, "radius $r$"),
-    "price": ("accuracy_cost_by_radius", 0, "radius $r$"),
-    "cost": ("accuracy_cost", 2, "processor time (s)"),
     "passages": ("transmission", 0, ""),
     "more_discs": ("more_discs", 0, "number of discs $N$"),
 }
@@ -44,6 +45,7 @@ def draw(name, results):
         if path is None:
             return None
         tables[table] = TABLES[table].read(path)
+    tables |= {table: read_table(path) for table, path in entry.kept.items()}
     return DRAW[name](BOX, tables) if name in DRAW else draw_figure(name, BOX, *tables.values())
 
 
@@ -68,7 +70,7 @@ def keep_panel(figure, number, abscissa):
 
 def main(results, output):
     """Draw the pictures from the folder ``results`` into the folder ``output``."""
-    figures = {"model": draw("model", results)}
+    figures = {picture: draw(name, results) for picture, name in WHOLE.items()}
     for picture, (name, number, abscissa) in PANELS.items():
         figures[picture] = draw(name, results)
         keep_panel(figures[picture], number, abscissa)

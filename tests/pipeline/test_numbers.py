@@ -28,10 +28,7 @@ SCENES = [
 
 #: The numbers of tables with seconds in them, which are not kept.
 TIMED_NUMBERS = {
-    *("configurations", "events", "shell_floor", "shell_epsilon", "step_floors", "price_error"),
-    *("evaluation_seconds", "lockstep_faster", "strip_seconds"),
-    *("power_rejection", "power_surface", "power_balanced_shell", "power_sobol_volume"),
-    *("power_sobol_area", "power_lockstep", "power_scalar"),
+    *("configurations", "events", "evaluation_seconds"),
 }
 
 

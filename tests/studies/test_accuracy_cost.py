@@ -1,302 +1,383 @@
-"""The cost of accuracy: the estimators are right, and the numbers in the figures, too."""
+"""What accuracy costs: estimators, powers and c are right; figures show the table."""
 
 import math
+from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
-from figure_cases import bars, points
+import yaml
+from figure_cases import points
 
 from twodiscs.figures import style
 from twodiscs.figures.style import LOOKS
-from twodiscs.model.box import Box
-from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.scene import Scene
-from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
-from twodiscs_paper.studies.accuracy_cost import figure, figure_by_radius, scalar
-from twodiscs_paper.studies.accuracy_cost import measure as accuracy_cost
+from twodiscs_paper.studies.accuracy_cost import figure, figure_by_radius
+from twodiscs_paper.studies.accuracy_cost import measure as costs
 from twodiscs_paper.studies.accuracy_cost.study import AccuracyCost
 
+FOLDER = Path(__file__).parents[2] / "paper" / "long_run" / "accuracy_cost"
 PAPER = Scene(1.5, 1.0, 0.2)
-AREA = accuracy_cost.AREA
 
-#: One radius in each regime.
-SCENES = [PAPER.with_radius(radius) for radius in (0.1, 0.2, 0.3, 0.38)]
+#: A false alarm in 6e-7 of all seeds.
+SIGMA = 5
 
 
-@pytest.mark.parametrize("scene", SCENES[:3])
-@pytest.mark.parametrize("quantity", ["volume", AREA])
-def test_quadrature_falls_off_a_cliff(scene, quantity):
+def of(rows, **where):
+    return [row for row in rows if where.items() <= row.items()]
+
+
+# Methods ------------------------------------------------------------------------------------------
+
+
+def named(method):
+    return f"{method.name}-{method.quantity}-{method.scene.radius:g}-{method.setting}"
+
+
+@pytest.mark.parametrize("method", costs.methods(3), ids=named)
+def test_a_method_estimates_its_quantity_with_its_bias(method):
+    """An event, a volume or a normal taken for another one is far off."""
+    sums, times = costs.measured(method, math.inf, 48)
+    errors = dict(costs.doublings(method, sums))[1]
+    assert len(times) == len(errors) == 48
+    assert times.min() > 0
+    mean, error = errors.mean(), errors.std(ddof=1) / math.sqrt(errors.size)
+    if method.bias is None:
+        # Events come late by Δt/2 and grazing collisions are missed: an error ∝ Δt.
+        assert 0.5 * method.setting < mean < 8 * method.setting
+    elif error == 0:  # 192 blocks near h/4 without a hop
+        assert method.scene == costs.HARD
+        assert (mean, method.name) == (-1, "lockstep")
+    else:
+        assert abs(mean - method.bias) < SIGMA * error
+
+
+def test_the_bias_of_a_shell_is_exact():
+    thick, thin = (costs.by_samples(PAPER, 1, costs.AREA, f) for f in costs.SHELLS)
+    for method in (thick, thin):
+        expected = exact.shell_expectation(PAPER, "disc_collision", method.setting)
+        assert method.bias == expected / exact.areas(PAPER)["disc_collision"] - 1
+    assert thick.bias < 10 * thin.bias < 0
+    assert costs.by_samples(PAPER, 1, "volume").bias == 0
+
+
+def test_blocks_have_their_own_random_numbers_and_those_of_their_seed():
+    for make in (costs.by_scalar, costs.on_surface, costs.by_strip):
+        scene = costs.HARD if make is costs.by_strip else PAPER
+        first, again, other = make(scene, 1), make(scene, 1), make(scene, 2)
+        assert np.array_equal(first.block(2), again.block(2))
+        assert not np.array_equal(first.block(2), first.block(3))
+        assert not np.array_equal(first.block(2), other.block(2))
+
+
+@pytest.mark.parametrize("quantity", ["volume", costs.AREA])
+@pytest.mark.parametrize("radius", [0.1, 0.2, 0.3])
+def test_quadrature_falls_off_a_cliff(radius, quantity):
     """Gauss's rule gains at least a digit and a half a node until nothing but rounding is left."""
-    true = accuracy_cost.reference(scene)[quantity]
+    scene = PAPER.with_radius(radius)
+    true = costs.reference(scene)[quantity]
     errors = [
-        abs(float(accuracy_cost.quadrature(quantity, scene, nodes, 0)[0][quantity] / true - 1))
-        for nodes in (3, 6, 12)
+        abs(float(costs.quadrature(scene, nodes)[quantity] / true - 1)) for nodes in (3, 6, 12)
     ]
     assert errors[1] < 1e-4 * errors[0]
     assert errors[2] < 1e-14
 
 
-def hits(samples, share):
-    """Return the standard error of the relative error of ``samples`` with this share of hits."""
-    return math.sqrt((1 - share) / (share * samples))
+def test_rows_of_exact_values():
+    rows = [AccuracyCost.empty(**row) for row in costs.exact_rows()]
+    for radius in (costs.EASY.radius, costs.HARD.radius):
+        for quantity in ("volume", costs.AREA):
+            own = of(rows, radius=radius, quantity=quantity)
+            assert [row["setting"] for row in of(own, method="quadrature")] == [*costs.NODES]
+            (row,) = of(own, method="exact")
+            assert row["error"] < 1e-15
+            assert row["seconds"] > 0
 
 
-@pytest.mark.parametrize("scene", SCENES)
-def test_samples_on_the_surface_are_unbiased(scene):
-    """Five sigma: a false alarm in 6e-7 of all seeds."""
-    true, samples = exact.areas(scene)["disc_collision"], 200_000
-    found = accuracy_cost.on_surface(scene, samples, 3)[0][AREA]
-    share = true / accuracy_cost.surface_measure(scene)
-    assert abs(found / true - 1) < 5 * hits(samples, share)
+# Errors over time ---------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("quantity", ["volume", AREA])
-def test_sobol_points_are_unbiased_and_better(quantity):
-    """The mean of 32 scramblings within five of its standard errors; random points do worse."""
-    true, points = float(accuracy_cost.reference(PAPER)[quantity]), 1 << 12
-    runs = [accuracy_cost.scrambled_sobol(quantity, PAPER, points, s)[0] for s in range(32)]
-    errors = np.array([run[quantity] for run in runs]) / true - 1
-    assert abs(errors.mean()) < 5 * errors.std(ddof=1) / math.sqrt(errors.size)
-    measure = (PAPER.range_x * PAPER.range_y) ** 2
-    if quantity == AREA:
-        measure = accuracy_cost.surface_measure(PAPER)
-    assert errors.std() < hits(points, true / measure) / 2
+def made(values):
+    """Return a ``Method`` whose blocks have these errors."""
+    return costs.Method(
+        "made", "volume", PAPER, lambda i: np.array(values[i % len(values)]),
+        lambda sums, blocks: 1 + float(sums) / blocks,
+    )  # fmt: skip
 
 
-def test_the_best_shell_balances_bias_and_variance():
-    """The bias is ∝ ε and the variance ∝ 1/ε: at the best ε, variance = 2 bias²."""
-    samples = 1 << 20
-    fraction = accuracy_cost.balanced_fraction(PAPER, samples)
-    epsilon = montecarlo.shell_thickness(PAPER, "disc_collision", fraction)
-    expected = exact.shell_expectation(PAPER, "disc_collision", epsilon)
-    bias = expected - exact.areas(PAPER)["disc_collision"]
-    prism = (PAPER.range_x * PAPER.range_y) ** 2
-    variance = expected * (prism / epsilon - expected) / samples
-    # The grid of ε is 6 % wide, and the bias not quite linear.
-    assert math.isclose(variance, 2 * bias**2, rel_tol=0.3)
-    assert accuracy_cost.balanced_fraction(PAPER, 64 * samples) < fraction / 3
+def test_runs_of_two_four_and_more_blocks_are_means_of_their_own_blocks():
+    found = dict(costs.doublings(made([0.0]), np.array([1.0, 3.0, 5.0, 7.0, 9.0])))
+    assert {blocks: [*errors] for blocks, errors in found.items()} == {
+        1: [1, 3, 5, 7, 9], 2: [2, 6], 4: [4],
+    }  # fmt: skip
 
 
-def test_fitted_slope():
-    x = [0.0, 1.0, 2.0, 3.0]
-    assert accuracy_cost.fitted(x, [1 - 0.5 * t for t in x], 0.1) == (
-        pytest.approx(-0.5),
-        pytest.approx(0.1 / math.sqrt(5)),
+def fitted(errors, floor=0.0):
+    """Return the power and its error of blocks with a tenth of these ``errors``."""
+    found = dict(costs.doublings(made([0.0]), np.asarray(errors) / 10))
+    return costs.power(found, floor / 10)
+
+
+def test_the_power_of_independent_blocks_is_a_half_with_the_error_that_it_says():
+    """Over 200 runs: the mean within five standard errors, and the scatter as stated to 15 %."""
+    generator = np.random.default_rng(5)
+    runs = np.array([fitted(generator.normal(size=1024)) for _ in range(200)])
+    deviations = (runs[:, 0] + 0.5) / runs[:, 1]
+    assert abs(deviations.mean()) < SIGMA / math.sqrt(200) + 0.2  # a logarithm has a bias
+    assert deviations.std() == pytest.approx(1, rel=SIGMA / math.sqrt(400))
+    # Rare counts, of which most blocks have none, tell too little.
+    assert fitted(10 * (generator.poisson(0.01, 256) / 0.01 - 1)) == (None, None)
+
+
+def test_errors_that_stay_have_no_power_and_correlated_ones_another():
+    generator = np.random.default_rng(6)
+    assert fitted(np.full(64, 0.1)) == (pytest.approx(0), pytest.approx(1, abs=1))
+    # Blocks in pairs that are the same: the first doubling gains nothing.
+    value, _ = fitted(np.repeat(generator.normal(size=512), 2))
+    assert value > -0.4
+    # Near the floor errors have no say.
+    biased = 0.2 + generator.normal(size=4096)
+    free, with_floor = fitted(biased), fitted(biased, 0.2)
+    assert free[0] > with_floor[0] + 0.02
+    assert abs(with_floor[0] + 0.5) < 0.03
+    assert fitted(biased, 1.0) == (None, None)
+
+
+def test_rows_of_a_method(monkeypatch):
+    """Blocks with errors of ±0.1 around 0.02 that take 2 s each: c = 2 × 0.01, and no power."""
+    values = [0.12, -0.08] * 8
+    monkeypatch.setattr(
+        costs, "measured", lambda method, *_: (np.array(values), np.full(len(values), 2.0))
     )
-    assert accuracy_cost.fitted([1.0], [1.0]) == (None, None)
-    assert accuracy_cost.fitted([1.0, 2.0], [1.0, 3.0]) == (pytest.approx(2.0), None)
+    rows = [*costs.error_rows(made(values)._replace(bias=0.02, setting=0.5), 1.0, 16)]
+    assert [row["seconds"] for row in rows] == [2, 4, 8, 16, 32]
+    assert [row["repetitions"] for row in rows] == [16, 8, 4, 2, 1]
+    assert rows[0]["error"] == pytest.approx(math.hypot(0.1, 0.02))
+    assert [row["error"] for row in rows[1:]] == pytest.approx([0.02] * 4)
+    for row in rows:
+        assert row["c"] == pytest.approx(2 * np.var(values, ddof=1))
+        assert (row["floor"], row["setting"]) == (0.02, 0.5)
+    # A bias that is not known is the mean, if that is clear: 0.02 ± 0.026 is not.
+    (row, *_) = costs.error_rows(made(values)._replace(bias=None), 1.0, 16)
+    assert row["floor"] == 0.0
+    values[:] = [0.22, 0.18] * 8
+    (row, *_) = costs.error_rows(made(values)._replace(bias=None), 1.0, 16)
+    assert row["floor"] == pytest.approx(0.2)
+    values[:] = [2.0, -2.0] * 8  # errors of more than a half are left out
+    assert [row["seconds"] for row in costs.error_rows(made(values), 1.0, 16)] == [4, 8, 16, 32]
 
 
-def test_a_floor_has_no_say_in_the_slope():
-    rows = [
-        accuracy_cost.cost_row(
-            "time", "q", 0.2, "m", work=n, error=math.hypot(1 / math.sqrt(n), floor),
-            floor=floor, repetitions=8, seconds=1.0,
+def test_a_measurement_ends_after_its_time_or_its_blocks(monkeypatch):
+    clock = iter(range(1000))
+    monkeypatch.setattr(costs.time, "process_time", lambda: float(next(clock)))
+    sums, times = costs.measured(made([0.5]), 9.0, 100)
+    assert len(sums) == len(times) == 4
+    assert [*times] == [1.0] * 4
+    assert len(costs.measured(made([0.5]), math.inf, 7)[0]) == 7
+    assert len(costs.measured(made([0.5]), 0.0, 7)[0]) == 2
+
+
+def test_rows_are_those_of_all_methods_and_of_all_distances(monkeypatch):
+    given = []
+
+    def error_rows(method, seconds, most):
+        given.append(seconds)
+        yield costs.cost_row(method.scene, "error", method.quantity, method.name)
+
+    price = type("Price", (), {"quantity": "volume", "method": "rejection", "c": 2.0, "floor": 0.5})
+    other = type("Price", (), {"quantity": "all", "method": "exact", "c": 0.0, "floor": 0.0})
+    scenes = []
+
+    def cost(scene):
+        scenes.append(scene)
+        return type("Cost", (), {"prices": [price, other]})
+
+    monkeypatch.setattr(costs, "error_rows", error_rows)
+    monkeypatch.setattr(costs.twodiscs, "cost", cost, raising=False)
+    rows = [AccuracyCost.empty(**row) for row in AccuracyCost.rows(seconds=7.0, seed=1)]
+    assert len(of(rows, part="error")) == len(costs.methods(1))
+    assert sum(given) == pytest.approx(7)
+    by_radius = of(rows, part="radius")
+    assert [row["distance"] for row in by_radius] == [*costs.DISTANCES]
+    for row, scene in zip(by_radius, scenes, strict=True):
+        assert (row["c"], row["floor"], row["method"]) == (2.0, 0.5, "rejection")
+        assert row["radius"] == scene.radius == pytest.approx(0.25 * (1 - row["distance"]))
+
+
+# The long run -------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def long():
+    return AccuracyCost.read(FOLDER / "accuracy_cost.csv")
+
+
+def series(rows):
+    """Return the rows of each method, radius and setting."""
+    found = {}
+    for row in rows:
+        key = row["method"], row["quantity"], row["radius"], row["setting"]
+        found.setdefault(key, []).append(row)
+    return found
+
+
+def test_the_long_run_has_four_decades_of_every_method(long):
+    """A curve that has not begun, near h/4, or that is at its floor needs none."""
+    configuration = yaml.safe_load((FOLDER / "config.yaml").read_text(encoding="utf-8"))
+    due = {(m.name, m.quantity, m.scene.radius, m.setting) for m in costs.methods(1)}
+    assert series(long).keys() == due
+    for (name, _, radius, _), rows in series(long).items():
+        first, last = rows[0], rows[-1]
+        assert last["seconds"] / first["seconds"] > 1e4 or (name, radius) == (
+            "lockstep", costs.HARD.radius,
+        )  # fmt: skip
+        assert last["repetitions"] == 1
+        assert last["seconds"] == pytest.approx(
+            first["seconds"]
+            * configuration["blocks"]
+            / (configuration["blocks"] // first["repetitions"])
         )
-        for floor in (1e-4,) for n in (10, 100, 10**4, 10**8, 10**9)
+
+
+def test_its_errors_are_those_of_c_and_of_the_floor(long):
+    """Root mean squares of independent runs, to five standard errors; the last ones are few."""
+    for rows in series(long).values():
+        for row in rows:
+            expected = math.sqrt(row["c"] / row["seconds"] + row["floor"] ** 2)
+            if row["repetitions"] >= 32:
+                assert abs(row["error"] - expected) < SIGMA * figure._spread(row) + 0.02 * expected
+
+
+def test_its_powers_are_a_half_to_three_hundredths(long):
+    powers = 0
+    for rows in series(long).values():
+        row = rows[0]
+        if row["slope"] is not None and rows[-1]["error"] > 3 * row["floor"]:
+            assert abs(row["slope"] + 0.5) < SIGMA * row["slope_stderr"]
+            assert row["slope_stderr"] <= 0.03
+            powers += 1
+    assert powers >= 7
+
+
+def test_floors_of_time_steps_are_proportional_to_the_step(long):
+    floors = {row["setting"]: row["floor"] for row in of(long, method="time_step")}
+    steps = sorted(floors)
+    assert len(steps) == 3
+    for short, long_step in pairwise(steps):
+        ratio = floors[long_step] / floors[short]
+        assert ratio == pytest.approx(long_step / short, rel=0.25)
+
+
+def test_a_long_run_is_made_of_all_methods(monkeypatch):
+    given = []
+
+    def error_rows(method, seconds, most):
+        given.append((seconds, most))
+        return iter(())
+
+    monkeypatch.setattr(costs, "error_rows", error_rows)
+    assert [*AccuracyCost.part(seed=1, blocks=8)] == []
+    assert given == [(math.inf, 8)] * len(costs.methods(1))
+
+
+# The figures --------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def rows(long):
+    """The errors of the long run at twice the times, exact values and c by distance."""
+    build = [row | {"seconds": 2 * row["seconds"]} for row in long]
+    generator = np.random.default_rng(1)
+    prices = [
+        costs.cost_row(
+            costs.EASY, "radius", quantity, method, distance=distance,
+            c=float(10 ** generator.uniform(-9, 3)),
+        )
+        for method, quantity in (
+            ("dynamics", "vertical_hop_time"), ("dynamics", "any_wall_time"),
+            ("strips", "horizontal_hop_time"), ("rejection", "volume"),
+            ("shells, rejection", "top_wall_area"), ("conditioned", "volume"),
+            ("shells, conditioned", "disc_collision_area"),
+        )
+        for distance in costs.DISTANCES
     ]  # fmt: skip
-    found = accuracy_cost.with_slope(rows)[0]
-    assert found["slope"] == pytest.approx(-0.5, abs=1e-3)
-
-
-def test_the_price_of_a_poisson_process():
-    rate, time = exact.event_rate(PAPER), exact.mean_times(PAPER)["vertical_hop"]
-    expected = pytest.approx(1e4 * time * rate)
-    assert accuracy_cost.predicted_events(PAPER, "vertical_hop", 1e-2) == expected
-
-
-@pytest.mark.parametrize("method", ["by_lockstep", "by_scalar", "by_steps"])
-def test_engines_name_what_they_count(method):
-    """Each mean time within a tenth of the exact one: an event taken for another one is far off."""
-    run = getattr(accuracy_cost, method)
-    amount = (2.0**-6, PAPER, 1, 3) if method == "by_steps" else (PAPER, 1, 3)
-    if method == "by_scalar":
-        amount = PAPER, 1024, 3
-    found, work, calls = run(*amount)
-    times, counted = exact.mean_times(PAPER), scalar.COUNTED
-    if method == "by_lockstep":
-        counted = EVENTS
-    assert tuple(found) == tuple(f"{event}_time" for event in counted)
-    for event in counted:
-        assert found[f"{event}_time"] == pytest.approx(times[event], rel=0.1), event
-    assert work > 10_000
-    assert calls == 1
-
-
-# A whole run, as small as can be ----------------------------------------------------------------
+    made = [AccuracyCost.empty(**row) for row in [*costs.exact_rows(), *prices]]
+    return build + made
 
 
 @pytest.fixture(scope="module")
-def rows(tmp_path_factory):
-    path = tmp_path_factory.mktemp("cost") / "accuracy_cost.csv"
-    AccuracyCost.write(path, accuracy_cost.rows(1.0, repetitions=2))
-    return AccuracyCost.read(path)
-
-
-def of(rows, **where):
-    return [row for row in rows if all(row[key] == value for key, value in where.items())]
-
-
-def test_every_method_is_there(rows):
-    methods = {
-        "volume": "rejection conditioned sobol quadrature closed_form exact",
-        "area": "shell balanced_shell surface sobol quadrature closed_form exact",
-        "time": "lockstep scalar time_step",
-        "floor": "shell time_step",
-        "radius": "lockstep strip poisson paid",
-    }
-    for part, names in methods.items():
-        assert {row["method"] for row in of(rows, part=part)} == set(names.split()), part
-
-
-def test_the_speed_is_that_of_the_median_run():
-    def runs(method, *speeds):
-        return [{"part": "time", "method": method, "work": n, "seconds": 1.0} for n in speeds]
-
-    found = accuracy_cost.speed([*runs("scalar", 2, 9, 1), *runs("lockstep", 16, 12)])
-    assert (found["method"], found["setting"]) == ("lockstep", 8.0)
-
-
-def test_exact_evaluation_is_exact(rows):
-    for row in of(rows, method="exact"):
-        assert row["error"] < 1e-15
-
-
-def test_floors(rows):
-    shells = of(rows, part="floor", method="shell")
-    assert [row["error"] for row in shells] == sorted((r["error"] for r in shells), reverse=True)
-    for row in shells:
-        expected = exact.shell_expectation(PAPER, "disc_collision", row["setting"])
-        area = exact.areas(PAPER)["disc_collision"]
-        assert row["bias"] == pytest.approx(expected / area - 1)
-    for row in of(rows, part="floor", method="time_step", quantity="any_wall_time"):
-        assert row["bias"] > 10 * row["spread"]
-
-
-def test_a_hop_that_dies_out_costs_ever_more(rows):
-    found = of(rows, part="radius", method="poisson", quantity="horizontal_hop_time")
-    prices = [row["seconds"] for row in found if row["radius"] > 0.1]
-    assert prices == sorted(prices)
-    assert prices[-1] > 100 * prices[0]
-
-
-@pytest.mark.parametrize("hop", HOPS)
-def test_from_starts_next_to_it_it_does_not(rows, hop):
-    """Half a start for 1/error², of 2 to 32 events: no more than 24, by the random numbers."""
-    found = of(rows, part="radius", method="strip", quantity=f"{hop}_time")
-    last = Box.of(PAPER).threshold(hop)
-    assert min(1 - row["radius"] / last for row in found) < 2e-6
-    assert all(row["work"] < 24 / row["error"] ** 2 for row in found)
-
-
-@pytest.fixture(scope="module")
-def panels(rows):
-    """The panels of both figures, {label: axes}."""
+def panels(long, rows):
+    tables = {"accuracy_cost": rows, "kept": long}
     with style.context():
-        figures = [m.draw(None, {"accuracy_cost": rows}) for m in (figure, figure_by_radius)]
+        figures = [module.draw(None, tables) for module in (figure, figure_by_radius)]
     return {axes.get_label(): axes for drawn in figures for axes in drawn.axes}
 
 
-@pytest.mark.parametrize(
-    ("panel", "part", "method"),
-    [
-        ("volume", "volume", "sobol"),
-        ("area", "area", "surface"),
-        ("area", "area", "sobol"),
-        ("times", "time", "lockstep"),
-        ("times", "time", "scalar"),
-    ],
-)
-def test_bars_are_those_of_the_mean_over_the_runs(rows, panels, panel, part, method):
-    """Not of one run; they end above zero."""
-    own = of(rows, part=part, method=method)
-    own = [row for row in own if part != "time" or row["quantity"] == "vertical_hop_time"]
-    due = [
-        (row["seconds"], row["error"], min(row["spread"] / row["repetitions"] ** 0.5, 0.9 * error))
-        for row in own
-        for error in [row["error"]]
+RADII = [costs.EASY.radius, costs.HARD.radius]
+ALL = [("a", one) for one in figure.TIMES] + [("b", one) for one in figure.SAMPLES]
+
+
+@pytest.mark.parametrize(("panel", "one"), ALL, ids=lambda value: getattr(value, "name", value))
+def test_symbols_are_errors_and_times(long, rows, panels, panel, one):
+    """Full ones of the long run, open ones of the build; the longest run is always there."""
+    for table, full in ((long, one.colour), (rows, "white")):
+        for own in figure.select(table, one, RADII).values():
+            shown = {
+                point
+                for line in panels[panel].lines
+                if (line.get_color(), line.get_marker()) == (one.colour, one.marker)
+                and line.get_markerfacecolor() == full
+                for point in zip(line.get_xdata(), line.get_ydata(), strict=True)
+            }
+            due = {(row["error"], row["seconds"]) for row in own[::-1][:: figure.THINNED]}
+            assert due <= shown
+            assert (own[-1]["error"], own[-1]["seconds"]) in shown
+
+
+@pytest.mark.parametrize(("panel", "one"), ALL, ids=lambda value: getattr(value, "name", value))
+def test_lines_are_c_over_the_square_of_the_error(long, panels, panel, one):
+    for own in figure.select(long, one, RADII).values():
+        c, floor = own[0]["c"], own[0]["floor"]
+        found = False
+        for line in panels[panel].lines:
+            x, y = map(np.asarray, line.get_data())
+            if line.get_color() == one.colour and len(x) > 100:
+                far = (x > 2 * floor) & (x < 0.5)
+                found |= np.allclose(c / y[far], x[far] ** 2 - floor**2, rtol=1e-9)
+        assert found
+
+
+def test_the_textbook_near_the_threshold_is_slower_by_the_factor_of_its_engine(long, panels):
+    c = {(row["method"], row["radius"]): row["c"] for row in long}
+    easy, hard = RADII
+    (line,) = [
+        line for line in panels["a"].lines if line.get_label() == "one after another, near $h/4$"
     ]
-    shown = bars(panels[panel], figure.LOOK[method][0], "None")  # beside the symbols
-    np.testing.assert_allclose(shown, sorted(due), rtol=1e-9)
+    x, y = line.get_data()
+    expected = c["lockstep", hard] * c["scalar", easy] / c["lockstep", easy]
+    np.testing.assert_allclose(y * x**2, expected, rtol=1e-9)
+    said = {text.get_text() for text in panels["a"].texts}
+    gain = f"{c['scalar', easy] / c['lockstep', easy]:.1g}"
+    assert rf"$\times{gain}$" in said
 
 
-def test_symbols_are_the_errors_over_their_times(rows, panels):
-    shells = sorted({row["setting"] for row in of(rows, method="shell", part="area")}, reverse=True)
-    cases = [
-        ("area", figure.LOOK["balanced_shell"], of(rows, part="area", method="balanced_shell")),
-        *(
-            ("area", look, of(rows, part="area", method="shell", setting=thickness))
-            for look, thickness in zip(figure.SHELLS, shells, strict=True)
-        ),
-        *(
-            ("volume", figure.LOOK[method], of(rows, part="volume", method=method))
-            for method in ("rejection", "conditioned", "sobol")
-        ),
-        *(
-            ("times", figure.LOOK[method], of(rows, method=method, quantity="vertical_hop_time"))
-            for method in ("lockstep", "scalar", "time_step")
-        ),
-    ]
-    for panel, look, own in cases:
-        own = [row for row in own if row["part"] not in ("floor", "radius", "speed")]
-        due = {(row["seconds"], max(row["error"], 2.0**-53)) for row in own}
-        assert points(panels[panel], *look) == due != set()
+def test_exact_values_are_at_the_bottom(rows, panels):
+    for panel, quantity in (("a", "volume"), ("b", costs.AREA)):
+        own = of(rows, part="exact", radius=costs.EASY.radius, quantity=quantity)
+        (row,) = of(own, method="exact")
+        heights = [line.get_ydata()[0] for line in panels[panel].lines if line.get_lw() == 1.0]
+        assert heights == [row["seconds"]]
+    nodes = {row["error"] for row in of(own, method="quadrature") if row["error"] > 1e-6}
+    assert {x for x, _ in points(panels["b"], style.BLACK, "P")} == nodes != set()
 
 
-def curve(axes, label):
-    (line,) = [line for line in axes.lines if line.get_label() == label]
-    return line.get_data()
-
-
-def test_the_laws_have_their_powers_and_go_through_the_errors(rows, panels):
-    """Samples fall as the root of time; at the best Δt no other Δt has a smaller error."""
-    for panel, part, method in (
-        ("volume", "volume", "rejection"),
-        ("area", "area", "surface"),
-        ("times", "time", "lockstep"),
-    ):
-        own = of(rows, part=part, method=method, radius=0.2)
-        own = [row for row in own if part != "time" or row["quantity"] == "vertical_hop_time"]
-        times, errors = curve(panels[panel], r"$\propto t^{-1/2}$")
-        assert np.ptp(errors**2 * times) < 1e-12 * errors[0] ** 2 * times[0]
-        logarithms = [math.log(row["error"]) for row in own]
-        assert np.mean(np.log(errors)) == pytest.approx(np.mean(logarithms))
-    times, errors = curve(panels["times"], r"best $\Delta t$, $\propto t^{-1/3}$")
-    floor = max(
-        of(rows, part="floor", method="time_step", quantity="vertical_hop_time"),
-        key=lambda row: row["setting"],
-    )
-    runs = of(rows, part="time", method="time_step", quantity="vertical_hop_time")
-    noise = np.median(
-        [(r["error"] ** 2 - r["bias"] ** 2) * r["seconds"] * r["setting"] for r in runs]
-    )
-    steps = np.geomspace(1e-7, 10, 20001)
-    for time, error in zip(times, errors, strict=True):
-        squares = (floor["error"] / floor["setting"] * steps) ** 2 + noise / (time * steps)
-        assert error == pytest.approx(math.sqrt(squares.min()), rel=1e-6)
-
-
-def test_quadrature_is_drawn_over_its_nodes(rows, panels):
-    for part, look in (("volume", (style.BLUE, "o")), ("area", (style.VERMILLION, "s"))):
-        own = of(rows, part=part, method="quadrature")
-        due = {(row["work"], max(row["error"], 2.0**-53)) for row in own}
-        assert points(panels["quadrature"], *look) == due
-
-
-def test_prices_of_pilots_are_drawn_over_those_of_a_poisson_process(rows, panels):
-    predicted = of(rows, part="radius", method="poisson")
-    speed = np.median([row["work"] / row["seconds"] for row in predicted])
-    for event, look in LOOKS.items():
-        own = of(rows, part="radius", method="lockstep", quantity=f"{event}_time")
-        assert {(r["radius"], r["seconds"]) for r in own} <= points(
-            panels["times by radius"], *look
-        )
-        due = {
-            row["radius"]: row["seconds"] * speed / one["work"]
-            for row in own
-            for one in of(predicted, quantity=f"{event}_time", radius=row["radius"])
-        }
-        shown = dict(points(panels["ratios"], *look))
-        assert shown.keys() >= due.keys() != set()
-        assert [shown[radius] for radius in due] == pytest.approx([*due.values()], rel=0.01)
+def test_c_by_distance_is_drawn_for_each_method_and_quantity(rows, panels):
+    looks = figure_by_radius.looks()
+    for panel, methods in figure_by_radius.PANELS.items():
+        own = [row for row in of(rows, part="radius") if row["method"] in methods]
+        assert own
+        for quantity in {row["quantity"] for row in own}:
+            due = {(row["distance"], row["c"]) for row in of(own, quantity=quantity)}
+            assert points(panels[panel], *looks[quantity]) == due
+    assert looks["top_wall_area"] == looks["top_wall_time"] == LOOKS["top_wall"]

@@ -1,12 +1,13 @@
-"""The cost of a digit: error against processor time, for every method."""
+"""What accuracy costs: error against processor time for every method, and what no time buys."""
 
 import math
+from statistics import median
+from typing import NamedTuple
 
 import numpy as np
-from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
+from matplotlib.ticker import LogLocator, NullLocator
 
-from twodiscs.figures import drawing
-from twodiscs.figures.panels import add_panel, title
+from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import (
     BLACK,
     BLUE,
@@ -15,218 +16,198 @@ from twodiscs.figures.style import (
     ORANGE,
     PURPLE,
     SIZES,
+    SKY,
     VERMILLION,
     new_figure,
 )
-from twodiscs.model.box import Box
 
-#: Inches: width of two columns, the height of a panel, margins and gaps.
-WIDTH, HEIGHT = 7.0, 1.6
-LEFT, RIGHT, BOTTOM, TOP, ACROSS, BETWEEN = 0.5, 0.1, 0.36, 0.36, 0.55, 0.58
+#: Inches: width of two columns, and the height with the legends.
+WIDTH, HEIGHT = 7.0, 4.3
 
-LEGEND = {"fontsize": 6.8, "handlelength": 1.8, "borderaxespad": 0.3, "labelspacing": 0.2}
+#: The ends of the axes: relative errors, and seconds.
+ERRORS, SECONDS = (1.0, 1e-6), (1e-7, 1e6)
 
-#: Smaller errors cannot be distinguished from rounding.
-ROUNDING = 2.0**-53
+GUIDES = {"1 s": 1.0, "1 min": 60.0, "1 h": 3600.0, "1 day": 86400.0}
 
-#: Colour and marker of each method.
-LOOK = {
-    "rejection": (BLUE, "o"),
-    "conditioned": (GREEN, "^"),
-    "sobol": (ORANGE, "D"),
-    "balanced_shell": (BLACK, "*"),
-    "surface": (GREEN, "^"),
-    "lockstep": (BLUE, "o"),
-    "scalar": (GREEN, "^"),
-    "time_step": (VERMILLION, "s"),
-}
+#: The errors at which one trajectory after another is compared with the engine: easy, hard.
+GAINED = 4e-6, 10**-2.5
 
-#: The error at which time steps and events are compared, and the line of an error that stays.
-LEVEL = 1e-3
-DOTTED = (0, (1, 1.5))
+#: Every so many doublings of the time have a symbol, and the longest run.
+THINNED = 2
 
-#: Colour and marker of shells of each thickness, the thickest first.
-SHELLS = (("#3B0F4F", "o"), ("#7A2A7F", "s"), ("#B04F9E", "^"), (PURPLE, "v"))
+#: Errors of fewer runs than this have a bar.
+FEW = 64
+
+
+class Series(NamedTuple):
+    """A method at one radius: what the legend calls it, and its look."""
+
+    method: str
+    quantity: str
+    is_hard: bool
+    name: str
+    colour: str
+    marker: str
+
+
+HOP, AREA = "horizontal_hop_time", "disc_collision_area"
+TIMES = (
+    Series("time_step", HOP, False, "time steps $\\Delta t$", VERMILLION, "s"),
+    Series("scalar", HOP, False, "one trajectory after another", ORANGE, "D"),
+    Series("lockstep", HOP, False, "many in lock step", BLUE, "o"),
+    Series("lockstep", HOP, True, "many in lock step", SKY, "o"),
+    Series("strip", HOP, True, "many from a strip", GREEN, "^"),
+)
+SAMPLES = (
+    Series("shell", AREA, False, "area, shells $\\varepsilon$", VERMILLION, "s"),
+    Series("surface", AREA, False, "area, on the surface", GREEN, "^"),
+    Series("conditioned", "volume", False, "volume, conditioned", PURPLE, "v"),
+    Series("rejection", "volume", False, "volume, rejection", BLUE, "o"),
+    Series("shell", AREA, True, "area, shells $\\varepsilon$", ORANGE, "D"),
+    Series("rejection", "volume", True, "volume, rejection", SKY, "o"),
+)
+
+#: The symbol of the setting of a method.
+SETTINGS = {"time_step": r"\Delta t", "shell": r"\varepsilon"}
 
 
 def draw(box, tables):
-    """Draw the rows of accuracy_cost.csv; ``box`` is not used, because the table has its own."""
-    rows = tables["accuracy_cost"]
-    figure = new_figure(BOTTOM + 2 * HEIGHT + BETWEEN + TOP, WIDTH)
-    for i, draw_panel in enumerate((_volume, _area, _times, _quadrature)):
-        width = (WIDTH - LEFT - RIGHT - ACROSS) / 2
-        left, bottom = LEFT + i % 2 * (width + ACROSS), BOTTOM + (1 - i // 2) * (HEIGHT + BETWEEN)
-        axes = add_panel(figure, bottom, HEIGHT, left, width, draw_panel.__name__.strip("_"))
-        axes.set(yscale="log", ylabel="relative error")
-        drawing.label(axes, f"({'abcd'[i]})", (0, 1), (-28, 7), xycoords="axes fraction")
-        if draw_panel is not _quadrature:
-            axes.set(xscale="log", xlabel="processor time (s)")
-            axes.xaxis.set_major_locator(LogLocator(numticks=12))
-            axes.xaxis.set_minor_formatter(NullFormatter())
-        draw_panel(axes, rows)
-        axes.yaxis.set_minor_formatter(NullFormatter())
-    title(figure.axes[0], "", Box(rows[0]["width"], rows[0]["height"]), up=12)
+    """Draw the rows of accuracy_cost.csv and of the long run, which is ``kept``.
+
+    ``box`` is not used, because the tables have their own.
+    """
+    rows, kept = tables["accuracy_cost"], tables["kept"]
+    figure = new_figure(HEIGHT, WIDTH, layout="constrained")
+    radii = sorted({row["radius"] for row in kept})
+    for axes, letter, series, title in zip(
+        figure.subplots(1, 2, sharey=True), "ab", (TIMES, SAMPLES),
+        ("mean time between horizontal hops", "volume, area of disc collisions"), strict=True,
+    ):  # fmt: skip
+        axes.set_label(letter)
+        axes.set(xscale="log", yscale="log", xlim=ERRORS, ylim=SECONDS, xlabel="relative error")
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_locator(LogLocator(numticks=16))
+            axis.set_minor_locator(NullLocator())
+        axes.set_title(f"({letter})  {title}", loc="left")
+        for name, seconds in GUIDES.items():
+            axes.axhline(seconds, color=GREY, lw=0.4, zorder=0)
+            place = {"ha": "left", "va": "bottom", "color": GREY}
+            drawing.label(axes, name, (ERRORS[0], seconds), (3, 1), **place)
+        for one in series:
+            _draw_series(axes, kept, rows, one, radii)
+        if series is TIMES:
+            _draw_textbook(axes, kept, radii)
+        _draw_exact(axes, rows, radii[0], "volume" if series is TIMES else AREA)
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2, columnspacing=1.0)
+    figure.axes[0].set_ylabel("processor time on one core (s)")
+    figure.axes[1].tick_params(labelleft=False)
     return figure
 
 
-def _of(rows, part, method, **where):
-    """Return {setting: rows} of a method, settings from the largest down."""
-    where |= {"part": part, "method": method}
-    settings = {}
+def select(rows, one, radii):
+    """Return {setting: rows} of a ``Series``, the largest setting first."""
+    found = {}
     for row in rows:
-        if all(row[name] == value for name, value in where.items()):
-            settings.setdefault(row["setting"], []).append(row)
-    return dict(sorted(settings.items(), key=lambda item: -(item[0] or 0.0)))
+        own = row["part"] == "error" and row["radius"] == radii[one.is_hard]
+        if own and (row["method"], row["quantity"]) == (one.method, one.quantity):
+            found.setdefault(row["setting"] or 0.0, []).append(row)
+    return dict(sorted(found.items(), reverse=True))
 
 
-def _points(axes, rows, look, label=None, style="-", full=False):
-    """Draw the errors of one method: root mean square, with bars for the spread between runs."""
-    colour, marker = look
-    x = np.array([row["seconds"] for row in rows])
-    y = np.maximum([row["error"] for row in rows], ROUNDING)
-    filled = full or marker == "*"
-    axes.plot(
-        x, y, marker=marker, ms=6 if marker == "*" else SIZES[marker],
-        ls=style if len(rows) > 1 else "", lw=0.7, color=colour, label=label,
-        mfc=colour if filled else "white", mew=0.0 if marker == "*" else 0.6,
-    )  # fmt: skip
-    if rows[0]["repetitions"] and len(rows) > 1:
-        # The error of a mean over R runs is √R times smaller than the error of one run.
-        bars = [row["spread"] / math.sqrt(row["repetitions"]) for row in rows]
-        axes.errorbar(x, y, np.minimum(bars, 0.9 * y), ls="", color=colour, lw=0.6)
+def _draw_series(axes, kept, rows, one, radii):
+    """Draw measured errors, full for the long run and open for this build, and c/error²."""
+    where = "near $h/4$" if one.is_hard else f"$r={panels.math_of(radii[0])}$"
+    full = panels.open_symbol(one.colour, one.marker) | {"markerfacecolor": one.colour}
+    axes.plot([], [], ls="", label=f"{one.name}, {where}", **full)
+    for setting, own in select(kept, one, radii).items():
+        _draw_law(axes, own[0]["c"], own[0]["floor"], one, setting)
+        _draw_errors(axes, own, full | {"zorder": 3})
+    for own in select(rows, one, radii).values():
+        _draw_errors(axes, own, panels.open_symbol(one.colour, one.marker, 0.8) | {"zorder": 4})
 
 
-def _law(axes, rows):
-    """Draw the law of independent samples, error² ∝ 1/time, through the errors of one method."""
-    seconds, error = (np.array([row[name] for row in rows]) for name in ("seconds", "error"))
-    law = np.exp(np.mean(np.log(error) + np.log(seconds) / 2)) / np.sqrt(seconds)
-    axes.plot(
-        seconds, law, color=GREY, lw=0.8, ls=(0, (4, 2)), zorder=1, label=r"$\propto t^{-1/2}$"
-    )
+def _draw_errors(axes, rows, style):
+    """Draw some of the errors in a ``style``, the longest run always; few runs have bars."""
+    rows = rows[::-1][::THINNED]
+    axes.plot(*_columns(rows), ls="", **style)
+    few = [row for row in rows if row["repetitions"] < FEW]
+    bars = [_spread(row) for row in few]
+    axes.errorbar(*_columns(few), xerr=bars, ls="", color=style["color"], lw=0.6, zorder=2)
 
 
-def _floor(axes, rows, colour):
-    """Draw the error that no work removes, from the first of ``rows`` to the edge of the panel."""
-    if rows[0]["floor"]:
-        ends = [rows[0]["seconds"], axes.get_xlim()[1]]
-        axes.plot(ends, [rows[0]["floor"]] * 2, color=colour, lw=0.6, ls=DOTTED)
+def _columns(rows):
+    return [[row[name] for row in rows] for name in ("error", "seconds")]
 
 
-def _decades(axes):
-    """Let the abscissa end at powers of ten, which have labels."""
-    low, high = np.log10(axes.dataLim.intervalx)
-    axes.set_xlim(10 ** math.floor(low), 10 ** math.ceil(high))
+def _spread(row):
+    """Return the standard error of the root mean square of R errors with a bias and a variance."""
+    variance, bias = row["c"] / row["seconds"], row["floor"] ** 2
+    square = (2 * bias + variance) * variance / (2 * row["repetitions"])
+    return row["error"] * math.sqrt(square) / (bias + variance)
 
 
-def _volume(axes, rows):
-    radii = sorted({row["radius"] for row in rows if row["part"] == "volume"})
-    for radius, style, full in zip(radii, ("-", (0, (4, 2))), (False, True), strict=False):
-        for method in ("rejection", "conditioned"):
-            (series,) = _of(rows, "volume", method, radius=radius).values()
-            _points(axes, series, LOOK[method], f"{method}, $r={radius:g}$", style, full)
-    (series,) = _of(rows, "volume", "sobol").values()
-    _points(axes, series, LOOK["sobol"], f"Sobol points, $r={radii[0]:g}$")
-    _law(axes, next(iter(_of(rows, "volume", "rejection", radius=radii[0]).values())))
-    _decades(axes)
-    axes.legend(loc="best", **LEGEND)
-    _title(axes, "volume")
+def _law(c, floor):
+    """Return (errors, seconds) of a method with c, above the ``floor``."""
+    errors = np.geomspace(*ERRORS, 400)
+    if floor:
+        above = floor * (1 + np.geomspace(1e-14, 1, 200))
+        errors = np.sort(np.append(errors[errors > floor], above))
+    return errors, c / (errors**2 - floor**2)
 
 
-def _area(axes, rows):
-    shells = _of(rows, "area", "shell").items()
-    for look, (thickness, series) in zip(SHELLS, shells, strict=False):
-        _points(axes, series, look, rf"shells, $\varepsilon={thickness:.2g}$")
-    best = [row for series in _of(rows, "area", "balanced_shell").values() for row in series]
-    _points(axes, best, LOOK["balanced_shell"], r"best $\varepsilon$")
-    for method, name in (("surface", "on the surface"), ("sobol", "same, Sobol")):
-        (series,) = _of(rows, "area", method).values()
-        _points(axes, series, LOOK[method], name)
-    (series,) = _of(rows, "area", "surface").values()
-    _law(axes, series)
-    _decades(axes)
-    for look, (_, series) in zip(SHELLS, shells, strict=False):
-        _floor(axes, series, look[0])
-    axes.legend(loc="lower left", **LEGEND)
-    _title(axes, f"area of collisions, $r={best[0]['radius']:g}$")
+def _draw_law(axes, c, floor, one, setting):
+    errors, seconds = _law(c, floor)
+    dashes = (0, (4, 2)) if one.is_hard else "-"
+    axes.plot(errors, seconds, color=one.colour, lw=0.8, ls=dashes, zorder=1)
+    if floor and one.method in SETTINGS:
+        number = f"{setting:.2g}"
+        if one.method == "time_step":
+            number = f"2^{{{round(math.log2(setting))}}}"
+        text = rf"${SETTINGS[one.method]}={number}$"
+        style = {"rotation": 90, "ha": "left", "va": "top", "fontsize": 6.8, "color": one.colour}
+        drawing.label(axes, text, (floor, SECONDS[1]), (1, -3), **style)
 
 
-def _quadrature(axes, rows):
-    """Draw the errors of quadrature over the number of its nodes, and of the exact evaluation."""
-    parts = (("volume", "volume", BLUE, "o"), ("area", "area", VERMILLION, "s"))
-    for i, (part, name, colour, marker) in enumerate(parts):
-        (nodes,) = _of(rows, part, "quadrature").values()
-        (exact,) = _of(rows, part, "exact").values()
-        error = np.maximum([row["error"] for row in nodes], ROUNDING)
-        micro = 1e6 * np.median([row["seconds"] for row in nodes])
-        axes.plot(
-            [row["work"] for row in nodes], error, marker=marker, ms=SIZES[marker], mfc="white",
-            color=colour, lw=0.7, label=rf"{name}, quadrature: ${micro:.1f}\,\mu$s",
-        )  # fmt: skip
-        micro = 1e6 * exact[0]["seconds"]
-        axes.axhline(
-            max(exact[0]["error"], ROUNDING), color=colour, lw=0.8, ls=(5 * i, (4, 6)),
-            label=rf"{name}, exact evaluation: ${micro:.0f}\,\mu$s",
-        )  # fmt: skip
-    axes.set(xlabel="number of nodes", ylim=(2e-17, 1))
-    axes.yaxis.set_major_locator(LogLocator(numticks=6))
-    axes.yaxis.set_minor_locator(NullLocator())
-    axes.legend(loc="upper right", **LEGEND)
-    _title(axes, f"quadrature, $r={nodes[0]['radius']:g}$")
+def _draw_textbook(axes, rows, radii):
+    """Draw the line of one trajectory after another near h/4, where no run is long enough.
+
+    Its counts are those of the engine, replica for replica, and each takes longer by a factor. Two
+    arrows are what lock step gains, and what strips and lock step gain.
+    """
+    c = {(row["method"], row["radius"]): row["c"] for row in rows}
+    easy, hard = radii
+    slower = c["scalar", easy] / c["lockstep", easy]
+    _draw_gain(axes, c["scalar", easy], c["lockstep", easy], GAINED[0])
+    if ("lockstep", hard) in c:
+        textbook = slower * c["lockstep", hard]
+        style = {"color": ORANGE, "lw": 0.8, "ls": (0, (4, 2)), "zorder": 1}
+        axes.plot(*_law(textbook, 0.0), label="one after another, near $h/4$", **style)
+        _draw_gain(axes, textbook, c["strip", hard], GAINED[1])
 
 
-def _times(axes, rows):
-    quantity = "vertical_hop_time"
-    names = {
-        "scalar": "events, one by one",
-        "lockstep": "events, in lock step",
-    }
-    for method, name in names.items():
-        (series,) = _of(rows, "time", method, quantity=quantity).values()
-        _points(axes, series, LOOK[method], name)
-    steps = _of(rows, "time", "time_step", quantity=quantity).items()
-    for i, (step, series) in enumerate(steps):
-        _points(axes, series, LOOK["time_step"], None if i else r"time steps $\Delta t$")
-        at = series[-1]["seconds"], series[-1]["error"]
-        text = rf"$\Delta t=2^{{{round(math.log2(step))}}}$"
-        style = {"ha": "left", "va": "bottom", "fontsize": 6.8, "color": VERMILLION}
-        drawing.label(axes, text, at, (5, 1), **style)
-    _gain(axes, rows, quantity)
-    (series,) = _of(rows, "time", "lockstep", quantity=quantity).values()
-    _law(axes, series)
-    _decades(axes)
-    for series in _of(rows, "time", "time_step", quantity=quantity).values():
-        _floor(axes, series, VERMILLION)
-    low, high = axes.get_ylim()
-    axes.set_ylim(low / 60, 2 * high)
-    axes.legend(loc="lower left", **LEGEND)
-    _title(axes, f"mean time of vertical hops, $r={series[0]['radius']:g}$")
+def _draw_gain(axes, slow, fast, error):
+    """Draw an arrow between the times of two methods to an ``error``, with their ratio."""
+    ends = (error, slow / error**2), (error, fast / error**2)
+    drawing.arrow(axes, *ends, "<|-|>", width=0.6, size=6)
+    middle = error, math.sqrt(ends[0][1] * ends[1][1])
+    text = rf"$\times{panels.powers(f'{slow / fast:.1g}')}$"
+    drawing.label(axes, text, middle, (3, 0), ha="left", fontsize=7.5, zorder=5)
 
 
-def _gain(axes, rows, quantity):
-    """Draw the least error of time steps at any Δt, and the factor that lock step gains."""
-    step, (floor,) = next(iter(_of(rows, "floor", "time_step", quantity=quantity).items()))
-    bias = floor["error"] / step
-    # The noise of a run falls like the root of the time simulated, ∝ seconds × Δt.
-    series = _of(rows, "time", "time_step", quantity=quantity).values()
-    runs = [row for part in series for row in part]
-    noise = [
-        (row["error"] ** 2 - row["bias"] ** 2) * row["seconds"] * row["setting"] for row in runs
-    ]
-    noise = np.median(noise)
-    # At a given time, (bias Δt)² + noise/(seconds Δt) is least, 3 (bias Δt)², for one Δt.
-    best = LEVEL / (math.sqrt(3) * bias)
-    end = noise / (2 * bias**2 * best**3)
-    (engine,) = _of(rows, "time", "lockstep", quantity=quantity).values()
-    start = np.median([row["error"] ** 2 * row["seconds"] for row in engine]) / LEVEL**2
-    seconds = np.array([min(row["seconds"] for row in runs), 3 * end])
-    style = {"color": GREY, "lw": 0.8, "ls": (0, (6, 1.5, 1, 1.5))}
-    error = LEVEL * (end / seconds) ** (1 / 3)
-    axes.plot(seconds, error, label=r"best $\Delta t$, $\propto t^{-1/3}$", **style)
-    drawing.arrow(axes, (start, LEVEL), (end, LEVEL), "<|-|>", width=0.6, size=6)
-    middle = math.sqrt(start * end), LEVEL
-    times = float(f"{end / start:.2g}")
-    drawing.label(axes, rf"$\times{times:g}$", middle, (0, 5), fontsize=7.5)
-
-
-def _title(axes, text):
-    drawing.label(axes, text, (0.5, 1), (0, 6), xycoords="axes fraction")
+def _draw_exact(axes, rows, radius, quantity):
+    """Draw the time of the exact value, which has no error to speak of, and Gauss quadrature."""
+    own = [row for row in rows if row["part"] == "exact" and row["radius"] == radius]
+    own = [row for row in own if row["quantity"] == quantity]
+    seconds = median(row["seconds"] for row in own if row["method"] == "exact")
+    axes.axhline(seconds, color=BLACK, lw=1.0, zorder=2)
+    end = {"ha": "right", "va": "top"}
+    text = f"exact value: {1e3 * seconds:.2g} ms, error $10^{{-15}}$"
+    drawing.label(axes, text, (ERRORS[1], seconds), (-3, -2), **end)
+    if quantity == AREA:
+        nodes = [row for row in own if row["method"] == "quadrature"]
+        seconds = median(row["seconds"] for row in nodes)
+        shown = [row for row in nodes if row["error"] > ERRORS[1]]
+        error = [row["error"] for row in shown]
+        axes.plot(error, [seconds] * len(error), "P", color=BLACK, ms=SIZES["P"])
+        text = f"quadrature, 1 to {len(error)} nodes: ${1e6 * seconds:.1g}\\,\\mu$s"
+        drawing.label(axes, text, (ERRORS[1], seconds), (-3, -4), **end)

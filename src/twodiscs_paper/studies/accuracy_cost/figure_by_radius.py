@@ -1,74 +1,59 @@
-"""The cost of a relative error of 1e-3 at every radius."""
+"""c, the time of an error times its square, against the distance from a threshold, by method."""
 
-import numpy as np
+from matplotlib.ticker import LogLocator, NullLocator
 
 from twodiscs.figures import panels
-from twodiscs.figures.curves import limits
-from twodiscs.figures.style import BLACK, LOOKS, SIZES, name_of
-from twodiscs.model.box import Box
-from twodiscs.theory.exact import event_rate, mean_times
+from twodiscs.figures.style import BLACK, COLUMN, LOOKS, name_of, new_figure
 
-#: The smallest relative distance of a curve from the radius where its event ends.
-CLOSEST = 1e-3
+#: The methods of each panel, and its name.
+PANELS = {
+    "dynamics": ("dynamics",),
+    "strips": ("strips",),
+    "rejection": ("rejection", "shells, rejection"),
+    "conditioned": ("conditioned", "shells, conditioned"),
+}
+
+#: Inches: the height of the figure; the ends of the ordinate, seconds.
+HEIGHT, SECONDS = 4.1, (1e-11, 1e5)
 
 
 def draw(box, tables):
     """Draw the rows of accuracy_cost.csv; ``box`` is not used, because the table has its own."""
-    rows = tables["accuracy_cost"]
-    figure, (times, ratios) = panels.stacked(**{"times by radius": 2.0, "ratios": 1.2})
-    _times(times, ratios, [row for row in rows if row["part"] == "radius"])
+    rows = [row for row in tables["accuracy_cost"] if row["part"] == "radius"]
+    figure = new_figure(HEIGHT, COLUMN, layout="constrained")
+    axes = figure.subplots(2, 2, sharex=True, sharey=True).flat
+    for one, letter, (name, methods) in zip(axes, "abcd", PANELS.items(), strict=True):
+        one.set_label(name)
+        one.set_title(f"({letter})  {name}", loc="left")
+        for quantity, (colour, marker) in looks().items():
+            own = [r for r in rows if r["quantity"] == quantity and r["method"] in methods]
+            x, y = ([row[column] for row in own] for column in ("distance", "c"))
+            one.plot(x, y, lw=0.7, **panels.open_symbol(colour, marker, 0.8))
+        one.set(xscale="log", yscale="log", ylim=SECONDS)
+        one.label_outer()
+        if letter in "ac":
+            one.set_ylabel(r"time $\times$ error$^2$ (s)")
+        if letter in "cd":
+            one.set_xlabel(r"$1-r/r_{\mathrm{c}}$,  $r_{\mathrm{c}}=h/4$")
+    axes[0].set_xlim(1.3, 5e-7)
+    for axis, number in ((axes[0].xaxis, 4), (axes[0].yaxis, 9)):
+        axis.set_major_locator(LogLocator(numticks=number))
+        axis.set_minor_locator(NullLocator())
+    names = [name_of(event) for event in LOOKS] + ["volume"]
+    handles = [
+        axes[0].plot([], [], lw=0.7, **panels.open_symbol(*look, 0.8))[0]
+        for look in (*LOOKS.values(), VOLUME)
+    ]
+    figure.legend(handles, names, loc="outside lower center", ncols=3, columnspacing=1.0)
     return figure
 
 
-def _times(axes, ratios, rows):
-    """Draw measured times (symbols), times of a Poisson process (lines), and their ratios.
-
-    Symbols of strips are filled with grey. Ratios are of pilots, which use no strips.
-    """
-    box = Box(rows[0]["width"], rows[0]["height"])
-    ends = limits(box)
-    predicted = [row for row in rows if row["method"] == "poisson"]
-    speed = np.median([row["work"] / row["seconds"] for row in predicted])
-    counts = speed * predicted[0]["error"] ** 2
-    for event, (colour, marker) in LOOKS.items():
-        radii = _radii(box, event)
-        axes.plot(radii, _prediction(box, event, radii, counts), color=colour, zorder=2)
-        for method, inside in (("lockstep", "white"), ("strip", "0.7"), ("paid", colour)):
-            own = [
-                row for row in rows if (row["method"], row["quantity"]) == (method, f"{event}_time")
-            ]
-            style = {"ls": "", "marker": marker, "color": colour, "mfc": inside, "zorder": 3}
-            style["ms"] = SIZES[marker]
-            here = np.array([row["radius"] for row in own])
-            seconds = np.array([row["seconds"] for row in own])
-            label = name_of(event) if method == "lockstep" else None
-            axes.plot(here, seconds, label=label, **style)
-            if method == "lockstep":
-                ratios.plot(here, seconds / _prediction(box, event, here, counts), **style)
-    for inside, name in (("0.7", "from strips"), (BLACK, "at this error")):
-        axes.plot([], [], ls="", marker="o", color=BLACK, mfc=inside, ms=SIZES["o"], label=name)
-    axes.plot([], [], color=BLACK, label="Poisson process")
-    panels.mark((axes, ratios), ends)
-    axes.set(yscale="log", ylim=(5e-4, 1e4))
-    axes.tick_params(labelbottom=False)
-    axes.set_ylabel("time for an error of $10^{-3}$ (s)")
-    axes.legend(loc="upper left", ncols=2, columnspacing=0.7, handlelength=0.9, handletextpad=0.4)
-    panels.title(axes, "a", box, up=panels.ABOVE)
-    ratios.axhline(1, color=BLACK)
-    ratios.set(yscale="log", xlabel="radius $r$", ylabel="time / Poisson")
-    panels.label_decades(ratios.yaxis, 100)
+VOLUME = BLACK, "P"
 
 
-def _radii(box, event):
-    """Return radii that are dense near the radius where the event ends."""
-    last = box.threshold(event)
-    near = last * (1 - np.geomspace(CLOSEST, 0.1, 40))
-    return np.sort([*np.linspace(0.01, 0.9 * last, 60), *near])
-
-
-def _prediction(box, event, radii, counts):
-    """Return the seconds at ``radii``; ``counts`` is events per second times error²."""
-    scenes = [box.scene(float(radius)) for radius in radii]
-    total = [event_rate(scene) for scene in scenes]
-    times = [mean_times(scene)[event] / scene.copies(event) for scene in scenes]
-    return np.array(total) * np.array(times) / counts
+def looks():
+    """Return {quantity: (colour, marker)}: mean times and areas of one event look the same."""
+    found = {"volume": VOLUME}
+    for event, look in LOOKS.items():
+        found |= {f"{event}_time": look, f"{event}_area": look}
+    return found

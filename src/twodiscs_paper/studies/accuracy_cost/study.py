@@ -1,4 +1,4 @@
-"""The processor time that a digit costs, by each method."""
+"""The processor time that an accuracy costs, by each method."""
 
 from twodiscs.comparison.table import (
     COUNT,
@@ -18,64 +18,57 @@ from twodiscs_paper.study import Study
 class AccuracyCost(Table):
     """
     One row per method and amount of work: its true error against the processor time it takes, on
-    one core. All rows come from one run, in which the methods take turns.
+    one core.
     """
 
     columns = {
         "part": TEXT(
-            "volume, area, time: work and precision; floor: the error that no work removes; "
-            "radius: the cost of a relative error, radius by radius; speed: of the engines, by "
-            "their median runs of the part time"
+            "error: the true error after some time; exact: of quadrature and of the exact "
+            "evaluation; radius: c at a distance from the radius where horizontal hops are blocked"
         ),
-        "quantity": TEXT("volume, <event>_area, <event>_time or events"),
+        "quantity": TEXT("volume, <event>_area or <event>_time"),
         "width": WIDTH,
         "height": HEIGHT,
         "radius": RADIUS,
+        "distance": NUMBER("part radius: 1 − radius/(h/4), h/4 where horizontal hops are blocked"),
         "method": TEXT(
-            "rejection, conditioned, sobol, shell, balanced_shell (the best ε for the work), "
-            "surface, quadrature, closed_form, exact; lockstep, scalar, time_step. radius: "
-            "lockstep (speed and error of a pilot), strip (the same from starts next to a rare "
-            "hop), poisson (exact rates, one speed, the noise of a Poisson process), paid (a run "
-            "to this error)"
+            "lockstep: the engine; strip: from initial states next to the hop; scalar: one "
+            "trajectory after another; time_step; rejection: samples of the prism; shell: the "
+            "same, for an area; conditioned; surface: samples on the surface; quadrature; exact. "
+            "radius: as in td.cost"
         ),
         "setting": Column(
-            float,
-            "see method",
-            "ε of a shell, Δt of time steps, T of starts next to a hop. speed: events per second, "
-            "divided by the same number for scalar",
+            float, "see method", "ε of a shell, Δt of time steps, T of a strip, nodes of quadrature"
         ),
-        "work": COUNT("samples, points, nodes, wall and disc events, or time steps"),
-        "seconds": SECONDS("median processor time of one run"),
-        "error": NUMBER(
-            "root mean square over the repetitions of the relative error against the exact value; "
-            "radius: the wanted error"
-        ),
-        "spread": NUMBER(
-            "standard deviation of its size between repetitions. floor: standard error"
-        ),
-        "bias": NUMBER("mean relative error with its sign"),
-        "floor": NUMBER("part of the error that no work removes; 0 if it is within the noise"),
-        "repetitions": COUNT("runs with other random numbers"),
-        "slope": NUMBER(
-            "fitted power of the work by which the error of this method and setting falls, above "
-            "its floor; for quadrature, digits per node; for floor, power of the setting"
-        ),
+        "seconds": SECONDS("processor time of a run, or of an evaluation"),
+        "error": NUMBER("root mean square of the relative error against the exact value"),
+        "repetitions": COUNT("independent runs behind it"),
+        "c": SECONDS("time × error² of this method, above its floor"),
+        "floor": NUMBER("error that no work removes; 0 if it is within the noise"),
+        "slope": NUMBER("power of the time by which errors fall, above the floor"),
         "slope_stderr": NUMBER("its standard error"),
     }
 
     @staticmethod
-    def rows(seconds):
+    def rows(seconds, seed):
         """Return the rows for some ``seconds`` of processor time (see ``measure.rows``)."""
         from twodiscs_paper.studies.accuracy_cost import measure
 
-        return measure.rows(seconds)
+        return measure.rows(seconds, seed)
+
+    @staticmethod
+    def part(seed, blocks):
+        """Return the rows of a long run (see ``measure.long_run``)."""
+        from twodiscs_paper.studies.accuracy_cost import measure
+
+        return measure.long_run(seed, blocks)
 
 
 STUDY = Study(
     "accuracy_cost",
-    builds="the cost of a digit by each method",
+    builds="the cost of an accuracy by each method",
     tables=(AccuracyCost,),
-    seconds=lambda configuration: 10.0 + configuration.accuracy_cost["seconds"],
+    seconds=lambda configuration: 20.0 + configuration.accuracy_cost["seconds"],
     order=2,
     figures={
         "accuracy_cost": Entry(
@@ -83,41 +76,37 @@ STUDY = Study(
             "4 What accuracy costs",
             Caption(
                 """
-                The cost of a digit: true relative error against processor time on one core, root
-                mean square over repeated runs. Error bars are one standard error. Dashed lines ∝
-                1/√t are the law of independent samples, with a fitted factor. (a) Volume by
-                rejection sampling, by the conditioned sampler and by scrambled Sobol points. (b)
-                Area of disc collisions by shells of thickness ε, whose bias (dotted) no work
-                removes, and by shells with the ε at which bias and noise balance. The other two
-                methods draw samples or Sobol points on the surface itself. (c) Mean time between
-                vertical hops by event-driven dynamics: one trajectory at a time, and many in lock
-                step. Time steps search for overlaps every Δt; their error ∝ Δt (dotted) does not
-                fall with time. The dash-dotted line is the smallest error of time steps with any
-                Δt. The arrow compares the times to an error of 1e-3. (d) Gauss quadrature along the
-                arc against the number of its nodes, and exact evaluation; the legend has their
-                processor times.
+                Processor time on one core for a relative error, (a) of the mean time between
+                horizontal hops, (b) of the volume and of the area of disc collisions, at an easy
+                radius and at a hard one, 1e-4 below h/4, where the hop is blocked. Symbols are true
+                errors against the exact value, root mean square over independent runs: full ones of
+                a long run, open ones of this build on this machine. Lines are c/error², for a
+                method with a bias c/(error² − bias²): no time removes the error of time steps or of
+                thick shells. Error bars are one standard error, where runs are few. Of one
+                trajectory after another near h/4 there is the line alone: its counts are those of
+                the engine. Arrows compare the textbook method with ours. The exact value is at the
+                bottom, and crosses are Gauss quadrature with more and more nodes.
                 """
             ),
             tables=("accuracy_cost",),
+            kept={"kept": "paper/long_run/accuracy_cost/accuracy_cost.csv"},
         ),
         "accuracy_cost_by_radius": Entry(
-            "The price of a relative error of 1e-3",
+            "The cost of an accuracy against the radius",
             "4 What accuracy costs",
             Caption(
                 """
-                (a) Processor time for a relative error of 1e-3 in each mean time, against the
-                radius, from the speed and the errors of a pilot (open symbols) or from a run to
-                that error (full symbols). Lines are predicted from the exact rates and one speed
-                for a Poisson process. Near the radius where they are blocked hops are counted from
-                initial states in a strip next to their surface (grey). (b) The times of pilots
-                divided by the times of a Poisson process: the variance of the number of events
-                divided by its mean.
+                c, the processor time of a relative error times its square, against the distance
+                from the radius h/4 at which horizontal hops are blocked: (a) mean times by dynamics
+                from ordinary initial states, (b) hops from initial states in a strip, (c) volume
+                and areas by samples of the prism, (d) by conditioned samples. Areas have thin
+                shells. An error ε takes the time c/ε², above the bias of the shells.
                 """
             ),
             tables=("accuracy_cost",),
         ),
     },
-    parameters=lambda configuration: configuration.accuracy_cost,
+    parameters=lambda configuration: configuration.accuracy_cost | {"seed": configuration.seed},
     about_plain=False,
     timed=("accuracy_cost",),
 )
