@@ -73,7 +73,7 @@ CALLS = [
     (montecarlo.shell_thickness, {"scene": PAPER, "event": "top_wall", "fraction": 0.02}),
     (runs.count_events, {"scene": PAPER, "target": {"any_wall": 0.1}, "budget": 1, "seed": 1}),
     (runs.hop_intervals, {"scene": PAPER, "event": "vertical_hop", "intervals": 1, "seed": 1}),
-    (trajectory.trajectory, {"scene": PAPER, "seed": 1}),
+    (trajectory.followed, {"scene": PAPER, "seed": 1}),
     (estimates.normal_quantile, {"confidence": 0.95}),
     (virial.weights, {"scene": PAPER}),
     (td.exact_table, {"width": 1.5, "height": 1.0, "radii": [0.2]}),

@@ -24,7 +24,7 @@ from twodiscs.model.events import EVENTS, SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import mean_of
 from twodiscs.sampling import montecarlo
-from twodiscs.sampling.separations import draw_constants
+from twodiscs.sampling.separations import separation_sampler
 from twodiscs.sampling.starts import states
 from twodiscs.theory.exact import event_rate
 from twodiscs_paper.studies.accuracy_cost import scalar
@@ -71,7 +71,7 @@ def lockstep_intervals(intervals=5_000_000):
 def scalar_engine(blocks=BLOCKS // 8):
     """Do the same as ``lockstep``, one trajectory after the other."""
     duration = runs.replica_duration(SCENE)
-    draw = draw_constants(SCENE)
+    draw = separation_sampler(SCENE)
     arguments = (REPLICAS, duration, SCENE.contact_distance, draw, (0, 0))
     counted, seconds = timed(lambda: scalar.count_blocks(np.uint64(1), 0, blocks, *arguments))
     return scalar.simulated_events(counted[0]), seconds

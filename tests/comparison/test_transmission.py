@@ -9,14 +9,20 @@ import pytest
 import twodiscs as td
 from twodiscs.comparison import transmission
 from twodiscs.comparison.scores import student_deviate
-from twodiscs.dynamics.two.passages import HOPS_OF_BLOCK, LARGEST, SUMS, cluster_sizes, hop_sums
+from twodiscs.dynamics.two.passages import (
+    HOPS_OF_BLOCK,
+    LARGEST_CLUSTER,
+    SUMS,
+    cluster_sizes,
+    hop_sums,
+)
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling import rounds
 
 
 def test_clusters_are_weighed_by_their_sizes():
     """Hops in clusters of 1, 2 and 3 are 1, 0 and 1/3 passages each."""
-    sizes = np.zeros(LARGEST + 1, np.int64)
+    sizes = np.zeros(LARGEST_CLUSTER + 1, np.int64)
     sizes[1:4] = 600, 200, 300
     kappa = transmission.by_clusters(sizes)
     values = np.repeat([1, 0, 1 / 3], [600, 200, 300])
@@ -64,8 +70,8 @@ def test_independent_passages_leave_so_much(x):
     """Passages of a Poisson process, each one hop: x of them in a gap, by its definition."""
     times = np.cumsum(np.random.default_rng(1).exponential(1 / x, 400_000))
     ends = np.append(np.flatnonzero(np.diff(times) > 1), times.size - 1)
-    sizes = np.bincount(np.diff(ends), minlength=LARGEST + 1) * np.arange(
-        max(LARGEST, np.diff(ends).max()) + 1
+    sizes = np.bincount(np.diff(ends), minlength=LARGEST_CLUSTER + 1) * np.arange(
+        max(LARGEST_CLUSTER, np.diff(ends).max()) + 1
     )
     found = transmission.by_clusters(sizes)
     # Hops of a cluster are not independent, so the error is larger, by the root of a size at most.
@@ -170,7 +176,7 @@ def test_more_discs_have_a_coefficient_too(tmp_path):
     three, four = (td.Scene(0.75 * n, 1.0, 0.247, discs=n) for n in (3, 4))
     found = td.transmission(three, "horizontal_hop", 2**12)
     assert found.neighbour_mean == pytest.approx(2 * found.exact_mean, rel=1e-14)
-    sizes = np.zeros(LARGEST + 1, np.int64)
+    sizes = np.zeros(LARGEST_CLUSTER + 1, np.int64)
     sizes[[*found.clusters]] = [*found.clusters.values()]
     raw, law = transmission.by_clusters(sizes), partial(transmission.of_clusters, others=1.0)
     assert found.coefficient == transmission.plateau(raw, found.gap, found.neighbour_mean, law)

@@ -12,7 +12,7 @@ from twodiscs.dynamics.many import engine
 from twodiscs.dynamics.two import returns
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
-from twodiscs.points.intervals import GROWTH
+from twodiscs.points.intervals import BINS, GROWTH, wide_edges
 from twodiscs.sampling import rounds
 from twodiscs.sampling.many import initial, insertions
 from twodiscs.theory.exact import mean_times
@@ -62,7 +62,7 @@ def test_hop_chains_do_not_depend_on_lanes():
     for lanes in (5, 64):
         sums = np.zeros((2, 67), np.int64)
         totals = returns.record_intervals(
-            PAPER, "vertical_hop", 1, 0, 2, 64, 16, (0.25, wide), sums, going, lanes
+            PAPER, "vertical_hop", 1, 0, 2, 64, (0.25, wide), sums, going, returns=16, lanes=lanes
         )
         results.append((totals, sums))
     for few, more in zip(*results, strict=True):
@@ -71,13 +71,13 @@ def test_hop_chains_do_not_depend_on_lanes():
 
 def test_squares_are_those_of_the_counts_of_each_chain():
     """A chain at a time, its counts are known; in wide bins they are sums over those in others."""
-    edges, found, going = np.array(runs.wide_edges(64)), [], np.ones(1, np.bool_)
+    edges, found, going = np.array(wide_edges(64)), [], np.ones(1, np.bool_)
     wide = np.full(65, 65 + edges.size)
     wide[: edges[-1]] = 65 + np.searchsorted(edges, np.arange(edges[-1]), side="right") - 1
     for first, stop in (*((i, i + 1) for i in range(8)), (0, 8)):
         sums = np.zeros((2, 66 + edges.size), np.int64)
         returns.record_intervals(
-            PAPER, "vertical_hop", 3, first, stop, 1, 32, (0.25, wide), sums, going, 4
+            PAPER, "vertical_hop", 3, first, stop, 1, (0.25, wide), sums, going, returns=32, lanes=4
         )
         found.append(sums)
     chains = np.array([counts for counts, _ in found[:-1]])
@@ -88,11 +88,11 @@ def test_squares_are_those_of_the_counts_of_each_chain():
 
 
 def test_wide_bins_widen():
-    edges = runs.wide_edges()
+    edges = wide_edges()
     assert edges[:14] == list(range(14))
     growth = np.diff(edges) / np.maximum(edges[:-1], 1)
     assert (growth >= GROWTH).all()
-    assert edges[-1] <= runs.BINS < (1 + GROWTH) * edges[-1]
+    assert edges[-1] <= BINS < (1 + GROWTH) * edges[-1]
 
 
 def test_a_blocked_hop_has_no_intervals():
@@ -159,7 +159,7 @@ def test_errors_of_intervals_of_many_are_those_of_repetitions():
     scene, event = MANY["three"]
     points = [runs.hop_intervals(scene, event, 1, seed) for seed in range(60)]
     bins = [[*point.bins()] for point in points]
-    wide = runs.BINS  # from there on bins are wide
+    wide = BINS  # from there on bins are wide
     for k in (0, 1, 10, wide, wide + 15, wide + 19):
         densities = [some[k].density.value for some in bins]
         errors = np.array([some[k].density.stderr for some in bins])

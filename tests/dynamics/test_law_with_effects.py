@@ -151,16 +151,16 @@ def test_counts_do_not_depend_on_shards_or_lanes(name):
 @counted_scene
 def test_a_trajectory_tells_the_same_events_as_the_ensemble(name):
     scene = SCENES[name]
-    rows = list(trajectory.follow(scene, start(scene, 3), 64.0))
-    names = Counter(row[5] for row in rows)
+    rows = list(trajectory.events_of(scene, start(scene, 3), 64.0))
+    names = Counter(row[1] for row in rows)
     seen = {event: names[event] for event in (*HOPS, "disc_collision")}
     discs = (1, 2) if scene.identical else (1,)
     for wall in WALLS:
         # Both walls of an axis count, except the walls of y in a field.
         axis, side = AXIS[wall], DECLARED[wall].side
         seen[wall] = sum(
-            row[5] == f"wall_{axis}{disc}"
-            and (axis == "x" or not scene.field or row[2 * disc] * side > 0)
+            row[1] == f"wall_{axis}{disc}"
+            and (axis == "x" or not scene.field or row[4][2 * disc - 1] * side > 0)
             for row in rows
             for disc in discs
         )
@@ -181,11 +181,11 @@ def test_counts_have_the_exact_rates(name):
 
 @every_scene
 def test_a_trajectory_names_what_its_scene_has(scene):
-    rows = list(trajectory.follow(scene, start(scene, 3), 64.0))
+    rows = list(trajectory.events_of(scene, start(scene, 3), 64.0))
     times = [row[0] for row in rows]
     assert times == sorted(times)
-    assert (rows[0][5], rows[-1][5], times[-1]) == ("start", "end", pytest.approx(64.0))
-    names = {row[5] for row in rows}
+    assert (rows[0][1], rows[-1][1], times[-1]) == ("start", "end", pytest.approx(64.0))
+    names = {row[1] for row in rows}
     assert ("vertical_hop" in names) <= ("y" in scene.walled)
     known = (
         set(DECLARED)
@@ -194,7 +194,7 @@ def test_a_trajectory_names_what_its_scene_has(scene):
         | ({"kick"} if scene.friction else set())
     )
     assert names <= known
-    assert all((row[6] is None) == (scene.depth is None) for row in rows)
+    assert {len(row[4]) for row in rows} == {len(components(scene))}
 
 
 # Effects that are there but do nothing ----------------------------------------------------------

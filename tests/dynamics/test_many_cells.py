@@ -167,13 +167,13 @@ def test_advanced_states_are_those_of_the_other_kernel(scene):
     start = initial.states(scene, 20, 9)
     duration = engine.duration_of(scene, 4 * scene.discs)
     states, laps = start.copy(), np.zeros((scene.discs, 20))
-    engine.advance_scene(scene, states, laps, duration, None)
+    engine.advance_all(scene, states, laps, duration, None)
     other, rounds = start.copy(), np.zeros((scene.discs, 20))
     many.advance_states(other, rounds, duration, many.law_of(scene), None)
     assert np.array_equal(laps, rounds)
     assert states == pytest.approx(other, abs=1e-7 * scene.width)
     states[2 * scene.discs :] *= -1
-    engine.advance_scene(scene, states, laps, duration, None)
+    engine.advance_all(scene, states, laps, duration, None)
     states[2 * scene.discs :] *= -1
     assert states == pytest.approx(start, abs=1e-7 * scene.width)
 

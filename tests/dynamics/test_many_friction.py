@@ -99,7 +99,7 @@ def test_both_kernels_have_the_same_kicks(monkeypatch):
     found = {}
     for name in ("cells", "all pairs"):
         states, laps = start.copy(), np.zeros((20, 4))
-        engine.advance_scene(CHANNEL, states, laps, duration, engine.kicks_of(CHANNEL, 4, 5))
+        engine.advance_all(CHANNEL, states, laps, duration, engine.kicks_of(CHANNEL, 4, 5))
         rows = [*path.events_of(CHANNEL, start[:, 0], duration, 5)]
         found[name] = states, [row[1:4] for row in rows], rows[-1][-1]
         monkeypatch.setattr(engine, "large_grid", lambda scene: None)

@@ -95,10 +95,10 @@ def test_reversed_discs_come_back(scene):
     """Velocities and spins are reversed after some events of each disc, in both kernels."""
     start, laps = initial.states(scene, 20, 3), np.zeros((scene.discs, 20))
     states, duration = start.copy(), engine.duration_of(scene, 4 * scene.discs)
-    engine.advance_scene(scene, states, laps, duration, None)
+    engine.advance_all(scene, states, laps, duration, None)
     assert np.abs(states - start).max() > 0.1
     states[2 * scene.discs :] *= -1
-    engine.advance_scene(scene, states, laps, duration, None)
+    engine.advance_all(scene, states, laps, duration, None)
     states[2 * scene.discs :] *= -1
     assert states == pytest.approx(start, abs=1e-7 * scene.width)
 
@@ -120,7 +120,7 @@ def test_velocities_and_spins_are_on_a_sphere(scene, friction):
     for time in (0.0, 3.0):
         if time:
             kicks = engine.kicks_of(scene, replicas, 7)
-            engine.advance_scene(scene, states, laps, time, kicks)
+            engine.advance_all(scene, states, laps, time, kicks)
         u, v, s = states.reshape(5, n, -1)[2:]
         s = s * math.sqrt(scene.moment_of_inertia)
         assert (u**2 + v**2 + s**2).sum(axis=0) == pytest.approx(1, abs=1e-12)
@@ -139,7 +139,7 @@ def test_rough_walls_take_the_momentum_along_a_ring():
     n, replicas = RING.discs, 512
     states, laps = initial.states(RING, replicas, 4), np.zeros((n, replicas))
     before = states[2 * n : 3 * n].sum(axis=0)
-    engine.advance_scene(RING, states, laps, 64.0, None)
+    engine.advance_all(RING, states, laps, 64.0, None)
     after = states[2 * n : 3 * n].sum(axis=0)
     five(after, 0.0)
     five(before * after, 0.0)
@@ -150,7 +150,7 @@ def test_rough_walls_take_the_momentum_along_a_ring():
 def test_energy_does_not_drift():
     """Over a million events of 20 discs on a ring."""
     states, laps = initial.states(RING, 1, 5), np.zeros((RING.discs, 1))
-    engine.advance_scene(RING, states, laps, engine.duration_of(RING, 1e6), None)
+    engine.advance_all(RING, states, laps, engine.duration_of(RING, 1e6), None)
     energy = np.sum(states[40:80] ** 2) + RING.moment_of_inertia * np.sum(states[80:] ** 2)
     assert abs(energy - 1) < 1e-11
 

@@ -17,15 +17,25 @@ from twodiscs.dynamics.law import WRAP_X
 from twodiscs.dynamics.two import passages
 from twodiscs.dynamics.two.follow import follow
 from twodiscs.model.box import Box
+from twodiscs.model.events import AXIS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.prism import prism_of
-from twodiscs.sampling.starts import StartSampler
+from twodiscs.sampling.starts import COMPONENTS, StartSampler, draw_states
+from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 from twodiscs.theory.virial import flux_constant
 
 HOP = "horizontal_hop"
 TIMES = [0.2, 1.0, 5.0, 10.0]
 NARROW = 0.246  # 0.016 of the height is left to discs side by side along y
+
+
+def surface_states(scene, hop, number, seed):
+    """Return initial states on the surface of a ``hop``, weighted by the flux through it."""
+    sampler = StartSampler(None, prism_of(scene, hop, 0.0), surface="xy".index(AXIS[hop]))
+    states = np.zeros((COMPONENTS, number))
+    draw_states(open_stream(np.uint64(seed), 0), sampler, states)
+    return states
 
 
 def five(found, due, error):
@@ -244,7 +254,7 @@ def test_initial_states_are_on_the_surface():
     for radius in (0.2, 0.25 * (1 - 2.0**-30)):
         for effects in ({}, {"periodic": "x"}, {"moment_of_inertia": 0.5}):
             scene = Scene(1.5, 1.0, radius, **effects)
-            x1, y1, x2, y2, u1, v1, u2, v2, s1, s2 = passages.initial_states(scene, HOP, 4, 1)[:10]
+            x1, y1, x2, y2, u1, v1, u2, v2, s1, s2 = surface_states(scene, HOP, 256, 1)[:10]
             spins = scene.moment_of_inertia or 0.0
             assert np.array_equal(x1, x2)
             assert (np.abs(y1 - y2) >= scene.contact_distance).all()
@@ -263,7 +273,7 @@ def test_initial_states_are_on_the_surface():
 def test_small_discs_on_the_surface_are_as_far_apart_as_the_measure_says():
     """|y1 − y2| has the density ∝ B − v from σ to B: at a quarter of B either disc can be above."""
     scene = Scene(1.5, 1.0, 0.1)
-    states = passages.initial_states(scene, HOP, 256, 1)
+    states = surface_states(scene, HOP, 2**14, 1)
     apart = np.abs(states[1] - states[3])
     sigma, reach = scene.contact_distance, scene.range_y
 
@@ -294,24 +304,3 @@ def test_hops_in_a_field_are_those_along_y():
     both = [by_time(passages.hop_sums(s, "vertical_hop", TIMES, 256, 12)[0]) for s in (plain, weak)]
     for one, other in zip(*both, strict=True):
         five(one.value, other.value, math.hypot(one.stderr, other.stderr))
-
-
-@pytest.mark.parametrize(
-    ("change", "said"),
-    [
-        ({"hop": "any_wall"}, "hop must be one of"),
-        (
-            {"scene": Scene(1.5, 1.0, 0.3)},
-            "must be open for passages, but is blocked at radius 0.3",
-        ),
-        ({"scene": Scene(1.5, 1.0, 0.3, periodic="x")}, "must be open for passages"),
-        ({"scene": 0.2}, "scene must be a Scene"),
-        ({"times": [2.0, 1.0]}, "times must ascend"),
-        ({"blocks": 0}, "blocks must be an integer"),
-        ({"seed": -1}, "seed must be an integer"),
-    ],
-)
-def test_bad_requests_are_refused(change, said):
-    good = {"scene": Scene(1.5, 1.0, 0.2), "hop": HOP, "times": [1.0], "blocks": 1, "seed": 1}
-    with pytest.raises(ValueError, match=said):
-        passages.hop_sums(**(good | change))

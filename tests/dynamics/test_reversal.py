@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from twodiscs.dynamics.law import law_of
-from twodiscs.dynamics.trajectory import follow
+from twodiscs.dynamics.trajectory import events_of
 from twodiscs.dynamics.two.path import advance
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.starts import state_in, states
@@ -32,9 +32,9 @@ def test_the_same_events_in_reverse_order(radius):
 def test_hops_are_retraced_too():
     scene = Scene(1.5, 1.0, 0.2)
     start = state_in(states(scene, 1, 4), 0)
-    out = list(islice(follow(scene, start, 8.0), 60))
+    out = list(islice(events_of(scene, start, 8.0), 60))
     end = out[-1]
-    assert end[5] == "end"
+    assert end[1] == "end"
     state, elapsed = start, 0.0
     law = law_of(scene)
     while True:
@@ -42,6 +42,6 @@ def test_hops_are_retraced_too():
         if elapsed + time > 8.0:
             break
         state, elapsed = after, elapsed + time
-    back = list(follow(scene, (*end[1:5], *(-v for v in state[4:])), 8.0))
-    assert [row[5] for row in back[1:-1]] == [row[5] for row in out[1:-1]][::-1]
-    assert np.allclose(back[-1][1:5], start[:4], atol=1e-7, rtol=0)
+    back = list(events_of(scene, (*end[4][:4], *(-v for v in state[4:])), 8.0))
+    assert [row[1] for row in back[1:-1]] == [row[1] for row in out[1:-1]][::-1]
+    assert np.allclose(back[-1][4][:4], start[:4], atol=1e-7, rtol=0)

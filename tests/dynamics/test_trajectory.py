@@ -44,7 +44,7 @@ def test_rows_are_those_of_the_table(name, tmp_path):
 
 def test_centres_go_on_beyond_the_box_along_a_periodic_axis():
     scene = Scene(1.5, 1.0, 0.1, periodic="x")
-    x1 = np.array([row[1] for row in trajectory.trajectory(scene, 3, duration=40.0)])
+    x1 = np.array([row[4][0] for row in trajectory.followed(scene, 3, duration=40.0)])
     assert len({*np.round(x1 / scene.width)}) > 1
 
 

@@ -234,7 +234,7 @@ def _pressure():
             due = []
             for row in of(rows, event=event):
                 scene = PAPER.scene(row["radius"])
-                value = factor(scene, event) * scene.share(event) / row["estimate"]
+                value = factor(scene, event) * scene.accessible_fraction(event) / row["estimate"]
                 due.append((row["radius"], value, value * row["stderr"] / row["estimate"]))
             yield "pressure", panel, *look, due
 
@@ -457,7 +457,10 @@ def test_curves_of_pressures_are_exact():
     for event, look in zip(("right_wall", "top_wall"), style.SERIES, strict=False):
         known = np.isfinite(radii)
         scenes = [PAPER.scene(radius) for radius in radii[known]]
-        factors = [virial.pressure_factor(scene, event) * scene.share(event) for scene in scenes]
+        factors = [
+            virial.pressure_factor(scene, event) * scene.accessible_fraction(event)
+            for scene in scenes
+        ]
         due = factors / columns[f"{event}_time"][known]
         line = next(
             n

@@ -83,7 +83,7 @@ def test_longer_chains_are_no_different(scene, monkeypatch):
     """Chains of half and of twice the length have the same law."""
     found = []
     for seed, factor in ((1, 0.5), (2, 2)):
-        monkeypatch.setattr(initial, "SWEEPS", int(factor * initial.SWEEPS))
+        monkeypatch.setattr(initial, "TRIALS", int(factor * initial.TRIALS))
         found.append(moments(scene, initial.states(scene, 2000, seed, by="chain")))
     (mean, error), (same, spread) = found
     assert np.all(np.abs(mean - same) <= 5 * np.hypot(error, spread))
@@ -93,7 +93,7 @@ def test_chains_that_are_too_short_are_seen(monkeypatch):
     scene = Scene(2.5, 0.6, 0.18, discs=8)
     found = []
     for seed, sweeps, number in ((1, 50, 4000), (2, 4000, 400)):
-        monkeypatch.setattr(initial, "SWEEPS", sweeps)
+        monkeypatch.setattr(initial, "TRIALS", sweeps)
         found.append(moments(scene, initial.states(scene, number, seed, by="chain")))
     (mean, error), (same, spread) = found
     assert np.max(np.abs(mean - same) / np.hypot(error, spread)) > 10

@@ -73,9 +73,8 @@ def test_the_grid_is_the_same_at_every_scale():
 @pytest.mark.parametrize("per_piece", [1, 16, 256, 4096])
 def test_pieces_have_the_sums_of_the_whole(per_piece):
     run, counts = fabricated(0.01)
-    for pieces in (done_in_pieces(run, per_piece), rounds.all_at_once(run)):
-        (sums,), blocks = reached(pieces)
-        assert (blocks, sums.tolist()) == (1000, [counts[:1000].sum()])
+    (sums,), blocks = reached(done_in_pieces(run, per_piece))
+    assert (blocks, sums.tolist()) == (1000, [counts[:1000].sum()])
 
 
 @pytest.mark.parametrize(
@@ -227,7 +226,7 @@ def test_intervals_in_pieces_are_those_of_one_process(box, radius):
     found = [run.point({"all": done_in_pieces(run.parts["all"], n)}) for n in (1, 2)]
     assert found[0] == found[1] == run.run()
     # A second method: the sums of the chains in floating point.
-    totals, _ = runs.recorded(run.scene, run.event, 4, runs.CHAINS, runs.RETURNS, 5)
+    totals, _ = runs.recorded(run.scene, run.event, 5, 0, 4, np.ones(1, np.bool_))
     means = totals / runs.RETURNS
     assert found[0].mean == pytest.approx(math.fsum(means) / means.size, rel=1e-14)
     error = np.std(means, ddof=1) / math.sqrt(means.size)

@@ -13,7 +13,7 @@ from scipy.special import chdtrc
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.separations import draw_constants, draw_crossing, draw_separation
+from twodiscs.sampling.separations import draw_crossing, draw_separation, separation_sampler
 from twodiscs.sampling.starts import states
 from twodiscs.sampling.streams import open_stream
 
@@ -89,7 +89,7 @@ def slack_law(scene):
 @pytest.mark.parametrize(("width", "height", "radius"), CASES)
 def test_separations_have_the_invariant_law(width, height, radius):
     scene = Scene(width, height, radius)
-    draw = draw_constants(scene)
+    draw = separation_sampler(scene)
     n = 40_000
     slack_x, slack_y, u = separations(np.uint64(11), draw, n)
     assert np.all((slack_x >= 0) & (slack_y >= 0))
@@ -124,7 +124,7 @@ def test_a_quarter_of_the_proposals_is_accepted_at_least(width, height, radius):
         kinks = [a - sigma] if a > sigma else []
         points = [0, *kinks, *(top - (top - p) / 8**3 for p in kinks), top]
         accepted = mpmath.quad(density, sorted(points), maxdegree=7)
-    share = float(accepted) / draw_constants(scene).mass
+    share = float(accepted) / separation_sampler(scene).mass
     assert 0.25 <= share <= 1.0 + 1e-9
 
 
@@ -189,7 +189,7 @@ def test_velocities_are_uniform_on_the_sphere():
 @pytest.mark.parametrize("radius", [0.1, 0.24, 0.3])
 def test_crossings_have_the_law_of_the_flux(radius):
     scene = Scene(1.5, 1.0, radius)
-    draw = draw_constants(scene)
+    draw = separation_sampler(scene)
     x1, y1, x2, y2, u1, v1, u2, v2 = crossings(np.uint64(4), draw, 100_000)
     assert np.array_equal(y1, y2)
     assert_uniform(y1 / scene.range_y + 0.5)

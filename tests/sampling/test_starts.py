@@ -9,7 +9,7 @@ from sampling.uniformity import assert_uniform
 from scipy.special import betainc
 
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.separations import draw_constants, draw_crossing
+from twodiscs.sampling.separations import draw_crossing, separation_sampler
 from twodiscs.sampling.starts import COMPONENTS, draw_states, start_sampler, state_in, states
 from twodiscs.sampling.streams import open_stream
 
@@ -201,7 +201,7 @@ def test_rows_that_a_scene_has_no_use_for_are_zero(scene):
 
 
 def test_a_start_on_the_surface_of_a_plain_scene_is_a_crossing():
-    draw = draw_constants(PLAIN)
+    draw = separation_sampler(PLAIN)
     state = open_stream(np.uint64(17), 0)
     found = on_surface(PLAIN, 1, 5)
     for i in range(5):

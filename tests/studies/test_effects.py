@@ -15,7 +15,7 @@ from numba.core.errors import NumbaError
 from twodiscs.comparison.scene_tables import MeanTimes, Theory
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import law_of
-from twodiscs.dynamics.trajectory import follow
+from twodiscs.dynamics.trajectory import events_of
 from twodiscs.figures import curves, style
 from twodiscs.model.box import Box, key, stream_seed
 from twodiscs.model.events import EVENTS, WALLS
@@ -56,8 +56,8 @@ def test_unmet_starts_are_those_whose_paths_have_no_collision(scene):
     components = 8 if scene.moment_of_inertia is None else 10
     first = []
     for start in starts.T:
-        rows = follow(scene, tuple(map(float, start[:components])), times[-1])
-        first.append(next((row[0] for row in rows if row[5] == "disc_collision"), np.inf))
+        rows = events_of(scene, tuple(map(float, start[:components])), times[-1])
+        first.append(next((row[0] for row in rows if row[1] == "disc_collision"), np.inf))
     expected = [sum(moment > time for moment in first) for time in times]
     law = law_of(scene)
     found = effects.follow_survivors(seed, 0, 1, replicas, np.array(times), law, sampler)

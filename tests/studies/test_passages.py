@@ -13,13 +13,15 @@ from scipy.stats import chi2
 
 from twodiscs.comparison.transmission import by_clusters, of_clusters, plateau
 from twodiscs.dynamics.law import law_of
-from twodiscs.dynamics.two.passages import cluster_sizes, initial_states
+from twodiscs.dynamics.two.passages import cluster_sizes
 from twodiscs.dynamics.two.path import time_to_next
 from twodiscs.figures import style
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import Estimate, LinearFit, mean_of
-from twodiscs.sampling.starts import state_in
+from twodiscs.sampling.prism import prism_of
+from twodiscs.sampling.starts import COMPONENTS, StartSampler, draw_states, state_in
+from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 from twodiscs_paper.studies.passages import (
     figure,
@@ -124,7 +126,13 @@ def intervals(states, law):
 def test_first_passages_take_the_time_between_passages():
     """⟨F⟩ = τ (1 + CV²)/2 tends to τ/κ: κ is 2/(1 + CV²) up to the correlation time over τ."""
     scene, hop = Box(1.0, 1.5).scene(0.242), "vertical_hop"
-    times = intervals(initial_states(scene, hop, 256, 2), law_of(scene))
+    states = np.zeros((COMPONENTS, 2**14))
+    draw_states(
+        open_stream(np.uint64(2), 0),
+        StartSampler(None, prism_of(scene, hop, 0.0), surface=1),
+        states,
+    )
+    times = intervals(states, law_of(scene))
     mean, gap = exact.mean_times(scene)[hop], 6 * scene.range_y
     assert abs(times.mean() - mean) <= 5 * times.std() / math.sqrt(times.size)
     square = mean_of(times**2 / mean**2)

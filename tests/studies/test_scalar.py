@@ -6,7 +6,7 @@ import pytest
 from twodiscs.dynamics import runs, trajectory
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.separations import draw_constants
+from twodiscs.sampling.separations import separation_sampler
 from twodiscs.sampling.starts import state_in, states
 from twodiscs_paper.studies.accuracy_cost import scalar
 
@@ -21,7 +21,7 @@ def test_the_scalar_engine_counts_the_same(radius):
     """
     scene = PAPER.with_radius(radius)
     duration = runs.replica_duration(scene)
-    arguments = (duration, scene.contact_distance, draw_constants(scene), (0, 0))
+    arguments = (duration, scene.contact_distance, separation_sampler(scene), (0, 0))
     usual = scalar.count_blocks(np.uint64(3), 0, 1, 1024, *arguments)
     sums, products = runs.run_blocks(scene, EVENTS, 3, 0, 1, duration)[:2]
     at = [EVENTS.index(event) for event in scalar.COUNTED]
@@ -31,8 +31,8 @@ def test_the_scalar_engine_counts_the_same(radius):
 
 def test_following_one_trajectory_is_the_kernel_in_slow_motion():
     start = state_in(states(PAPER, 1, 5), 0)
-    rows = list(trajectory.follow(PAPER, start, 64.0))
-    names = [row[5] for row in rows]
+    rows = list(trajectory.events_of(PAPER, start, 64.0))
+    names = [row[1] for row in rows]
     times = [row[0] for row in rows]
     assert times == sorted(times)
     assert names[0] == "start"
@@ -44,7 +44,7 @@ def test_following_one_trajectory_is_the_kernel_in_slow_motion():
     for event in ("vertical_hop", "horizontal_hop", "disc_collision"):
         assert names.count(event) == counts[scalar.COUNTED.index(event)] > 0
     for row in rows:
-        if row[5] == "vertical_hop":
-            assert abs(row[2] - row[4]) < 1e-14
-        if row[5] == "horizontal_hop":
-            assert abs(row[1] - row[3]) < 1e-14
+        if row[1] == "vertical_hop":
+            assert abs(row[4][1] - row[4][3]) < 1e-14
+        if row[1] == "horizontal_hop":
+            assert abs(row[4][0] - row[4][2]) < 1e-14

@@ -17,7 +17,7 @@ from twodiscs.model.checks import InputError
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS, SHELLS
 from twodiscs.sampling import montecarlo
-from twodiscs.sampling.separations import draw_constants
+from twodiscs.sampling.separations import separation_sampler
 from twodiscs.theory import exact
 from twodiscs_paper.studies.stability import figure, figure_runs
 from twodiscs_paper.studies.stability import measure as stability
@@ -189,7 +189,7 @@ def test_the_better_sampler_is_chosen():
 
 def test_conditioned_blocks_add_up():
     scene = PAPER.scene(0.38)
-    draw, shells = draw_constants(scene), (0.01,) * len(SHELLS)
+    draw, shells = separation_sampler(scene), (0.01,) * len(SHELLS)
     whole = montecarlo.propose_blocks(np.uint64(3), 0, 3, draw, shells)
     parts = [
         montecarlo.propose_blocks(np.uint64(3), a, b, draw, shells) for a, b in ((0, 1), (1, 3))

@@ -19,7 +19,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
 from twodiscs.points.estimates import mean_of
 from twodiscs.sampling import starts
-from twodiscs.sampling.separations import draw_constants
+from twodiscs.sampling.separations import separation_sampler
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 from twodiscs.theory.laws import tail_constant
@@ -94,10 +94,10 @@ def test_drifts_cover_the_sphere_evenly():
 @pytest.mark.parametrize("event", ["disc_collision", "vertical_hop"])
 def test_a_wait_ends_where_the_trajectory_says(event):
     scene, state = PAPER, np.empty((8, 20))
-    starts.draw_starts(open_stream(np.uint64(6), 0), draw_constants(scene), 0, 0, state)
+    starts.draw_starts(open_stream(np.uint64(6), 0), separation_sampler(scene), 0, 0, state)
     for start in state.T:
-        rows = trajectory.follow(scene, start, 30.0)
-        expected = next(row[0] for row in rows if row[5] == event)
+        rows = trajectory.events_of(scene, start, 30.0)
+        expected = next(row[0] for row in rows if row[1] == event)
         found = time_to_next(tuple(start), law_of(scene), event == "vertical_hop", math.inf)
         assert found == pytest.approx(expected, rel=1e-12)
 

@@ -5,7 +5,7 @@ import pytest
 
 from twodiscs.dynamics import ensemble
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.separations import draw_constants
+from twodiscs.sampling.separations import separation_sampler
 from twodiscs.sampling.starts import draw_starts
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
@@ -43,7 +43,7 @@ def plain(scene, start, steps, step):
 def test_it_is_the_plain_simulation(radius, step):
     """Short enough that chaos has not made a last digit into another count."""
     scene, replicas, steps = PAPER.with_radius(radius), 16, 150
-    draw, starts = draw_constants(scene), np.zeros((8, 16))
+    draw, starts = separation_sampler(scene), np.zeros((8, 16))
     sums = timestepping.step_blocks(
         np.uint64(4), 0, 1, replicas, 8, steps, step, scene.contact_distance, draw
     )

@@ -78,7 +78,7 @@ def sum_rule(scene, point):
     The rates are averages over all replicas of a dynamics ``point``, whether they can reach a wall
     or not. A wall's rate has the hits of all walls and discs that are equal by symmetry.
     """
-    rates = {e: scene.share(e) / scene.copies(e) / point.duration for e in SUM_RULE}
+    rates = {e: scene.accessible_fraction(e) / scene.copies(e) / point.duration for e in SUM_RULE}
     return point.combination({e: w * rates[e] for e, w in virial.weights(scene).items()})
 
 

@@ -174,7 +174,8 @@ def _measured(result, rows, name, constant, factors):
         return Measurement(name, None, None, due, None, count, "derived", unit)
     # A time is that of the trajectories that can have the event, which are a share of all.
     pressure = constant + sum(
-        factors[event] * scene.share(event) / result[f"{event}_time"].u for event in factors
+        factors[event] * scene.accessible_fraction(event) / result[f"{event}_time"].u
+        for event in factors
     )
     return derived(name, pressure, due, unit, count)
 

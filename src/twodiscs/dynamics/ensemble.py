@@ -26,8 +26,9 @@ from twodiscs.sampling.streams import exponential, open_stream
 #: Trajectories that a kernel advances in lock step.
 LANES = 64
 
-#: Sweeps, each of one event for every lane, between two searches for lanes that have ended.
-SWEEPS = 8
+#: Sweeps, each of one event for every lane, between two searches for lanes that have ended. There
+#: are fewer if paths are short.
+SWEEPS, SHORT_SWEEPS = 8, 2
 
 #: Replicas with one random stream.
 REPLICAS = 1024

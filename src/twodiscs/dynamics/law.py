@@ -52,7 +52,7 @@ class Law(NamedTuple):
 
     The centre of disc i keeps within ±half_xi. The half-ranges of disc 2 are None if they are the
     same as for disc 1. On a periodic axis both discs have None. ``wrap_x`` is (half the period, the
-    shares of the period by which disc 1 and disc 2 move when the separation leaves ±half of it).
+    parts of the period by which disc 1 and disc 2 move when the separation leaves ±half of it).
     """
 
     half_x1: float | None

@@ -323,11 +323,11 @@ def chains_of(scene):
     return chains
 
 
-def recorded(scene, event, blocks, chains, returns, seed, first=0, going=None):
-    """Return (times of the chains, sums in bins) of a number of ``blocks``, from the ``first`` on.
+def recorded(scene, event, seed, first, stop, going):
+    """Return (times of the chains, sums in bins) of the blocks ``first`` … ``stop`` − 1.
 
-    Each block has ``chains`` chains of ``returns`` intervals, see ``record_intervals``.
-    ``going`` is an array to stop it with.
+    Each block has ``CHAINS`` chains of ``RETURNS`` intervals, see ``record_intervals``. ``going``
+    is an array to stop it with.
     """
     edges = wide_edges()
     # Intervals beyond all bins, or in the last ones that fill no wide bin, have no wide bin.
@@ -335,14 +335,8 @@ def recorded(scene, event, blocks, chains, returns, seed, first=0, going=None):
     wide = np.full(BINS + 1, beyond)
     wide[: edges[-1]] = BINS + np.repeat(np.arange(1, len(edges)), np.diff(edges))
     sums = np.zeros((chains_of(scene).INTERVAL_SUMS, beyond + 1), np.int64)
-    going, bins = np.ones(1, np.bool_) if going is None else going, (_width(scene, event), wide)
-    record = chains_of(scene).record_intervals
-    stop = first + blocks
-    return record(scene, event, seed, first, stop, chains, returns, bins, sums, going), sums
-
-
-def _mean(scene, event):
-    return chains_of(scene).mean_interval(scene, event)
+    record, bins = chains_of(scene).record_intervals, (_width(scene, event), wide)
+    return record(scene, event, seed, first, stop, CHAINS, bins, sums, going), sums
 
 
 def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
@@ -421,9 +415,7 @@ class IntervalRun:
         """
 
         def work(first, stop):
-            totals, sums = recorded(
-                self.scene, self.event, stop - first, CHAINS, RETURNS, self.seed, first, self._going
-            )
+            totals, sums = recorded(self.scene, self.event, self.seed, first, stop, self._going)
             totals, *numbers = np.atleast_2d(totals)
             times = [int(time) for time in totals / self._grain]
             moments = [sum(times), sum(time * time for time in times)]
@@ -460,4 +452,4 @@ class IntervalRun:
 
 
 def _width(scene, event):
-    return nearest_power_of_two(_mean(scene, event) / 16)
+    return nearest_power_of_two(chains_of(scene).mean_interval(scene, event) / 16)

@@ -91,23 +91,6 @@ def state_of(scene, start):
     return path_of(scene).state_of(scene, start)
 
 
-def follow(scene, state, duration, seed=0):
-    """Yield the rows of ``columns`` of ``events_of``, with the same arguments."""
-    for time, event, first, second, now in events_of(scene, state, duration, seed):
-        yield _row(scene, time, event, first, second, now)
-
-
-def _row(scene, time, event, first, second, state):
-    known = dict(zip(components(scene), map(float, state), strict=True))
-    known |= {"time": time, "event": event, "first": first, "second": second}
-    return tuple(known.get(name) for name in columns(scene.discs))
-
-
-def trajectory(scene, seed, start=None, duration=None):
-    """Return one trajectory of a ``Scene`` as rows of ``columns``, as ``followed`` does."""
-    return [_row(scene, *row) for row in followed(scene, seed, start, duration)]
-
-
 def followed(scene, seed, start=None, duration=None, progress=None):
     """Return one trajectory of a ``Scene``, as a list of what ``events_of`` yields.
 

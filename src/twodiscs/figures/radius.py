@@ -324,7 +324,7 @@ def draw_pressure(box, rows):
         near = [box.scene(float(r)) for r in end * (1 - np.geomspace(0.99 * farthest, 1e-6))]
         for event in events:
             laws = [
-                virial.pressure_factor(scene, event) * scene.share(event) / time
+                virial.pressure_factor(scene, event) * scene.accessible_fraction(event) / time
                 for scene in near
                 for time in [threshold_time(scene, event)]
             ]
@@ -348,7 +348,7 @@ def _pressure_series(name, box, event, rows, radii, factor):
     for row in rows:
         if row["event"] == event and row["stderr"] is not None:
             scene, time = box.scene(row["radius"]), row["estimate"]
-            value = factor(scene, event) * scene.share(event) / time
+            value = factor(scene, event) * scene.accessible_fraction(event) / time
             # If the time is too long, the rate is too low.
             measured = {"estimate": value, "stderr": value * row["stderr"] / time}
             measured["z"] = None if row["z"] is None else -row["z"]

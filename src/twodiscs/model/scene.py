@@ -453,7 +453,7 @@ class Scene:
         """Whether the discs are equal, so that they may be exchanged."""
         return self.radius_ratio == self.mass_ratio == 1
 
-    def share(self, event):
+    def accessible_fraction(self, event):
         """Return the fraction of trajectories that can have ``event``.
 
         It is 1/2 for a wall that disc 1 reaches only from one side of disc 2, else 1.

@@ -106,7 +106,7 @@ def copies(scene, event):
     if event.kind != "wall":
         return 1
     mirrored = event.axis == "x" or not scene.field
-    return round((1 + mirrored) * (1 + scene.identical) * scene.share(event.name))
+    return round((1 + mirrored) * (1 + scene.identical) * scene.accessible_fraction(event.name))
 
 
 def largest_radius(scene):

@@ -34,16 +34,17 @@ from twodiscs.model.scene import Scene, check_scene, check_two
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.prism import kinetic_fraction, power_chance, prism_of, propose_in_prism
 from twodiscs.sampling.rounds import Sampler, all_in_rounds, fixed
-from twodiscs.sampling.separations import draw_constants, propose_separation
+from twodiscs.sampling.separations import propose_separation, separation_sampler
 from twodiscs.sampling.streams import GOLDEN, next_bits, open_stream, splitmix, uniform
 from twodiscs.theory import exact
 
-LANES = 64
+#: Random generators of a block, one a lane of the kernel. The bits depend on their number.
+GENERATORS = 64
 
-#: Samples of the prism with one random stream: 2¹⁴ of each lane.
-BLOCK = LANES << 14
+#: Samples of the prism with one random stream: 2¹⁴ of each generator.
+BLOCK = GENERATORS << 14
 
-#: Samples of a lane between two readings of its packed counts, eight fields of eight bits.
+#: Samples of a generator between two readings of its packed counts, eight fields of eight bits.
 SAMPLES_PER_READING = 128
 
 #: Proposals of the conditioned sampler with one random stream.
@@ -139,21 +140,21 @@ def sample_blocks(seed, first, stop, range_x, range_y, sigma, ends, areas):
     shells in the order of ``SHELLS``, right and top together. ``areas`` is True, or None if only
     the volume is asked for: the shells are then not compiled.
     """
-    s0, s1 = np.empty(LANES, np.uint64), np.empty(LANES, np.uint64)
-    packed, totals = np.zeros(LANES, np.int64), np.zeros(SETS, np.int64)
+    s0, s1 = np.empty(GENERATORS, np.uint64), np.empty(GENERATORS, np.uint64)
+    packed, totals = np.zeros(GENERATORS, np.int64), np.zeros(SETS, np.int64)
     unit_x, unit_y = range_x * 2.0**-32, range_y * 2.0**-32
     inner = sigma * sigma
     mask = np.uint64(0xFFFFFFFF)
     for block in range(first, stop):
         counter = open_stream(seed, block)[0]
-        for i in range(LANES):
+        for i in range(GENERATORS):
             counter += GOLDEN
             s0[i] = splitmix(counter)
             counter += GOLDEN
             s1[i] = splitmix(counter) | np.uint64(1)
-        for _ in range(BLOCK // LANES // SAMPLES_PER_READING):
+        for _ in range(BLOCK // GENERATORS // SAMPLES_PER_READING):
             for _ in range(SAMPLES_PER_READING):
-                for i in range(LANES):
+                for i in range(GENERATORS):
                     # xoroshiro128+ (Blackman and Vigna 2021), twice.
                     a, b = s0[i], s1[i]
                     bits_x = a + b
@@ -174,7 +175,7 @@ def sample_blocks(seed, first, stop, range_x, range_y, sigma, ends, areas):
                     if areas is not None:
                         count = sets_of((uu, vv), square, (grain_x, grain_y), ends)
                     packed[i] += count if square >= inner else 0
-            for i in range(LANES):
+            for i in range(GENERATORS):
                 for e in range(SETS):
                     totals[e] += (packed[i] >> (8 * e)) & 255
                 packed[i] = 0
@@ -314,10 +315,10 @@ def _constants(scene, method, wanted, epsilon, block, measure):
 
 
 @compiled
-def propose_blocks(seed, first, stop, draw, ends):
+def propose_blocks(seed, first, stop, sampler, ends):
     """Count the proposals of blocks ``first`` … ``stop`` − 1 that fall into each set.
 
-    The counts are those of ``sample_blocks``; ``draw`` is the ``SeparationSampler`` of the scene.
+    The counts are those of ``sample_blocks``; ``sampler`` is the ``SeparationSampler`` of a scene.
     The proposals give distances from the walls and from contact, so that shells keep their
     thickness if the discs hardly fit. ``ends`` are ends of |Δx|² − σ² for collisions and of −1
     times the distance from the far wall.
@@ -326,10 +327,10 @@ def propose_blocks(seed, first, stop, draw, ends):
     for block in range(first, stop):
         state = open_stream(seed, block)
         for _ in range(PROPOSALS):
-            accepted, corner_x, corner_y, u, excess = propose_separation(state, draw)
+            accepted, corner_x, corner_y, u, excess = propose_separation(state, sampler)
             if not accepted:
                 continue
-            v = draw.range_y - corner_y
+            v = sampler.range_y - corner_y
             bits = next_bits(state)
             # Disc 1 has a random part of the free length, plus the separation if it is farther.
             to_right = corner_x * uniform(state)
@@ -361,9 +362,9 @@ def conditioned_point(scene, quantities, samples, shell, seed):
 def conditioned(scene, quantities, shell, seed):
     """Return the ``Sampler`` of ``conditioned_point``."""
     wanted, epsilon = _shells(scene, quantities, shell)
-    seed, draw, sigma = (
+    seed, separations, sigma = (
         check_integer("seed", seed, 0),
-        draw_constants(scene),
+        separation_sampler(scene),
         scene.contact_distance,
     )
     ranges = {"x": scene.range_x, "y": scene.range_y}
@@ -375,8 +376,8 @@ def conditioned(scene, quantities, shell, seed):
     return Sampler(
         scene.radius,
         PROPOSALS,
-        lambda first, stop: propose_blocks(np.uint64(seed), first, stop, draw, ends),
-        _constants(scene, "conditioned", wanted, epsilon, PROPOSALS, 2 * draw.mass),
+        lambda first, stop: propose_blocks(np.uint64(seed), first, stop, separations, ends),
+        _constants(scene, "conditioned", wanted, epsilon, PROPOSALS, 2 * separations.mass),
         COST_RATIO,
     )
 

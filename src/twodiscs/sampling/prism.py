@@ -140,8 +140,8 @@ def power_chance(state, fraction, power):
     chance = 1.0
     for _ in range(power):
         chance *= fraction
-    draw = uniform(state)
-    return draw * draw < chance
+    root = uniform(state)
+    return root * root < chance
 
 
 @optional(lambda state, prism, depth: (0.0, 0.0))

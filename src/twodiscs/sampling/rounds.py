@@ -1,10 +1,9 @@
 """Work in blocks whose sums are integers: by one process in rounds, or by many in pieces.
 
-One process works in rounds until all errors are small enough (``in_rounds``), or does all planned
-blocks without rounds (``all_at_once``). The number of planned blocks is known before anything runs.
-Many processes can do ``pieces`` of the work, which are then ``joined``. The bits depend neither on
-the size of the pieces nor on the process that does a piece. Pieces are {(first, stop): sums}, as in
-``points.base``.
+One process works in rounds until all errors are small enough (``in_rounds``). Many processes can do
+``pieces`` of the planned blocks, whose number is known before anything runs, and which are then
+``joined``. The bits depend neither on the size of the pieces nor on the process that does a piece.
+Pieces are {(first, stop): sums}, as in ``points.base``.
 
 A process works in threads (``in_threads``): on several cores, and so that Ctrl-C stops it without
 delay. Kernels release Python's lock, so threads can use all cores. Python handles no signal while a
@@ -56,7 +55,7 @@ class SequentialRun:
 
     ``work(first, stop)`` returns the sums of a range of blocks, a tuple of integer arrays.
     ``excess_of(sums, blocks)`` returns the array of their errors over the errors asked for; if it
-    is empty, one round is enough. ``events_of(sums)`` returns the number of events.
+    is empty, one round is enough. ``simulated_in(sums)`` returns the number of events.
     ``block_events`` is the approximate number of events in a block, ``budget`` the largest number
     of events. ``planned`` is the number of blocks for many processes, known before anything runs.
     ``cost_ratio`` is the time of an event over the time of an event in the plain ensemble, and
@@ -65,7 +64,7 @@ class SequentialRun:
 
     work: Callable
     excess_of: Callable
-    events_of: Callable
+    simulated_in: Callable
     block_events: float
     budget: float
     planned: int
@@ -103,13 +102,6 @@ def _done(run, stop, pieces, cores, progress):
     return added(sums, new)
 
 
-def all_at_once(run):
-    """Do the planned blocks of a run in this process and return the one piece."""
-    pieces = {}
-    _done(run, run.planned, pieces, 1, lambda blocks: None)
-    return pieces
-
-
 def in_rounds(run, progress=None, cores=1, kept=None):
     """Work in rounds until the errors are small enough or the budget is spent; return the pieces.
 
@@ -132,7 +124,7 @@ def in_rounds(run, progress=None, cores=1, kept=None):
     while True:
         done += blocks
         sums = _done(run, done, pieces, cores, report)
-        excess, simulated = run.excess_of(sums, done), run.events_of(sums)
+        excess, simulated = run.excess_of(sums, done), run.simulated_in(sums)
         if not excess.size:
             break
         worst = float(np.max(excess))

@@ -47,7 +47,7 @@ class SeparationSampler(NamedTuple):
     mass: float  # integral of the proposal; the acceptance is V/2 over it
 
 
-def draw_constants(scene, within=None):
+def separation_sampler(scene, within=None):
     """Return the ``SeparationSampler`` of a ``Scene``; with u < ``within`` < σ, if that is given.
 
     Such a strip needs an open horizontal hop: σ < B. Differences of lengths that cancel near a
@@ -91,51 +91,51 @@ def draw_constants(scene, within=None):
 
 
 @compiled
-def propose_separation(state, draw):
+def propose_separation(state, sampler):
     """Propose separations u, v; return (accepted, A − u, B − v, u, u² + v² − σ²).
 
     The distances from the far corner, A − u and B − v, keep their relative accuracy if the discs
     hardly fit. The last value keeps it near contact. A proposal is accepted with probability V/2
-    over ``draw.mass``; accepted proposals have the law of the invariant measure.
+    over ``sampler.mass``; accepted proposals have the law of the invariant measure.
     """
     choice = uniform(state)
-    if choice < draw.weights[0]:
-        corner_x = draw.beyond_x * math.sqrt(uniform(state))
-        beyond = draw.beyond_x - corner_x
-        u = draw.sigma + beyond
-        corner_y = draw.range_y * math.sqrt(uniform(state))
-        v = draw.range_y - corner_y
-        return True, corner_x, corner_y, u, beyond * (u + draw.sigma) + v * v
+    if choice < sampler.weights[0]:
+        corner_x = sampler.beyond_x * math.sqrt(uniform(state))
+        beyond = sampler.beyond_x - corner_x
+        u = sampler.sigma + beyond
+        corner_y = sampler.range_y * math.sqrt(uniform(state))
+        v = sampler.range_y - corner_y
+        return True, corner_x, corner_y, u, beyond * (u + sampler.sigma) + v * v
     part = 1
-    while part < 6 and choice >= draw.weights[part]:
+    while part < 6 and choice >= sampler.weights[part]:
         part += 1
     pair = (part - 1) // 2
-    power = 2 * pair if draw.beyond_y > 0.0 else 2 + pair
+    power = 2 * pair if sampler.beyond_y > 0.0 else 2 + pair
     if part % 2 == 1:
-        s = draw.span * largest_of(state, power + 1)
+        s = sampler.span * largest_of(state, power + 1)
     else:
-        s = draw.span * second_largest_of(state, power + 2)
-    u = draw.start + s
-    z = draw.span - s
-    k = math.sqrt(draw.least_k * draw.least_k + z * (2.0 * draw.stop - z))
-    if draw.beyond_y > 0.0:
-        room = draw.beyond_y + u * u / (draw.sigma + k)
-        bound = draw.beyond_y + u * u / draw.arch
+        s = sampler.span * second_largest_of(state, power + 2)
+    u = sampler.start + s
+    z = sampler.span - s
+    k = math.sqrt(sampler.least_k * sampler.least_k + z * (2.0 * sampler.stop - z))
+    if sampler.beyond_y > 0.0:
+        room = sampler.beyond_y + u * u / (sampler.sigma + k)
+        bound = sampler.beyond_y + u * u / sampler.arch
     else:
-        room = s * (2.0 * draw.start + s) / (draw.range_y + k)
-        bound = s * (2.0 * draw.start + s) / (draw.range_y + draw.least_k)
+        room = s * (2.0 * sampler.start + s) / (sampler.range_y + k)
+        bound = s * (2.0 * sampler.start + s) / (sampler.range_y + sampler.least_k)
     if uniform(state) * (bound * bound) >= room * room:
         return False, 0.0, 0.0, 0.0, 0.0
     corner_y = room * math.sqrt(uniform(state))
     # v = k + room − corner_y.
-    return True, draw.beyond_x + z, corner_y, u, (room - corner_y) * (2.0 * k + room - corner_y)
+    return True, sampler.beyond_x + z, corner_y, u, (room - corner_y) * (2.0 * k + room - corner_y)
 
 
 @compiled
-def draw_separation(state, draw):
+def draw_separation(state, sampler):
     """Return (A − u, B − v, u) for separations u, v of the invariant measure."""
     while True:
-        accepted, corner_x, corner_y, u, _ = propose_separation(state, draw)
+        accepted, corner_x, corner_y, u, _ = propose_separation(state, sampler)
         if accepted:
             return corner_x, corner_y, u
 
@@ -155,18 +155,18 @@ def pair_at_distance(state, half, missing, order):
 
 
 @compiled
-def draw_configuration(state, draw, sign_x, sign_y):
+def draw_configuration(state, sampler, sign_x, sign_y):
     """Return centres (x1, y1, x2, y2), uniform over the allowed configurations.
 
     ``sign_x`` > 0 means x1 > x2, < 0 means x1 < x2, and 0 either with probability 1/2; ``sign_y``
     likewise. If a hop is blocked, this chooses the ergodic component.
     """
-    corner_x, corner_y, _ = draw_separation(state, draw)
+    corner_x, corner_y, _ = draw_separation(state, sampler)
     bits = next_bits(state)
     order_x = sign_x if sign_x != 0 else (1 if bits & np.uint64(1 << 62) else -1)
     order_y = sign_y if sign_y != 0 else (1 if bits & np.uint64(1 << 61) else -1)
-    x1, x2 = pair_at_distance(state, draw.half_x, corner_x, order_x)
-    y1, y2 = pair_at_distance(state, draw.half_y, corner_y, order_y)
+    x1, x2 = pair_at_distance(state, sampler.half_x, corner_x, order_x)
+    y1, y2 = pair_at_distance(state, sampler.half_y, corner_y, order_y)
     return x1, y1, x2, y2
 
 

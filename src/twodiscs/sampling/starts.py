@@ -24,9 +24,9 @@ from twodiscs.sampling.rounds import in_a_thread, in_threads
 from twodiscs.sampling.separations import (
     SeparationSampler,
     draw_configuration,
-    draw_constants,
     draw_crossing,
     draw_velocity,
+    separation_sampler,
 )
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
@@ -119,7 +119,7 @@ def start_sampler(scene, hop=None, within=None, order=(0, 0), surface=None):
     ``require_room`` first, because draws from its prism may hardly ever be accepted.
     """
     if scene.is_plain:
-        return StartSampler(draw_constants(scene, within), None, order, surface)
+        return StartSampler(separation_sampler(scene, within), None, order, surface)
     return StartSampler(None, prism_of(scene, hop, within), order, surface)
 
 
@@ -133,10 +133,10 @@ def state_in(initial_states, i):
 
 
 @compiled
-def draw_starts(state, draw, sign_x, sign_y, initial_states):
+def draw_starts(state, sampler, sign_x, sign_y, initial_states):
     """Fill the first 8 rows of ``initial_states`` with states of the invariant measure."""
     for i in range(initial_states.shape[1]):
-        x1, y1, x2, y2 = draw_configuration(state, draw, sign_x, sign_y)
+        x1, y1, x2, y2 = draw_configuration(state, sampler, sign_x, sign_y)
         u1, v1, u2, v2 = draw_velocity(state)
         initial_states[0, i], initial_states[1, i], initial_states[2, i], initial_states[3, i] = (
             x1,

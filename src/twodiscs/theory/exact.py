@@ -175,7 +175,10 @@ def mean_times(scene: Scene) -> dict[str, float | None]:
     wall times are averages over all initial conditions. Accuracy and exceptions are those of
     ``volume``."""
     rates = {event: rate(scene, event) for event in EVENTS}
-    return {event: scene.share(event) / value if value else None for event, value in rates.items()}
+    return {
+        event: scene.accessible_fraction(event) / value if value else None
+        for event, value in rates.items()
+    }
 
 
 def exact(scene: Scene) -> Exact:

@@ -52,7 +52,7 @@ from twodiscs.sampling.many.cells import (
 from twodiscs.sampling.many.initial import spins_in
 
 #: The class of the entries of a log that a kick makes, one for each disc.
-KICK = N
+KICKS = N
 
 
 class Motion(NamedTuple):
@@ -395,11 +395,11 @@ def kick_discs(motion, laps, grid, law, log, lane, kicks):
     redraw(u, v, motion.s, 0, lane, law, kicks)
     look_for_all(motion, grid, law)
     for i in range(discs):
-        note_event(0.0, KICK, i, i, motion, laps, law.ring, log)
+        note_event(0.0, KICKS, i, i, motion, laps, law.ring, log)
 
 
 @compiled
-def follow(duration, epoch, motion, laps, grid, law, counts, lane, kicks, log, hops, hops_x):
+def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, log, hops, hops_x):
     """Follow the discs for a ``duration`` and add to ``counts`` (n,) what happens.
 
     On a ring the rounds of the discs are added to ``laps`` (N,). A ``log``, which may be None, gets
@@ -505,12 +505,14 @@ def count_events(states, seed, first, duration, epoch, law, grid, hops, hops_x, 
     laps = np.zeros(discs)
     motion, count = new_motion(discs, grid, law.rough), np.zeros(N, np.int64)
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
-    lane = np.int64(0)  # for a literal 0 numba would compile ``follow`` once more
+    lane = np.int64(0)  # for a literal 0 numba would compile ``follow_discs`` once more
     for replica in range(states.shape[1]):
         count[:] = 0
         start_from(states, replica, motion, grid, law)
         open_kicks(lane, seed, first + replica, kicks)
-        follow(duration, epoch, motion, laps, grid, law, count, lane, kicks, None, hops, hops_x)
+        follow_discs(
+            duration, epoch, motion, laps, grid, law, count, lane, kicks, None, hops, hops_x
+        )
         for e in range(N):
             sums[e] += count[e]
             for f in range(e, N):
@@ -531,7 +533,7 @@ def advance_all(states, laps, time, epoch, law, grid, kicks):
     for replica in range(replicas):
         rounds[:] = 0.0
         start_from(states, replica, motion, grid, law)
-        follow(
+        follow_discs(
             time, epoch, motion, rounds, grid, law, counts, replica, kicks, None, None, None
         )  # fmt: skip
         for i in range(discs):

@@ -36,7 +36,7 @@ REPLICA_EVENTS, EVENTS_OF_CHAIN = 256, 8192
 EVENTS_OF_DISC, FEWEST = 64, 8
 
 #: The classes whose counts are those of an event, in the order of ``EVENTS``.
-PARTS = by_kind(
+CLASSES_OF = by_kind(
     "dynamics/many/engine.py",
     {
         "hop": lambda event: ("vertical_hop" if event.axis == "y" else "horizontal_hop",),
@@ -54,14 +54,14 @@ INTERVAL_SUMS = 3
 
 #: The time that a pair of discs adds to an event, over the time of an event of the plain ensemble.
 #: Events of 3, 4 and 8 discs take 3.7, 5.9 and 22 times as long. Pairs of rough discs take longer.
-PAIR, ROUGH_PAIR = 0.8, 1.3
+PAIR_COST, ROUGH_PAIR_COST = 0.8, 1.3
 
 #: The same for ``LARGE`` numbers of discs: the time of an event, and the time that each disc adds.
-TOUCHED, COMPARED = 50.0, 0.25
+EVENT_COST, DISC_COST = 50.0, 0.25
 
 #: The time of a kick for each of ``LARGE`` numbers of discs, over the time of an event. The time to
 #: draw the velocity of a disc, over the time of an event of the plain ensemble.
-KICK, DRAW = 0.45, 8.0
+KICK_COST, DRAW_COST = 0.45, 8.0
 
 #: The largest factor by which the window of ``LARGE`` numbers of discs is longer.
 LONGER = 64
@@ -87,7 +87,7 @@ def expected_rates(scene):
     if known is None:
         return guess
     by_class = rates(scene, known)
-    summed = {event: sum(by_class[name] for name in parts) for event, parts in PARTS.items()}
+    summed = {event: sum(by_class[name] for name in parts) for event, parts in CLASSES_OF.items()}
     found = guess | {e: rate for e, rate in summed.items() if rate and e in scene.events}
     if scene.discs >= LARGE and crowding(scene) == DENSEST and not n_discs.exact_method(scene):
         found |= {event: max(rate, found[event]) for event, rate in guess.items()}
@@ -194,7 +194,9 @@ def of_events(sums, products):
 
     In every replica, the hits of all walls are the hits of the two classes of walls together.
     """
-    matrix = np.array([[name in parts for name in CLASSES] for parts in PARTS.values()], np.int64)
+    matrix = np.array(
+        [[name in parts for name in CLASSES] for parts in CLASSES_OF.values()], np.int64
+    )
     whole = products + np.triu(products, 1).T
     return matrix @ sums, np.triu(matrix @ whole @ matrix.T)
 
@@ -216,18 +218,18 @@ def work_per_event(scene):
     """Return the cost of an event over the usual cost, with kicks.
 
     For few discs a kick costs an event and the draw of all velocities. For ``LARGE`` numbers of
-    discs it costs ``KICK`` events for each disc.
+    discs it costs ``KICK_COST`` events for each disc.
     """
     few = scene.discs < LARGE
-    kick = 1.0 + DRAW * scene.discs / cost_ratio(scene) if few else KICK * scene.discs
+    kick = 1.0 + DRAW_COST * scene.discs / cost_ratio(scene) if few else KICK_COST * scene.discs
     return 1.0 + kick * scene.friction / expected_event_rate(scene)
 
 
 def cost_ratio(scene):
     """Return the time of an event over the time of an event of the plain ensemble."""
     if scene.discs >= LARGE:
-        return TOUCHED + COMPARED * scene.discs
-    pair = PAIR if scene.moment_of_inertia is None else ROUGH_PAIR
+        return EVENT_COST + DISC_COST * scene.discs
+    pair = PAIR_COST if scene.moment_of_inertia is None else ROUGH_PAIR_COST
     return 1 + pair * scene.discs * (scene.discs - 1) / 2
 
 
@@ -239,8 +241,8 @@ def interval_cost(scene):
 # Trajectories -------------------------------------------------------------------------------------
 
 
-def advance_scene(scene, states, laps, time, kicks):
-    """Advance the columns of ``states`` (rows, replicas), as ``advance_states`` does."""
+def advance_all(scene, states, laps, time, kicks):
+    """Advance the columns of ``states`` (rows, replicas), see ``trajectory.advance_all``."""
     law, grid = law_of(scene), large_grid(scene)
     if grid is None:
         return lockstep.advance_states(states, laps, time, law, kicks)
@@ -276,7 +278,7 @@ class Followed:
         """Yield the log, and the order of its entries, of one stretch after the other."""
         while duration > 0.0:
             self.log.size[0] = 0
-            duration = cells.follow(
+            duration = cells.follow_discs(
                 duration, self.epoch, self.motion, self.laps, self.grid, self.law, self.counts,
                 0, self.kicks, self.log, *self.hops,
             )  # fmt: skip
@@ -320,7 +322,7 @@ def events_per_interval(scene, hop):
     return events / intervals_of_chain(scene, hop)
 
 
-def record_intervals(scene, hop, seed, first, stop, chains, returns, bins, sums, going):
+def record_intervals(scene, hop, seed, first, stop, chains, bins, sums, going):
     """Add the intervals between hops to ``sums``, see ``lockstep.record_intervals``."""
     window = _window(scene, hop)
     return record_within(window, scene, hop, seed, first, stop, chains, bins, sums, going)

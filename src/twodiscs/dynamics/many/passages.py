@@ -30,7 +30,7 @@ from twodiscs.dynamics.many.lockstep import (
     nearest,
     new_kicks,
 )
-from twodiscs.dynamics.two.passages import LARGEST, SUMS
+from twodiscs.dynamics.two.passages import LARGEST_CLUSTER, SUMS
 from twodiscs.model.checks import InputError, check_choice
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import hopping_along
@@ -55,7 +55,7 @@ from twodiscs.theory.virial import flux_constant
 STATES, PROPOSALS, SAMPLES = 2**14, 2**24, 2**20
 
 #: The least fraction of proposals that is accepted: below it states take longer than their motion.
-LEAST = 1e-4
+LEAST_ACCEPTED = 1e-4
 
 
 class Pair(NamedTuple):
@@ -118,12 +118,12 @@ def is_short(change, ring):
 
 
 @compiled
-def follow(states, remaining, gap, net, hops, law, kicks):
+def follow_pair(states, remaining, gap, net, hops, law, kicks):
     """Follow the columns of ``states`` (rows, lanes) for the times ``remaining`` (lanes,).
 
     Σ s_k of the hops of discs 1 and 2 is added to ``net``, their number to ``hops``. With a ``gap``
-    (above 0) a lane goes on after each hop for this time, up to ``LARGEST`` hops. Returns the
-    number of wall hits and collisions.
+    (above 0) a lane goes on after each hop for this time, up to ``LARGEST_CLUSTER`` hops. Returns
+    the number of wall hits and collisions.
     """
     n, lanes = discs_in(states, law.rough), remaining.size
     spins = spins_in(states, n, law.rough)
@@ -145,7 +145,7 @@ def follow(states, remaining, gap, net, hops, law, kicks):
                 hops[l] += 1.0
                 if gap > 0.0:
                     left = gap - (times[l] - crossing_time(apart, rising[l]))
-                    remaining[l] = left if hops[l] < LARGEST else 0.0
+                    remaining[l] = left if hops[l] < LARGEST_CLUSTER else 0.0
     return np.int64(counts[COLLISIONS:].sum())
 
 
@@ -190,7 +190,7 @@ def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes, kicks):
             for k in range(times.size):
                 for l in range(HOPS_OF_BLOCK):
                     steps[l] = times[k] - (times[k - 1] if k > 0 else 0.0)
-                events += follow(now, steps, gap, net, hops, law, kicks)
+                events += follow_pair(now, steps, gap, net, hops, law, kicks)
                 for l in range(HOPS_OF_BLOCK):
                     falls = states[2 * discs, l] < states[2 * discs + 1, l]
                     n, m = np.int64(-net[l] if falls else net[l]), np.int64(hops[l])
@@ -209,7 +209,10 @@ def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes, kicks):
 
 
 def _followed(scene, hop, times, gap, blocks, seed, first):
-    sums, sizes = np.zeros((blocks, SUMS, len(times)), np.int64), np.zeros(LARGEST + 1, np.int64)
+    sums, sizes = (
+        np.zeros((blocks, SUMS, len(times)), np.int64),
+        np.zeros(LARGEST_CLUSTER + 1, np.int64),
+    )
     run = np.uint64(seed), first, first + blocks, np.array(times), gap, pair_of(scene, hop)
     return sums, sizes, follow_blocks(*run, sums, sizes, new_kicks(scene, HOPS_OF_BLOCK))
 
@@ -238,10 +241,10 @@ def require_coefficient(scene, hop):
             f"hop {hop!r} must be open for passages, but is blocked at radius {scene.radius!r}"
         )
     accepted, proposals = surface_fraction(scene, hop)
-    if accepted < LEAST * proposals:
+    if accepted < LEAST_ACCEPTED * proposals:
         raise InputError(
             f"radius {scene.radius!r} is so large for {scene.discs} discs that fewer than "
-            f"{LEAST:g} of the proposals of a hop have no overlap"
+            f"{LEAST_ACCEPTED:g} of the proposals of a hop have no overlap"
         )
 
 

@@ -4,10 +4,9 @@ import numpy as np
 
 from twodiscs.dynamics.ensemble import before_kick, nearest_power_of_two
 from twodiscs.dynamics.law import END_OF_TIME, crosses, crossing_time
-from twodiscs.dynamics.many.cells import KICK
+from twodiscs.dynamics.many.cells import KICKS
 from twodiscs.dynamics.many.engine import (
     Followed,
-    advance_scene,
     expected_event_rate,
     expected_rates,
     kicks_of,
@@ -26,17 +25,11 @@ from twodiscs.dynamics.many.lockstep import (
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import HOPS
 from twodiscs.model.two import ENERGY
-from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.many.initial import large_grid
 from twodiscs.sampling.starts import ROUNDING, given_state
 
 #: The wall and disc events of a trajectory, and the most rows, with hops, because rows are long.
 LONGEST_TRAJECTORY, MOST_ROWS = 1500, 2**13
-
-
-def advance_all(scene, states, wraps, time, kicks):
-    """Advance the columns of ``states``, see ``trajectory.advance_all``."""
-    advance_scene(scene, states, wraps, time, kicks)
 
 
 def new_wraps(scene, number):
@@ -93,7 +86,7 @@ def events_of(scene, state, duration, seed=0):
         find_events(x, y, u, v, remaining, times, codes, speeds, law, kicks)
         flight, code = float(times[0]), int(codes[0])
         advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, True, spins)
-        kick(u, v, spins, times, law, kicks)
+        kick_lanes(u, v, spins, times, law, kicks)
         if ring:
             beyond = ring * np.round(((before + flight * speed[: 2 * n])[:n, None] - x) / ring)
         after, hops = np.ravel([x + beyond, y]), []
@@ -120,12 +113,6 @@ def events_of(scene, state, duration, seed=0):
             yield time, f"wall_{'xy'[(code - 1) % 2]}{disc}", disc, None, now
 
 
-@compiled
-def kick(u, v, spins, times, law, kicks):
-    """Kick the lanes whose kick is due, see ``kick_lanes``."""
-    kick_lanes(u, v, spins, times, law, kicks)
-
-
 def _logged(scene, state, duration, seed):
     """Yield the ``events_of`` a scene whose kernel has a log; only the state needs all discs."""
     path = Followed(scene, scene.events)
@@ -137,7 +124,7 @@ def _logged(scene, state, duration, seed):
     # The last known place of each disc, and its time.
     at, since = np.reshape(state, (-1, scene.discs)).copy(), np.zeros(scene.discs)
     names = {VERTICAL: "vertical_hop", HORIZONTAL: "horizontal_hop"}
-    names |= {COLLISIONS: "disc_collision", KICK: "kick"}
+    names |= {COLLISIONS: "disc_collision", KICKS: "kick"}
     yield 0.0, "start", None, None, state
     for log, order in path.go_on(duration):
         for k in order:
@@ -145,11 +132,11 @@ def _logged(scene, state, duration, seed):
             if kind not in (VERTICAL, HORIZONTAL):
                 at[:, i], at[:, j] = log.states[k]
                 since[[i, j]] = time
-            if kind == KICK and i < scene.discs - 1:
+            if kind == KICKS and i < scene.discs - 1:
                 continue
             first, second = min(i, j) + 1, max(i, j) + 1 if i != j else None
             name = names.get(kind) or f"wall_{'x' if kind == BESIDE else 'y'}{first}"
-            first = None if kind == KICK else first
+            first = None if kind == KICKS else first
             yield time, name, first, second, _then(at, time - since)
     yield float(duration), "end", None, None, _then(at, duration - since)
 

@@ -34,33 +34,26 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK, LANES
+from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK, LANES, SHORT_SWEEPS
 from twodiscs.dynamics.law import END_OF_TIME, WRAP_X, WRAP_Y, crosses, crossing_time
 from twodiscs.dynamics.two.follow import across, follow
 from twodiscs.model.checks import (
     InputError,
-    check_ascending,
     check_choice,
-    check_integer,
-    check_length,
 )
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import check_scene, hopping_along
 from twodiscs.sampling.jit import inlined
 from twodiscs.sampling.prism import prism_of
-from twodiscs.sampling.starts import COMPONENTS, StartSampler, draw_states, require_room
-from twodiscs.sampling.streams import open_stream
+from twodiscs.sampling.starts import StartSampler, require_room
 from twodiscs.theory import exact
 
 #: Clusters of this many hops, or more, are in one class. It counts as even, which makes κ too small
 #: by less than the fraction of hops in it over their number.
-LARGEST = 2**13
+LARGEST_CLUSTER = 2**13
 
 #: The sums at each time after a hop: n = Σ s_0 s_k and n², N hops and N².
 SUMS = 4
-
-#: Sweeps between two searches for lanes that have ended: paths are short.
-SWEEPS = 2
 
 
 @inlined
@@ -169,54 +162,24 @@ class Clusters(NamedTuple):
 # From a scene to the experiment ------------------------------------------------------------------
 
 
-def require_passing(scene, hop):
-    """Raise ``InputError`` unless the discs of a ``Scene`` can be followed past each other.
-
-    The axis of the ``hop`` may be periodic, where hops are no events of the scene.
-    """
-    check_choice("hop", hop, HOPS)
-    require_room(check_scene(scene))
-    periodic = AXIS[hop] in scene.periodic
-    if not (scene.room(hop) > 0 if periodic else scene.is_possible(hop)):
-        raise InputError(
-            f"hop {hop!r} must be open for passages, but is blocked at radius {scene.radius!r}"
-        )
-
-
 def require_coefficient(scene, hop):
     """Raise ``InputError`` unless the hops of a ``Scene`` can have a transmission coefficient."""
-    require_passing(scene, hop)
+    check_choice("hop", hop, HOPS)
+    require_room(check_scene(scene))
     if AXIS[hop] in scene.periodic:
         raise InputError(
             f"hop {hop!r} must be between walls for a transmission coefficient, but its axis is "
             "periodic"
+        )
+    if not scene.is_possible(hop):
+        raise InputError(
+            f"hop {hop!r} must be open for passages, but is blocked at radius {scene.radius!r}"
         )
 
 
 def neighbours(scene, hop):
     """Return the mean time between hops of two neighbours, and no pairs that change this."""
     return exact.mean_times(scene)[hop], 0
-
-
-def initial_states(scene, hop, blocks, seed, first=0, on_surface=True):
-    """Return states (``COMPONENTS``, ``blocks`` × ``HOPS_OF_BLOCK``) on the surface of a ``hop``.
-
-    Arguments are as for ``hop_sums``, which follows these states.
-    """
-    _require_stream(scene, hop, blocks, seed, first)
-    states = np.zeros((COMPONENTS, blocks * HOPS_OF_BLOCK))
-    for block in range(blocks):
-        drawn = states[:, block * HOPS_OF_BLOCK : (block + 1) * HOPS_OF_BLOCK]
-        stream = open_stream(np.uint64(seed), first + block)
-        draw_states(stream, _sampler(scene, hop, on_surface), drawn)
-    return states
-
-
-def _require_stream(scene, hop, blocks, seed, first):
-    require_passing(scene, hop)
-    check_integer("blocks", blocks)
-    check_integer("seed", seed, 0)
-    check_integer("first", first, 0)
 
 
 def _sampler(scene, hop, on_surface):
@@ -235,11 +198,9 @@ def hop_sums(scene, hop, times, blocks, seed, first=0, on_surface=True):
     ``sums`` (blocks, ``SUMS``, times; integers) have Σ n, Σ n², Σ N and Σ N² at the ascending
     ``times``, lengths over unit speed, as in ``NetHops``. Initial states are on the surface of the
     ``hop``, weighted by the flux through it, or of the invariant measure unless ``on_surface``. The
-    blocks are those from the ``first`` one on of the streams of ``seed``. Raises ``InputError`` for
-    a hop that is unknown or blocked, and numbers out of range.
+    blocks are those from the ``first`` one on of the streams of ``seed``.
     """
-    times = np.array(check_ascending("times", times))
-    _require_stream(scene, hop, blocks, seed, first)
+    times = np.array(times, float)
     scene, hop = hopping_along(scene, hop, "x")
     net = NetHops(
         times=times,
@@ -253,29 +214,29 @@ def hop_sums(scene, hop, times, blocks, seed, first=0, on_surface=True):
         first=first * HOPS_OF_BLOCK,
     )
     sampler = _sampler(scene, hop, on_surface)
-    follow(net, scene, sampler, seed, first, first + blocks, HOPS_OF_BLOCK, LANES, SWEEPS)
+    follow(net, scene, sampler, seed, first, first + blocks, HOPS_OF_BLOCK, LANES, SHORT_SWEEPS)
     return net.sums, int(net.events.sum())
 
 
 def cluster_sizes(scene, hop, gap, blocks, seed, first=0):
     """Return (sizes, events): how many hops are in a cluster of 0, 1, 2 … hops.
 
-    ``sizes`` (``LARGEST`` + 1 integers) are over ``blocks`` blocks of ``HOPS_OF_BLOCK`` hops, each
-    a random one; the last has all larger clusters. A cluster ends where no hop comes for a time
-    ``gap``. Arguments and errors are otherwise as for ``hop_sums``.
+    ``sizes`` (``LARGEST_CLUSTER`` + 1 integers) are over ``blocks`` blocks of ``HOPS_OF_BLOCK``
+    hops, each a random one; the last has all larger clusters. A cluster ends where no hop comes for
+    a time ``gap``. Arguments are otherwise as for ``hop_sums``.
     """
-    gap = check_length("gap", gap)
-    _require_stream(scene, hop, blocks, seed, first)
     scene, hop = hopping_along(scene, hop, "x")
     clusters = Clusters(
         gap=float(gap),
         axis=_axis(hop),
-        most=float(LARGEST),
+        most=float(LARGEST_CLUSTER),
         falls=np.zeros(LANES),
         hops=np.zeros(LANES),
         events=np.zeros(LANES),
-        sizes=np.zeros(LARGEST + 1, np.int64),
+        sizes=np.zeros(LARGEST_CLUSTER + 1, np.int64),
     )
     sampler = _sampler(scene, hop, True)
-    follow(clusters, scene, sampler, seed, first, first + blocks, HOPS_OF_BLOCK, LANES, SWEEPS)
+    follow(
+        clusters, scene, sampler, seed, first, first + blocks, HOPS_OF_BLOCK, LANES, SHORT_SWEEPS
+    )
     return clusters.sizes, int(clusters.events.sum())

@@ -85,7 +85,7 @@ class Returns(NamedTuple):
 
 
 def record_intervals(
-    scene, hop, seed, first, stop, chains, returns, bins, sums, going, lanes=LANES
+    scene, hop, seed, first, stop, chains, bins, sums, going, *, returns=RETURNS, lanes=LANES
 ):
     """Add the intervals of the blocks ``first`` … ``stop`` − 1 to ``sums``, as in ``Returns``.
 

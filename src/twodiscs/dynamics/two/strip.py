@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import LANES, REPLICAS
+from twodiscs.dynamics.ensemble import LANES, REPLICAS, SHORT_SWEEPS
 from twodiscs.dynamics.law import END_OF_TIME, crosses
 from twodiscs.dynamics.two.follow import across, follow
 from twodiscs.model.box import key, stream_seed
@@ -37,16 +37,13 @@ from twodiscs.theory import exact
 #: states.
 RARE = 40
 
-#: Sweeps between two searches for lanes that have ended: paths are short.
-SWEEPS = 2
-
 #: A strip is as wide as the neck if the density on its surface is at least ``FILL`` times the mean
 #: density in it. If it is at least ``NO_NECK`` times in the widest strip, there is no neck.
 FILL = 0.75
 NO_NECK = 0.97
 
 #: The largest number of wall and disc events in the time 2T, about.
-MOST_EVENTS = 32
+EVENTS_OF_PATH = 32
 
 #: The duration of paths over 2T, about: 1 for few events, 0.55 for many.
 LASTING = 0.75
@@ -124,7 +121,7 @@ def strip_of(scene, hop):
     time = widest(scene, hop)
     while True:
         strip = strip_around(scene, hop, time)
-        few = expected_events(scene, hop, strip) <= MOST_EVENTS
+        few = expected_events(scene, hop, strip) <= EVENTS_OF_PATH
         if few and _fill(scene, hop, strip) >= FILL:
             return strip
         time /= 2
@@ -240,7 +237,7 @@ def run_blocks(scene, hop, strip, seed, first, stop, *, replicas=REPLICAS, lanes
         sums=np.zeros((3, *strata), np.int64),
         events=np.zeros(1, np.int64),
     )
-    follow(hops, scene, sampler, seed, first, stop, replicas, lanes, SWEEPS)
+    follow(hops, scene, sampler, seed, first, stop, replicas, lanes, SHORT_SWEEPS)
     return hops.sums, int(hops.events[0])
 
 

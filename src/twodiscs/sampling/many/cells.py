@@ -20,7 +20,7 @@ SPACING = 1.25
 COLUMNS = 4
 
 
-class Grid(NamedTuple):
+class CellGrid(NamedTuple):
     """Borders of the columns and rows of cells; the outermost are walls, or the ends of a ring."""
 
     x: np.ndarray
@@ -41,13 +41,13 @@ class Places(NamedTuple):
 
 
 def grid_of(scene):
-    """Return the ``Grid`` of a ``Scene``, which must be followable."""
+    """Return the ``CellGrid`` of a ``Scene``, which must be followable."""
     a, b = scene.range_x, scene.range_y
     side = max(LEAST_SIDE * scene.contact_distance, SPACING * math.sqrt(a * b / scene.discs))
     columns, rows = max(1, int(a / side)), max(1, int(b / side))
     if scene.periodic:
         columns = max(columns, min(COLUMNS, int(a / (LEAST_SIDE * scene.contact_distance))))
-    return Grid(_borders(a, columns), _borders(b, rows))
+    return CellGrid(_borders(a, columns), _borders(b, rows))
 
 
 def _borders(length, number):

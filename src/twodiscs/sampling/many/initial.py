@@ -4,11 +4,11 @@ A state is a column of x of all discs, then y, u and v, of rough discs also thei
 speeds rω of their surfaces.
 
 * ``rejection``: N centres are drawn; after an overlap all are drawn again. Exact. The acceptance is
-  V/(AB)^N, and the method is used if it is at least ``LEAST``.
+  V/(AB)^N, and the method is used if it is at least ``LEAST_FREE``.
 * ``channel``: in an ordered channel heights have the density (A − S)₊^N, S = Σ d. A Markov chain
   proposes them cell by cell, with weights that are not below exp(−c d). They are accepted with the
   rest of the ratio. Positions along the channel are then order statistics. Exact at every density.
-* ``chain``: otherwise ``SWEEPS`` sweeps of trial moves of one disc at a time, which begin at the
+* ``chain``: otherwise ``TRIALS`` sweeps of trial moves of one disc at a time, which begin at the
   widest known arrangement; each state has a new chain. From ``LARGE`` discs on, event chains
   (``chains``) take their place. Not exact: tests compare its states with rejection and channels, if
   these can be used, and with chains of other lengths. If discs cannot go from one arrangement to
@@ -27,17 +27,17 @@ import numpy as np
 from twodiscs.model.many import LARGE, arrangement, is_ordered
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import chains, insertions
-from twodiscs.sampling.many.cells import Grid, grid_of
+from twodiscs.sampling.many.cells import CellGrid, grid_of
 from twodiscs.sampling.many.insertions import around
 from twodiscs.sampling.rounds import in_a_thread, in_threads
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
 from twodiscs.theory import channel
 
 #: The least free fraction of (AB)^N for rejection, which then takes less time than a chain.
-LEAST = 1e-3
+LEAST_FREE = 1e-3
 
 #: Sweeps of a chain, and the least number of sizes of its moves; each is half of the one before.
-SWEEPS, SCALES = 4000, 8
+TRIALS, SCALES = 4000, 8
 
 #: The most discs for rejection of heights in a channel: with more, too few would be accepted.
 MOST_REJECTED = 64
@@ -73,7 +73,7 @@ class Chain(NamedTuple):
     sweeps: int
     scales: int
     length: float = 0.0
-    grid: Grid | None = None
+    grid: CellGrid | None = None
 
 
 class Initial(NamedTuple):
@@ -101,7 +101,7 @@ def method(scene):
         return "channel"
     if scene.discs >= LARGE:
         return "chain"
-    return "rejection" if insertions.free_fraction(scene) >= LEAST else "chain"
+    return "rejection" if insertions.free_fraction(scene) >= LEAST_FREE else "chain"
 
 
 def initial_of(scene, by=None):
@@ -132,13 +132,13 @@ def _chain(scene):
     scales = min(62, max(SCALES, 2 + math.frexp(tightness)[1]))
     centres, grid = np.array(arrangement(scene)).T.copy(), large_grid(scene)
     if grid is None:
-        return Chain(centres, SWEEPS, scales)
+        return Chain(centres, TRIALS, scales)
     number, length = chains.plan(scene)
     return Chain(centres, number, scales, _rounded(length), grid)
 
 
 def large_grid(scene):
-    """Return the ``Grid`` of a ``Scene`` of at least ``LARGE`` discs; None for fewer."""
+    """Return the ``CellGrid`` of a ``Scene`` of at least ``LARGE`` discs; None for fewer."""
     return grid_of(scene) if scene.discs >= LARGE else None
 
 

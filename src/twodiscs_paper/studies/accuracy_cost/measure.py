@@ -29,7 +29,7 @@ from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import stratified_mean
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.separations import draw_constants
+from twodiscs.sampling.separations import separation_sampler
 from twodiscs.sampling.streams import open_stream, signed_uniform
 from twodiscs.theory import exact, plain
 from twodiscs.theory.quadrature import gauss_legendre
@@ -103,7 +103,7 @@ def by_scalar(scene, seed):
     """Return the ``Method`` of one trajectory after the other."""
     duration, hop = runs.replica_duration(scene), scalar.COUNTED.index(HOP)
     expected = exact.rate(scene, HOP) * duration * FEW_REPLICAS
-    given = FEW_REPLICAS, duration, scene.contact_distance, draw_constants(scene), (0, 0)
+    given = FEW_REPLICAS, duration, scene.contact_distance, separation_sampler(scene), (0, 0)
 
     def block(i):
         return scalar.count_blocks(np.uint64(seed), i, i + 1, *given)[0]
@@ -116,7 +116,7 @@ def by_steps(scene, seed, step):
     duration, hop = runs.replica_duration(scene), scalar.COUNTED.index(HOP)
     expected = exact.rate(scene, HOP) * duration * FEW_REPLICAS
     given = FEW_REPLICAS, LANES, round(duration / step), step, scene.contact_distance
-    draw = draw_constants(scene)
+    draw = separation_sampler(scene)
 
     def block(i):
         return timestepping.step_blocks(np.uint64(seed), i, i + 1, *given, draw)

@@ -13,7 +13,7 @@ import numpy as np
 from twodiscs.dynamics.ensemble import LANES, REPLICAS
 from twodiscs.dynamics.law import crosses
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.separations import draw_constants
+from twodiscs.sampling.separations import separation_sampler
 from twodiscs.sampling.starts import draw_starts
 from twodiscs.sampling.streams import open_stream
 from twodiscs_paper.studies.accuracy_cost.scalar import N
@@ -104,5 +104,5 @@ def run_blocks(scene, seed, first, stop, duration, step):
     steps = max(1, round(duration / step))
     return step_blocks(
         np.uint64(seed), first, stop, REPLICAS, LANES, steps, step, scene.contact_distance,
-        draw_constants(scene),
+        separation_sampler(scene),
     )  # fmt: skip

@@ -27,9 +27,9 @@ from twodiscs.points.estimates import Estimate, mean_of
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import (
     draw_configuration,
-    draw_constants,
     draw_crossing,
     draw_velocity,
+    separation_sampler,
 )
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact, laws
@@ -231,7 +231,7 @@ def measured(start, scene, hop, seed, events=EVENTS):
     oriented = scene
     if hop == "horizontal_hop":
         oriented = Box.of(scene).turned().scene(scene.radius)
-    draw, histogram = draw_constants(oriented), np.zeros(BINS + 1, np.int64)
+    draw, histogram = separation_sampler(oriented), np.zeros(BINS + 1, np.int64)
     means = draw_passages(
         np.uint64(seed), 0, BLOCKS, block, passages, cut, law_of(oriented), draw, width, histogram,
     )  # fmt: skip

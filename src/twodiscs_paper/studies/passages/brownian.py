@@ -151,7 +151,7 @@ def joined(counts):
 
 def of_crossings(point, counts):
     """Return {quantity: ``Estimate``} from the ``counts`` of random crossings at a ``point``."""
-    sizes = np.zeros(brownian.LARGEST + 2, np.int64)
+    sizes = np.zeros(brownian.LARGEST_CLUSTER + 2, np.int64)
     for n, number in counts["sizes"]:
         sizes[n] = number
     number = int(sizes.sum())

@@ -30,7 +30,7 @@ from twodiscs.points import estimates
 from twodiscs.points.estimates import LinearFit, mean_of
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.separations import draw_constants
+from twodiscs.sampling.separations import separation_sampler
 from twodiscs.sampling.starts import state_in, states
 from twodiscs.theory import exact, laws
 from twodiscs_paper.reference import DIGITS, exact_numbers
@@ -221,7 +221,7 @@ def sampling_rows(box, seed):
     radii += beside(box, [-(10.0**-k) for k in range(1, 13)])
     for i, (case, distance, radius) in enumerate(radii):
         scene = box.scene(radius)
-        draw, volume = draw_constants(scene), exact.volume(scene)
+        draw, volume = separation_sampler(scene), exact.volume(scene)
         prism = volume / (scene.range_x * scene.range_y) ** 2
         due = min(volume / 2 / draw.mass, 1.0)
         point = montecarlo.conditioned_point(

@@ -36,7 +36,7 @@ REFLECTED, KICKED, TOGETHER, SINGLY = range(4)
 CROSSINGS = 2**6
 
 #: Clusters of more crossings than this are counted as the largest ones.
-LARGEST = 2**14
+LARGEST_CLUSTER = 2**14
 
 #: Rejected steps that cross have lengths up to ``LONGEST`` standard deviations: all but 2e-8.
 LONGEST = 6.0
@@ -237,7 +237,7 @@ def cluster_sizes(kind, step, room, half, seed, first, stop):
     A cluster are the crossings between two visits to an end of the ring. A random crossing is
     followed forwards and backwards, in the blocks ``first`` … ``stop`` − 1.
     """
-    sizes, state, other = np.zeros(LARGEST + 1, np.int64), np.zeros(8), np.zeros(8)
+    sizes, state, other = np.zeros(LARGEST_CLUSTER + 1, np.int64), np.zeros(8), np.zeros(8)
     breadth, tried, steps = 1.0 + room, 0, 0
     for block in range(first, stop):
         stream = open_stream(seed, block)
@@ -246,6 +246,6 @@ def cluster_sizes(kind, step, room, half, seed, first, stop):
             size = 1 + int(state[7])
             later, more = follow(state, kind, step, half, breadth, stream)
             earlier, less = follow(other, kind, step, half, breadth, stream)
-            sizes[min(size + later + earlier, LARGEST)] += 1
+            sizes[min(size + later + earlier, LARGEST_CLUSTER)] += 1
             steps += more + less
     return sizes, tried, steps

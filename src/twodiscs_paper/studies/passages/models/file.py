@@ -228,7 +228,7 @@ def recorded(scene, step, number, replicas, seed, friction=None):
     places[0] = states[: scene.discs]
     kicks = engine.kicks_of(moving, replicas, seed)
     for k in range(1, number + 1):
-        engine.advance_scene(moving, states, laps, step, kicks)
+        engine.advance_all(moving, states, laps, step, kicks)
         places[k] = states[: scene.discs] + scene.width * laps
     return places
 
