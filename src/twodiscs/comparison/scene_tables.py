@@ -537,11 +537,9 @@ class Trajectory(Table):
     @staticmethod
     def rows(box, radius, seed):
         """Return the events of one trajectory in a ``Box``, in order."""
-        from twodiscs.dynamics.trajectory import columns, trajectory  # which compiles
+        from twodiscs.dynamics.trajectory import trajectory_rows  # which compiles
 
-        scene = box.scene(radius)
-        names = columns(scene.discs)
-        return [dict(zip(names, row, strict=True)) for row in trajectory(scene, seed)]
+        return trajectory_rows(box.scene(radius), seed)
 
 
 # Checks and cost ----------------------------------------------------------------------------------

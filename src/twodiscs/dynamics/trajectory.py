@@ -91,6 +91,16 @@ def state_of(scene, start):
     return path_of(scene).state_of(scene, start)
 
 
+def trajectory_rows(scene, seed):
+    """Return the rows of ``followed`` as {column: value}, None for what an event has not."""
+    rows, names, parts = [], columns(scene.discs), components(scene)
+    for time, event, first, second, state in followed(scene, seed):
+        known = dict(zip(parts, map(float, state), strict=True))
+        known |= {"time": time, "event": event, "first": first, "second": second}
+        rows.append({name: known.get(name) for name in names})
+    return rows
+
+
 def followed(scene, seed, start=None, duration=None, progress=None):
     """Return one trajectory of a ``Scene``, as a list of what ``events_of`` yields.
 
