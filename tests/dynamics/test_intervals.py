@@ -25,7 +25,7 @@ PAPER = Scene(1.5, 1.0, 0.2)
 def check_mean(scene, event, number):
     found = runs.hop_intervals(scene, event, number, 9)
     assert abs(found.mean - mean_times(scene)[event]) <= 5 * found.stderr
-    assert sum(found.counts) + found.overflow == found.intervals >= number
+    assert sum(found.equal.counts) + found.overflow == found.intervals >= number
     assert math.frexp(found.bin_width)[0] == 0.5  # a power of two
 
 
@@ -47,7 +47,7 @@ def test_hop_intervals_have_the_exact_density_at_zero(event, side):
     scene = PAPER.with_radius(0.1)
     found = runs.hop_intervals(scene, event, 8_000_000, 10)
     width, n = found.bin_width, found.intervals
-    counts, squares = np.array(found.counts[:2]), np.array(found.squares[:2])
+    counts, squares = np.array(found.equal.counts[:2]), np.array(found.equal.squares[:2])
     error = np.sqrt(squares - counts**2 / found.chains) / (n * width)
     # The law is p(0) − at²: the density has no linear term.
     at_zero = np.array([7.0, -1.0]) / 6
@@ -129,7 +129,7 @@ def test_intervals_of_many_have_the_mean_of_theory_or_monte_carlo(name):
         mean, error = 1 / known[event], spread[event] / known[event] ** 2
     assert abs(found.mean - mean) <= 5 * math.hypot(found.stderr, error)
     assert found.stderr < 1.5e-3 * mean
-    assert sum(found.counts) + found.overflow == found.intervals >= 2_000_000
+    assert sum(found.equal.counts) + found.overflow == found.intervals >= 2_000_000
 
 
 @pytest.mark.parametrize("name", ["three", "three, across", "four on a ring"])

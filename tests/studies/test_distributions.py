@@ -183,7 +183,7 @@ def test_intervals_are_those_of_chains():
     assert len(hazards) > 20
     for row in hazards:
         ends = [round(row[end] / chains.bin_width) for end in ("first", "last")]
-        left = alive - sum(chains.counts[slice(*ends)])
+        left = alive - sum(chains.equal.counts[slice(*ends)])
         time = row["last"] - row["first"]
         # Chains are correlated: the error of their counts may be some times larger.
         other, error = math.log(alive / left) / time, 3 * math.sqrt(1 / left - 1 / alive) / time
