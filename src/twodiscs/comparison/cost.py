@@ -122,7 +122,7 @@ def _pilot(run, name, seconds):
             error = math.sqrt(part.planned / blocks)
         errors = {name: error * run.target[name]}
     errors = {event: error * math.sqrt(blocks) for event, error in errors.items()}
-    return Pilot(each, part.events_of(sums) / blocks, replicas, errors, part.first_round)
+    return Pilot(each, part.simulated_in(sums) / blocks, replicas, errors, part.first_round)
 
 
 def blocks_wanted(scene, pilots, target):
