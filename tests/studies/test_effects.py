@@ -300,15 +300,16 @@ def test_costs_are_of_every_scene_and_of_what_is_watched(monkeypatch):
 
     def lockstep(blocks, scene=cost.SCENE, events=EVENTS, bare=None):
         watched[scene.has_effects, tuple(events)] = scene
-        return 2.0 if scene.has_effects else 4.0, 1.0 if events == EVENTS else 0.5
+        number = 8.0 if bare else 2.0 if scene.has_effects else 4.0
+        return number, 1.0 if events == EVENTS else 0.5
 
     monkeypatch.setattr(cost, "lockstep", lockstep)
     monkeypatch.setattr(cost, "package_without_effects", lambda: "bare")
     monkeypatch.setattr(cost, "instructions", lambda work, package: 10 if package == "bare" else 20)
     rows = EffectsCost.rows({}, {name: BOXES[name] for name in ("torus", "rough")})
     assert {row["variant"]: row["ratio"] for row in rows} == {
-        "without_effects": 1.0, "plain": 1.0, "torus": 1.0, "rough": 0.5, "plain_walls": 2.0,
-        "friction": 0.5, "all effects": 1.0,
+        "without_effects": 1.0, "plain": 0.5, "torus": 0.5, "rough": 0.25, "plain_walls": 1.0,
+        "friction": 0.25, "all effects": 0.5,
     }  # fmt: skip
     assert (True, ("disc_collision",)) in watched
     assert (False, (*WALLS, "any_wall")) in watched
