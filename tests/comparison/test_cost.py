@@ -242,6 +242,19 @@ def test_a_run_has_its_first_round_whatever_is_asked_and_the_replicas_of_bursts(
     assert found == {"all": pytest.approx(needed)}
 
 
+def test_an_event_that_no_pilot_counted_has_no_price_and_no_forecast():
+    errors = {"disc_collision": 0.1, "horizontal_hop": math.inf}
+    pilot = cost.Pilot(1e-3, 1e5, 1024, errors, 32)
+    (price,) = cost._prices_of_times(SCENE, {"all": pilot})
+    assert price.quantity == "disc_collision_time"
+    run = CountingRun(SCENE, dict.fromkeys(errors, 1e-3), 10**7, 1)
+    found = cost.forecast(run, {"all": pilot})
+    assert found.events == pytest.approx(run.parts["all"].budget)
+    assert found.shortfall(run).endswith(
+        "before there are enough events horizontal_hop for an error"
+    )
+
+
 @pytest.mark.parametrize(
     ("scene", "floor"),
     [(SCENE, 1e-15), (td.Scene(1.5, 1.0, 0.15, discs=3), 1e-14),

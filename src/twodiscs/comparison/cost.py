@@ -234,10 +234,13 @@ class Price:
 
 
 def _prices_of_times(scene, found):
-    """Yield the prices of mean times from the pilots that were ``found``."""
+    """Yield the prices of mean times from the pilots that were ``found``.
+
+    An event without a count whose rate is not known has none.
+    """
     for event in scene.events:
         for name, pilot in found.items():
-            if event in pilot.errors:
+            if math.isfinite(pilot.errors.get(event, math.inf)):
                 method = "dynamics" if name == "all" else "strips"
                 c, least = pilot.errors[event] ** 2 * pilot.seconds, pilot.first_round
                 yield Price(f"{event}_time", method, c, least * pilot.seconds)
