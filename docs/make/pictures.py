@@ -29,7 +29,7 @@ PANELS = {
     "hazard": ("distributions", 0, ""),
     "effects": ("effects", 0, "radius $r$"),
     "passages": ("transmission", 0, ""),
-    "more_discs": ("more_discs", 0, "number of discs $N$"),
+    "more_discs": ("more_discs", 1, "number of discs $N$"),
 }
 
 #: Inches of a picture from bottom to top, the place of its panel, dots per inch: two are a pixel.
@@ -62,7 +62,7 @@ def keep_panel(figure, number, abscissa):
     for legend in figure.legends:
         legend.set_visible(False)
         names = [text.get_text() for text in legend.get_texts()]
-        kept.legend(legend.legend_handles, names, loc="upper left")
+        kept.legend(legend.legend_handles, names, ncols=2, fontsize=6)
     if abscissa:
         kept.set_xlabel(abscissa)
         kept.tick_params(labelbottom=True)
