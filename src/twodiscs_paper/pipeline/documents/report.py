@@ -29,7 +29,7 @@ from twodiscs_paper.pipeline.results.provenance import commit, versions
 #: scenes. If a figure of a scene is missing, another one replaces it. All other figures are
 #: thumbnails.
 KEY, SOME = ("mean_hop_time", "mean_collision_time"), 2
-KEY_OF_ALL = ("tails", "distributions", "passages", "effects", "accuracy_cost_by_radius")
+KEY_OF_ALL = ("accuracy_cost", "tails", "distributions", "passages", "effects")
 
 #: The report opens on all mean times if they have at most this number of rows.
 FEW = 60
