@@ -92,7 +92,7 @@ def test_the_past_is_as_the_future(inertia):
             passages.begin(scene.discs, states, side, net, hops),
             np.full(states.shape[1], 4.0),
         )
-        passages.follow(now, rest, 4.0, net, hops, pair.law, None)
+        passages.follow_pair(now, rest, 4.0, net, hops, pair.law, None)
         found.append(hops)
     change = found[1] - found[0]
     five(change.mean(), 0.0, change.std() / math.sqrt(change.size))

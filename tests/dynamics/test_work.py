@@ -177,7 +177,7 @@ def test_a_strip_is_no_longer_than_its_events_allow():
         {"depth": 0.3495539972883679, "mass_ratio": 109.0, "radius_ratio": 2.417163684327618},
     ).scene(0.041694469802592275)  # fmt: skip
     found = strip.strip_of(scene, "vertical_hop")
-    assert 2 * found.time * exact.event_rate(scene) <= strip.MOST_EVENTS
+    assert 2 * found.time * exact.event_rate(scene) <= strip.EVENTS_OF_PATH
 
 
 @pytest.mark.parametrize("hop", HOPS)
