@@ -197,6 +197,7 @@ MUTANTS = [
     ("room of a long box", "room = long - 4 * scene.radius", "room = long - 2 * scene.radius"),
     ("ratio of another box in the errata", "return right, ratios[0], radius", "return right, ratios[-1], radius"),
     ("samples among the events of the report", 'int(cost["events"][cost["stage"] == "dynamics"].sum())', 'int(cost["events"].sum())'),
+    ("shards that depend on the accuracy", "work=lambda w: SCENES[w.scene].shard_arguments(w.stage)", "work=lambda w: SCENES[w.scene].arguments(w.stage)"),
 ]
 # fmt: on
 

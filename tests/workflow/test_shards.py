@@ -57,6 +57,28 @@ def test_shards_are_jobs_that_a_dry_run_shows(unbuilt, tmp_path):
     assert len(found["shard"]) > 3
 
 
+def test_shards_do_not_depend_on_the_accuracy(unbuilt, tmp_path):
+    """Those that Snakemake takes for made, here by ``--touch``, are not planned again."""
+    place = Checkout(tmp_path, unbuilt)
+    change(place)
+
+    def planned():
+        return {wildcards for rule, wildcards in place.jobs(TABLE) if rule == "shard"}
+
+    first, files = planned(), []
+    for wildcards in first:
+        one = dict(word.split("=") for word in wildcards)
+        name = "results/{scene}/shards/{stage}/{radius}/{part}-{first}-{stop}.json".format(**one)
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("{}")
+        files.append(name)
+    place.snakemake("--cores", "1", "results/code/physics.sha256")
+    place.snakemake("--cores", "1", "--touch", "--", *files)
+    change(place, accuracy=5e-4)
+    assert planned()
+    assert not planned() & first
+
+
 def test_shards_have_the_random_numbers_of_their_point():
     """Those of another radius would make errors of two radii the same."""
     radii = [0.05, 0.24, 0.245]
