@@ -16,6 +16,7 @@ import pytest
 from commands import command
 from snakemake.jobs import Reason
 
+import twodiscs
 from twodiscs import arguments, cli
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.checks import InputError
@@ -70,6 +71,30 @@ def test_csv_has_the_numbers_of_the_radius(monkeypatch, capsys):
     times = exact_numbers(Scene(1.5, 1, 0.1))["mean_times"]
     for event in EVENTS:
         assert float(rows[f"{event}_time"]["exact"]) == times[event]
+
+
+@pytest.mark.parametrize(
+    ("name", "given"),
+    [
+        ("simulate", {"error": 0.1, "duration": 5.0, "budget": 10**6, "events": ["any_wall"]}),
+        ("sample", {"samples": 10**6, "quantities": ["volume"], "shell": 0.1}),
+        ("trajectory", {"duration": 5.0, "start": [0.0, 1.0]}),
+    ],
+)
+def test_every_option_reaches_the_function(name, given, monkeypatch):
+    given |= {"seed": 7, "name": "a"} | ({} if name == "trajectory" else {"cores": 2})
+    taken = {}
+
+    def function(scene, **options):
+        taken.update(options)
+        raise InputError("enough")
+
+    monkeypatch.setattr(twodiscs, name, function)
+    words = ["--radius", "0.2"]
+    for option, value in given.items():
+        words += [f"--{option}", *(value if isinstance(value, list) else [value])]
+    assert command(monkeypatch, cli, name, *BOX, *map(str, words)) == 2
+    assert taken == given
 
 
 def test_a_trajectory_begins_at_its_start(monkeypatch, capsys):
