@@ -48,8 +48,8 @@ PATIENCE = 1200
 # fmt: off
 MUTANTS = [
     ("reach of an image", "return side / 2 if axis in self.periodic", "return side if axis in self.periodic"),
-    ("hop at its threshold", "if scene.spread(axis) <= scene.exact", "if scene.spread(axis) < scene.exact"),
-    ("discs that jam fit", "scene.spread() > scene.exact_contact**2", "scene.spread() >= scene.exact_contact**2"),
+    ("hop at its threshold", "if scene.squared_reaches(axis) <= scene.exact", "if scene.squared_reaches(axis) < scene.exact"),
+    ("discs that jam fit", "scene.squared_reaches() > scene.exact_contact**2", "scene.squared_reaches() >= scene.exact_contact**2"),
     ("hop at its threshold of energy", "return lowest < ENERGY", "return lowest <= ENERGY"),
     ("conserved momentum", " + spin) - len(self.conserved)", " + spin)"),
     ("rough walls keep momentum", "return tuple(self.periodic) if self.moment_of_inertia is None else ()", "return tuple(self.periodic)"),

@@ -331,10 +331,10 @@ def recorded(scene, event, seed, first, stop, going):
     """
     edges = wide_edges()
     # Intervals beyond all bins, or in the last ones that fill no wide bin, have no wide bin.
-    beyond = BINS + len(edges)
-    wide = np.full(BINS + 1, beyond)
+    last = BINS + len(edges)
+    wide = np.full(BINS + 1, last)
     wide[: edges[-1]] = BINS + np.repeat(np.arange(1, len(edges)), np.diff(edges))
-    sums = np.zeros((chains_of(scene).INTERVAL_SUMS, beyond + 1), np.int64)
+    sums = np.zeros((chains_of(scene).INTERVAL_SUMS, last + 1), np.int64)
     record, bins = chains_of(scene).record_intervals, (_width(scene, event), wide)
     return record(scene, event, seed, first, stop, CHAINS, bins, sums, going), sums
 

@@ -45,7 +45,7 @@ def path_of(scene):
 
 
 def new_wraps(scene, number):
-    """Return an array for ``advance_all`` to count in, for ``number`` states of a ``Scene``."""
+    """Return an array in which ``advance_all`` counts, for ``number`` states of a ``Scene``."""
     return path_of(scene).new_wraps(scene, number)
 
 
@@ -72,7 +72,7 @@ def unwrap(scene, columns, wraps):
 
 
 def events_of(scene, state, duration, seed=0):
-    """Yield (time, event, first, second, state) of all that happens within ``duration``.
+    """Yield (time, event, first, second, state) of each event within ``duration``.
 
     ``state`` is one of ``starts.states`` as a tuple or column. The first event is "start", the last
     one "end"; hops are events, walls are named by axis and disc, "wall_x1" say. With friction

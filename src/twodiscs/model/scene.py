@@ -368,7 +368,7 @@ class Scene:
         side = Fraction(self.side(axis))
         return side / 2 if axis in self.periodic else side - self.exact_contact
 
-    def spread(self, *without):
+    def squared_reaches(self, *without):
         """Return the sum of the squared reaches of all axes but some, an exact fraction."""
         return sum(self.reach(axis) ** 2 for axis in self.axes if axis not in without)
 
@@ -399,7 +399,7 @@ class Scene:
         For equal discs in the plane it is B − σ for the horizontal hop and A − σ for the vertical
         one. It is negative if the hop is blocked.
         """
-        spread, sigma = self.spread(DECLARED[hop].axis), self.exact_contact
+        spread, sigma = self.squared_reaches(DECLARED[hop].axis), self.exact_contact
         return float(spread - sigma**2) / (math.sqrt(spread) + float(sigma))
 
     @cached_property

@@ -27,11 +27,11 @@ def _fits(scene):
         return False
     if any(scene.reach(axis) <= 0 for axis in scene.axes):
         return False
-    return scene.spread() > scene.exact_contact**2
+    return scene.squared_reaches() > scene.exact_contact**2
 
 
 def _check_energy(scene):
-    if _lowest_potential(scene, scene.spread("y")) >= ENERGY:
+    if _lowest_potential(scene, scene.squared_reaches("y")) >= ENERGY:
         raise InputError(
             f"field {scene.field!r} is too strong at radius {scene.radius!r}: with a total "
             "energy of 1/2 the discs cannot leave the bottom, where they do not fit side by "
@@ -64,13 +64,13 @@ def open_axes(scene):
 
 
 def _has_gap(scene, axis):
-    if scene.spread(axis) <= scene.exact_contact**2:
+    if scene.squared_reaches(axis) <= scene.exact_contact**2:
         return False
     if axis == "y":
         (r1, r2), (m1, m2) = scene.radii, scene.masses
         lowest = scene.field * (m1 * (r2 - r1) if r2 > r1 else m2 * (r1 - r2))
     else:
-        lowest = _lowest_potential(scene, scene.spread(axis, "y"))
+        lowest = _lowest_potential(scene, scene.squared_reaches(axis, "y"))
     return lowest < ENERGY
 
 
@@ -96,9 +96,9 @@ def _confined(scene, axis):
     if r1 <= r2:
         return True
     behind = (r1 - r2) ** 2
-    if scene.spread(axis) + behind <= scene.exact_contact**2:
+    if scene.squared_reaches(axis) + behind <= scene.exact_contact**2:
         return True
-    return _lowest_potential(scene, scene.spread(axis, "y") + behind) >= ENERGY
+    return _lowest_potential(scene, scene.squared_reaches(axis, "y") + behind) >= ENERGY
 
 
 def copies(scene, event):

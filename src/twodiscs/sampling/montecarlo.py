@@ -439,8 +439,8 @@ def weighted_ends(scene, epsilon):
     walled = tuple("xyz".index(axis) for axis in scene.walled)
 
     def outer(thick):
-        reach = scene.contact_distance + scene.fastest * thick
-        return reach * reach
+        end = scene.contact_distance + scene.fastest * thick
+        return end * end
 
     makers = {
         "hop": lambda thick: scene.fastest * thick,

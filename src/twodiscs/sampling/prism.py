@@ -58,9 +58,9 @@ def neck_of(scene, hop, within):
     squares = {a: scene.reach(a) ** 2 for a in scene.axes if a != axis}
     missing = scene.exact_contact**2 - within**2 - sum(squares.values())
     least, span = dict.fromkeys("xyz", 0.0), dict.fromkeys("xyz", 0.0)
-    for a, reach in squares.items():
-        least[a] = math.sqrt(max(missing + reach, 0))
-        span[a] = float(min(-missing, reach)) / (float(scene.reach(a)) + least[a])
+    for a, square in squares.items():
+        least[a] = math.sqrt(max(missing + square, 0))
+        span[a] = float(min(-missing, square)) / (float(scene.reach(a)) + least[a])
     # In a field the upper disc is at least at this height.
     rise = least["y"] - abs(scene.radii[0] - scene.radii[1])
     most = 1 - 2 * scene.field * min(scene.masses) * max(rise, 0.0)

@@ -112,7 +112,7 @@ def new_log(discs, entries, components=4):
 
 @optional(lambda discs, log: False)
 def is_full(discs, log):
-    """Return whether there is no room for an event, and then a kick and all hops before it."""
+    """Return whether the log lacks room for one more event, with a kick and all hops before it."""
     return log.size[0] + discs * discs >= log.times.size
 
 
@@ -150,7 +150,7 @@ def beyond(x, laps, ring):
 
 @optional(lambda time, log: None)
 def go_on(time, log):
-    """Let the times of a log begin later by ``time``."""
+    """Move the zero of the times of a log later by ``time``."""
     log.origin[0] += time
 
 

@@ -127,9 +127,10 @@ def replica_duration(scene):
 
 
 def block_replicas(scene):
-    """Return how many replicas of a ``Scene`` a block has: fewer of ``LARGE`` numbers of discs.
+    """Return the number of replicas of a block.
 
-    There are still fewer, for longer, if contacts are so many that initial states take long.
+    ``LARGE`` numbers of discs have fewer replicas. If their initial states take many contacts, they
+    have still fewer, which last longer.
     """
     if scene.discs < LARGE:
         return REPLICAS
@@ -155,7 +156,7 @@ def expected_rate(scene, event):
 
 
 def run_blocks(scene, events, seed, first, stop, duration, **shape):
-    """Count all events in some blocks, see ``runs.run_blocks``; few discs detect all."""
+    """Return the counts of ``runs.run_blocks``; few discs count hops whether asked or not."""
     hops = any(event in HOPS for event in events)
     counts = run_classes(scene, seed, first, stop, duration, hops=hops, **shape)
     return of_events(*counts)
@@ -210,7 +211,7 @@ def simulated_events(sums):
 
 
 def planned(needed, affordable):
-    """Return the number of planned blocks: the number ``needed``, within the budget."""
+    """Return the number of planned blocks, which the budget limits."""
     return min(needed, affordable)
 
 
@@ -269,13 +270,13 @@ class Followed:
         self.hops = [True if hop in counted else None for hop in ("vertical_hop", "horizontal_hop")]
 
     def start(self, state, seed, replica=0):
-        """Begin with a ``state``, a column of numbers, and the kicks of its stream."""
+        """Begin a path with a ``state``, a column of numbers, and the kicks of its stream."""
         self.kicks = kicks_of(self.scene, 1, seed, replica)
         self.log.origin[0] = self.laps[:] = 0.0
         cells.start_from(state, 0, self.motion, self.grid, self.law)
 
     def go_on(self, duration):
-        """Yield the log, and the order of its entries, of one stretch after the other."""
+        """Yield the log of one stretch after the other, with the order of its entries in time."""
         while duration > 0.0:
             self.log.size[0] = 0
             duration = cells.follow_discs(
@@ -311,25 +312,25 @@ def _window(scene, hop):
 
 
 def intervals_of_chain(scene, hop):
-    """Return a number of intervals; up to twice as many begin in the window of a chain."""
+    """Return the least number of intervals of a chain; its window has up to twice as many."""
     return max(RETURNS, int(_window(scene, hop) / mean_interval(scene, hop) / 2))
 
 
 def events_per_interval(scene, hop):
-    """Return the wall and disc events per interval, as if there were ``intervals_of_chain``."""
+    """Return the most wall and disc events per interval, with their work."""
     window = _window(scene, hop)
     events = window * expected_event_rate(scene) * work_per_event(scene)
     return events / intervals_of_chain(scene, hop)
 
 
 def record_intervals(scene, hop, seed, first, stop, chains, bins, sums, going):
-    """Add the intervals between hops to ``sums``, see ``lockstep.record_intervals``."""
+    """Add the intervals between hops to ``sums`` and return the times of the chains."""
     window = _window(scene, hop)
     return record_within(window, scene, hop, seed, first, stop, chains, bins, sums, going)
 
 
 def record_within(window, scene, hop, seed, first, stop, chains, bins, sums, going):
-    """Add the intervals that begin within a ``window`` of time, in chains of some blocks."""
+    """Add the intervals that begin within a ``window`` of time, see ``lockstep``."""
     if large_grid(scene) is None:
         hops_x, kicks = True if hop == "horizontal_hop" else None, new_kicks(scene, LANES)
         given = window, law_of(scene), hops_x, bins, sums, going, kicks

@@ -207,7 +207,7 @@ def rub_walls(u, v, l, on_x, on_y, s, rough):
 
 @optional(lambda gap, speed, code, sooner_gap, sooner_speed, number, half: (gap, speed, code))
 def first_of(gap, speed, code, other_gap, other_speed, number, half):
-    """Return (gap, speed, code) of what comes first; without ``half`` (None) there is one only."""
+    """Return (gap, speed, code) of the earlier event; without ``half`` (None) of the first one."""
     sooner = other_gap * speed < gap * other_speed
     return (
         other_gap if sooner else gap,
@@ -250,7 +250,7 @@ def contact_of(dx, dy, du, dv, sigma):
 
 @optional(lambda limit, code, ring: (limit, code))
 def soonest(limit, code, ring):
-    """Return (time, code) of what ends a flight before anything happens."""
+    """Return (time, code) of the end of a flight without an event."""
     again = ring[2] < limit
     return ring[2] if again else limit, LOOK_AGAIN if again else code
 

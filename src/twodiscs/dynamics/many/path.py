@@ -33,7 +33,7 @@ LONGEST_TRAJECTORY, MOST_ROWS = 1500, 2**13
 
 
 def new_wraps(scene, number):
-    """Return the counts of rounds for ``number`` states: none."""
+    """Return the rounds that ``number`` states have made on a ring, all 0."""
     return np.zeros((scene.discs, number))
 
 
@@ -114,7 +114,7 @@ def events_of(scene, state, duration, seed=0):
 
 
 def _logged(scene, state, duration, seed):
-    """Yield the ``events_of`` a scene whose kernel has a log; only the state needs all discs."""
+    """Yield ``events_of`` from the log of a path; a state is put together from all discs."""
     path = Followed(scene, scene.events)
     rounds = np.round(state[: scene.discs] / scene.width) if scene.periodic else 0.0
     inside = state.copy()
@@ -147,18 +147,18 @@ def _then(at, lag):
 
 
 def state_of(scene, start):
-    """Return ``start`` as an array of numbers, checked as in ``state_of``."""
+    """Return ``start`` as an array of numbers, see ``trajectory.state_of``."""
     n, state = scene.discs, np.array(given_state(scene, start))
     (x, y), velocities = state[: 2 * n].reshape(2, n), state[2 * n :]
     for axis in scene.walled:
         centres = x if axis == "x" else y
-        reach = scene.side(axis) / 2 - scene.radius
-        if (disc := int(np.argmax(np.abs(centres)))) >= 0 and abs(centres[disc]) > reach + (
+        most = scene.side(axis) / 2 - scene.radius
+        if (disc := int(np.argmax(np.abs(centres)))) >= 0 and abs(centres[disc]) > most + (
             ROUNDING * scene.side(axis)
         ):
             raise InputError(
                 f"start must have disc {disc + 1} inside the box, with {axis}{disc + 1} between "
-                f"{-reach!r} and {reach!r}, not {float(centres[disc])!r}"
+                f"{-most!r} and {most!r}, not {float(centres[disc])!r}"
             )
     dx = x[:, None] - x
     if scene.periodic:

@@ -255,7 +255,7 @@ def run_blocks(
 
 
 def planned(needed, affordable):
-    """Return the number of planned blocks, the number ``needed``: rare hops have own parts."""
+    """Return the number of planned blocks, ``needed``, because rare hops have their own parts."""
     return needed
 
 

@@ -120,7 +120,7 @@ def advance_all(scene, states, wraps, time, kicks):
 
 
 def new_wraps(scene, number):
-    """Return the counts of jumps for ``number`` states: none."""
+    """Return the jumps that ``number`` states have made along x, y and z, all 0."""
     return np.zeros((3, number))
 
 
@@ -174,7 +174,7 @@ class Jumps:
 
 
 def events_of(scene, state, duration, seed=0):
-    """Yield (time, event, first, second, state) of all that happens within ``duration``.
+    """Yield (time, event, first, second, state) of each event within ``duration``.
 
     ``state`` of the ``Scene`` is as in ``law``. Hops are events here, at their times within a
     flight. Kicks are events, too, and come from the streams of ``seed``. Walls are named by axis
@@ -235,11 +235,11 @@ def state_of(scene, start):
         side = scene.side(axis)
         if axis in scene.walled:
             for disc, radius in enumerate(scene.radii, 1):
-                reach, centre = side / 2 - radius, state[f"{axis}{disc}"]
-                if abs(centre) > reach + ROUNDING * side:
+                most, centre = side / 2 - radius, state[f"{axis}{disc}"]
+                if abs(centre) > most + ROUNDING * side:
                     raise InputError(
                         f"start must have disc {disc} inside the box, with {axis}{disc} between "
-                        f"{-reach!r} and {reach!r}, not {centre!r}"
+                        f"{-most!r} and {most!r}, not {centre!r}"
                     )
         apart[axis] = state[f"{axis}1"] - state[f"{axis}2"]
         if axis in scene.periodic:

@@ -105,5 +105,5 @@ def around_columns(column, columns, ring):
 
 @optional(lambda low, high, columns, ring: (max(low, 0), min(high, columns - 1)))
 def columns_within(low, high, columns, ring):
-    """Return the first and the last column; on a ring they may be one turn too low or high."""
+    """Return the numbers of the first and last column; on a ring they may be a turn off."""
     return low, high

@@ -78,10 +78,10 @@ def first_contact(i, axis, sign, left, centres, places, grid, initial):
     at_x, at_y = centres[0, i], centres[1, i]
     side = borders[1] - borders[0]
     beyond = abs(borders[along + (1 if sign > 0.0 else 0)] - centres[axis, i]) - sigma
-    reach, disc = left, -1
+    distance, disc = left, -1
     for step in range(columns + rows):
         # The next cells have no contact that is nearer.
-        if step > 0 and beyond + (step - 1) * side >= reach:
+        if step > 0 and beyond + (step - 1) * side >= distance:
             break
         a = along + (step if sign > 0.0 else -step)
         for b in range(across - 1, across + 2):
@@ -96,10 +96,10 @@ def first_contact(i, axis, sign, left, centres, places, grid, initial):
                 square = (sigma - apart) * (sigma + apart)
                 if square > 0.0 and sign * ahead > 0.0:
                     gap = sign * ahead - math.sqrt(square)
-                    if gap < reach:
-                        reach, disc = max(gap, 0.0), k
+                    if gap < distance:
+                        distance, disc = max(gap, 0.0), k
                 k = places.after[k]
-    return reach, disc
+    return distance, disc
 
 
 @optional(lambda left, ring: left)

@@ -351,7 +351,7 @@ def by_chain(state, initial, centres, chain):
 
 @optional(lambda chain: False)
 def is_there(chain):
-    """Return whether there is a chain."""
+    """Return True if a scene has a ``Chain``."""
     return True
 
 
@@ -503,7 +503,7 @@ def states(scene, number, seed, block=0, by=None):
 
 
 def states_of(initial, number, seed, block):
-    """Return ``states`` of an ``Initial``."""
+    """Return ``number`` states that an ``Initial`` draws from the stream of a ``block``."""
     states = np.zeros((initial.rows, number))
     draw_states(open_stream(np.uint64(seed), block), initial, states)
     return states
