@@ -52,7 +52,7 @@ SHELLS = (0.3, 0.02)
 FEW_REPLICAS, ON_SURFACE = 64, 1 << 16
 
 #: Relative distances from the radius where the hop is blocked at which c is measured.
-DISTANCES = (0.6, 0.2, 0.05, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+DISTANCES = (0.6, 0.2, 0.05, 1e-2, 1e-4, 1e-6)
 
 #: Calls of methods that are deterministic and take microseconds, and the nodes of quadrature.
 CALLS, NODES = 100, range(1, 17)
