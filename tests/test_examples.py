@@ -149,7 +149,14 @@ def test_citation_agrees_with_the_package():
     assert twodiscs.__name__ == citation["title"].partition(":")[0]
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if name != "docs/python.md"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow) if name == "docs/recipes.md" else name
+        for name in NAMES
+        if name != "docs/python.md"
+    ],
+)
 def test_python_runs(name, tmp_path):
     """The blocks of a page are one program, whose assertions hold; test_tutorial runs the other."""
     program = "".join(body for kind, body in blocks(name) if kind == "python")

@@ -47,6 +47,7 @@ def test_the_site_is_complete(tmp_path):
     assert recipes in (found if isinstance(found, list) else [found])
 
 
+@pytest.mark.slow
 def test_the_lines_of_the_gallery_draw_their_figures(tmp_path, monkeypatch):
     assert {made.target(name) for name in ENTRIES} <= {*TARGETS}
     monkeypatch.chdir(tmp_path)

@@ -46,7 +46,7 @@ def five(found, due, error):
     ("periodic", "inertia"),
     [
         ("", None),
-        ("x", None),
+        pytest.param("x", None, marks=pytest.mark.slow),
         pytest.param("", 0.5, marks=pytest.mark.slow),
         pytest.param("x", 0.5, marks=pytest.mark.slow),
     ],
