@@ -397,7 +397,7 @@ def test_a_dry_run_counts_the_jobs_of_a_scene_and_names_a_reason():
 
 def test_a_build_ends_with_the_files_of_its_targets(tmp_path):
     targets = [("pressure", [], ["a.pdf", "a.png"]), ("explorer", ["e.html"], ["e.js"])]
-    targets += [("report", ["r.html"], []), ("all", [], ["r.html"]), ("check", ["c"], [])]
+    targets += [("report", ["r.html"], []), ("default", [], ["r.html"]), ("check", ["c"], [])]
     lines = build.closing(tmp_path, _dag(targets, []), [])
     assert lines == "pressure: a.pdf, a.png\nexplorer: e.html\n"
 

@@ -179,11 +179,12 @@ def closing(results, dag, configured, scenes=()):
     last lines are about accuracies of ``scenes``, as described, that were not reached.
     """
     made = {str(path) for job in dag.jobs for path in job.output}
-    lines = [
-        f"{job.rule.name}: {', '.join(map(str, job.output or job.input))}"
-        for job in dag.targetjobs
-        if job.rule.name not in ("all", "check", "report")
-    ]
+    lines = []
+    for job in dag.targetjobs:
+        has_figures = job.rule.name in (*FIGURES, *STUDIES, "animation")
+        paths = job.input if has_figures else job.output
+        if paths and job.rule.name not in ("check", "report"):
+            lines.append(f"{job.rule.name}: {', '.join(map(str, paths))}")
     passed, report = Path(results, "check.passed"), Path(results, "report.html")
     if str(passed) in made:
         when = datetime.fromtimestamp(passed.stat().st_mtime)
