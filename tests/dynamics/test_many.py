@@ -175,7 +175,7 @@ def test_orders_are_those_of_the_ergodic_components(scene):
     for k in range(2):
         part = states[k * n : (k + 1) * n]
         part[:] = np.take_along_axis(part, order, axis=0)
-    many.advance_states(states, np.zeros((n, 2000)), 200.0, many.law_of(scene), None)
+    many.advance_states(states, np.zeros((n, 2000)), 200.0, many.law_of(scene), None, None)
     order = np.argsort(states[start : start + n], axis=0)
     if scene.periodic:  # up to a cyclic shift
         order = np.take_along_axis(order, (np.argmin(order, axis=0) + np.arange(n)[:, None]) % n, 0)

@@ -167,10 +167,13 @@ def test_advanced_states_are_those_of_the_other_kernel(scene):
     start = initial.states(scene, 20, 9)
     duration = engine.duration_of(scene, 4 * scene.discs)
     states, laps = start.copy(), np.zeros((scene.discs, 20))
-    engine.advance_all(scene, states, laps, duration, None)
+    counts = scene.periodic and scene.moment_of_inertia is None
+    hops, others = (np.zeros(20), np.zeros(20)) if counts else (None, None)
+    engine.advance_all(scene, states, laps, duration, None, hops)
     other, rounds = start.copy(), np.zeros((scene.discs, 20))
-    many.advance_states(other, rounds, duration, many.law_of(scene), None)
+    many.advance_states(other, rounds, duration, many.law_of(scene), None, others)
     assert np.array_equal(laps, rounds)
+    assert np.array_equal(hops, others)
     assert states == pytest.approx(other, abs=1e-7 * scene.width)
     states[2 * scene.discs :] *= -1
     engine.advance_all(scene, states, laps, duration, None)
@@ -254,7 +257,7 @@ def check_conserved(scene, events):
     pieces, laps = 20, np.zeros((n, 1))
     duration = engine.duration_of(scene, events / pieces)
     for _ in range(pieces):
-        many_cells.advance_all(states, laps, duration, epoch, law, grid, None)
+        many_cells.advance_all(states, laps, duration, epoch, law, grid, None, None)
         x, y, u, v = np.split(states[:, 0], 4)
         half = law.ring[1] * (1 + 1e-15) if law.ring else scene.range_x / 2
         assert np.max(np.abs(x)) <= half

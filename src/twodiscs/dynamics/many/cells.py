@@ -12,7 +12,9 @@ cannot meet another disc before.
 
 A hop of two discs is a change of sign of their separation. Both move straight after the later of
 their last events. All hops of a disc are therefore found at its events, by one comparison with each
-of the other discs. If no hop is counted, there are no comparisons.
+of the other discs. If no hop is counted, there are no comparisons. Along a ring the separation is
+that of the nearest image. It changes sign where the separation that is not folded is a multiple of
+the circumference, and also discs that go around between two events are counted.
 
 A ``Log`` has the times of all this, but hops are not in order in it. At the end of a stretch all
 discs are advanced to the same time, so no earlier hop is missing.
@@ -31,6 +33,7 @@ from twodiscs.dynamics.many.lockstep import (
     HORIZONTAL,
     VERTICAL,
     N,
+    add_hops,
     discs_in,
     nearest,
     new_spins,
@@ -263,38 +266,64 @@ def first_disc(tree):
 # Events -------------------------------------------------------------------------------------------
 
 
-@optional(lambda i, at, now, positions, velocities, times, kind, log, hops: 0)
-def hops_of(i, at, now, positions, velocities, times, kind, log, hops):
-    """Return the number of discs with which disc ``i``, now ``at`` a place, has changed order."""
+@optional(lambda ring: NEVER)
+def apart_from_itself(ring):
+    """Return a separation that is far from any change of order."""
+    return ring[1]
+
+
+@optional(lambda before, after, ring: 1 if crosses(before, after) else 0)
+def exchanges(before, after, ring):
+    """Return how many times a separation changes sign, on a ring that of the nearest image.
+
+    ``before`` and ``after`` are not folded: the sign changes at multiples of the circumference.
+    """
+    return abs(np.int64(np.floor(after / ring[0])) - np.int64(np.floor(before / ring[0])))
+
+
+@optional(lambda before, velocity, number, ring: crossing_time(before, velocity))
+def exchange_time(before, velocity, number, ring):
+    """Return when a separation changes sign after a ``number`` of changes."""
+    turn = np.floor(before / ring[0])
+    turn += 1.0 + number if velocity > 0.0 else -number
+    return crossing_time(before - turn * ring[0], velocity)
+
+
+@optional(lambda i, at, now, positions, velocities, times, kind, ring, log, hops: 0)
+def hops_of(i, at, now, positions, velocities, times, kind, ring, log, hops):
+    """Return how many times disc ``i``, now ``at`` a place, has changed order with another one."""
     start, speed, since, count = positions[i], velocities[i], times[i], 0
     # A disc has not changed order with itself.
-    positions[i] = -NEVER
+    positions[i] = start - apart_from_itself(ring)
     for k in range(positions.size):
         last = max(since, times[k])
         there = positions[k] + velocities[k] * (now - times[k])
         apart = start + speed * (last - since) - (positions[k] + velocities[k] * (last - times[k]))
-        if crosses(apart, at - there):
+        for number in range(exchanges(apart, at - there, ring)):
             count += 1
-            note_hop(last + crossing_time(apart, speed - velocities[k]), kind, i, k, log)
+            until = exchange_time(apart, speed - velocities[k], number, ring)
+            note_hop(last + until, kind, i, k, log)
     positions[i] = start
     return count
 
 
 @inlined
-def put(i, x, y, now, motion, counts, log, hops, hops_x):
+def put(i, x, y, now, motion, counts, ring, log, hops, hops_x):
     """Put disc ``i`` at (x, y), where it has come by now, and count its hops."""
     times = motion.time
-    counts[VERTICAL] += hops_of(i, y, now, motion.y, motion.v, times, VERTICAL, log, hops)
-    counts[HORIZONTAL] += hops_of(i, x, now, motion.x, motion.u, times, HORIZONTAL, log, hops_x)
+    counts[VERTICAL] += hops_of(i, y, now, motion.y, motion.v, times, VERTICAL, None, log, hops)
+    counts[HORIZONTAL] += hops_of(
+        i, x, now, motion.x, motion.u, times, HORIZONTAL, ring, log, hops_x
+    )  # fmt: skip
     motion.x[i], motion.y[i], motion.time[i] = x, y, now
 
 
 @inlined
-def fly(i, now, motion, counts, log, hops, hops_x):
+def fly(i, now, motion, counts, ring, log, hops, hops_x):
     """Advance disc ``i`` to the time ``now``."""
     lag = now - motion.time[i]
     x, y = motion.x[i] + motion.u[i] * lag, motion.y[i] + motion.v[i] * lag
-    put(i, x, y, now, motion, counts, log, hops, hops_x)
+    put(i, x, y, now, motion, counts, ring, log, hops, hops_x)
 
 
 @inlined
@@ -447,7 +476,7 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
                     y = grid.y[rows if step > 0 else 0]
                 else:
                     x = grid.x[columns if step > 0 else 0]
-                put(i, x, y, now, motion, counts, log, hops, hops_x)
+                put(i, x, y, now, motion, counts, law.ring, log, hops, hops_x)
                 rub_wall(i, upwards, motion, law.rough)
                 if upwards:
                     motion.v[i] = -motion.v[i]
@@ -461,8 +490,8 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
             else:
                 j = motion.partner[i]
                 if motion.events[j] == motion.seen[i]:
-                    fly(i, now, motion, counts, log, hops, hops_x)
-                    fly(j, now, motion, counts, log, hops, hops_x)
+                    fly(i, now, motion, counts, law.ring, log, hops, hops_x)
+                    fly(j, now, motion, counts, law.ring, log, hops, hops_x)
                     collide(i, j, motion, law)
                     motion.events[i] += 1
                     motion.events[j] += 1
@@ -480,7 +509,7 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
         done, kicked = full | (end == duration), is_kicked(end, lane, kicks)
         if done | kicked:
             for i in range(discs):
-                fly(i, end, motion, counts, log, hops, hops_x)
+                fly(i, end, motion, counts, law.ring, log, hops, hops_x)
         for i in range(discs):
             motion.time[i] -= end
             motion.contact[i] -= end
@@ -521,21 +550,24 @@ def count_events(states, seed, first, duration, epoch, law, grid, hops, hops_x, 
 
 
 @compiled
-def advance_all(states, laps, time, epoch, law, grid, kicks):
+def advance_all(states, laps, time, epoch, law, grid, kicks, hops_x):
     """Advance the columns of ``states`` (rows, replicas) by a ``time`` > 0.
 
     On a ring the rounds of discs are added to ``laps`` (N, replicas). ``kicks`` are those of the
-    columns, None without friction.
+    columns, None without friction. The hops in x are added to ``hops_x`` (replicas,) unless it is
+    None.
     """
     discs, replicas = laps.shape
     motion, rounds = new_motion(discs, grid, law.rough), np.zeros(discs)
-    counts, spins = np.zeros(N, np.int64), spins_in(states, discs, law.rough)
+    counts, spins = np.zeros((N, 1), np.int64), spins_in(states, discs, law.rough)
     for replica in range(replicas):
-        rounds[:] = 0.0
+        rounds[:], counts[:] = 0.0, 0
         start_from(states, replica, motion, grid, law)
         follow_discs(
-            time, epoch, motion, rounds, grid, law, counts, replica, kicks, None, None, None
+            time, epoch, motion, rounds, grid, law, counts[:, 0], replica, kicks, None, None,
+            hops_x,
         )  # fmt: skip
+        add_hops(counts, replica, hops_x)
         for i in range(discs):
             states[i, replica], states[discs + i, replica] = motion.x[i], motion.y[i]
             states[2 * discs + i, replica] = motion.u[i]

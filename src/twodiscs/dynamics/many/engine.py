@@ -14,6 +14,7 @@ from twodiscs.dynamics.many.lockstep import ABOVE, BESIDE, CLASSES, COLLISIONS, 
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import HOPS, by_kind
 from twodiscs.sampling.many import insertions
+from twodiscs.sampling.many.cells import grid_of
 from twodiscs.sampling.many.chains import DENSEST, crowding
 from twodiscs.sampling.many.initial import (
     LARGE,
@@ -242,12 +243,15 @@ def interval_cost(scene):
 # Trajectories -------------------------------------------------------------------------------------
 
 
-def advance_all(scene, states, laps, time, kicks):
-    """Advance the columns of ``states`` (rows, replicas), see ``trajectory.advance_all``."""
+def advance_all(scene, states, laps, time, kicks, hops=None):
+    """Advance the columns of ``states`` (rows, replicas), see ``trajectory.advance_all``.
+
+    The hops in x are added to ``hops`` (replicas,) unless it is None.
+    """
     law, grid = law_of(scene), large_grid(scene)
     if grid is None:
-        return lockstep.advance_states(states, laps, time, law, kicks)
-    return cells.advance_all(states, laps, time, epoch_of(scene), law, grid, kicks)
+        return lockstep.advance_states(states, laps, time, law, kicks, hops)
+    return cells.advance_all(states, laps, time, epoch_of(scene), law, grid, kicks, hops)
 
 
 def kicks_of(scene, number, seed, block=0):
@@ -256,13 +260,13 @@ def kicks_of(scene, number, seed, block=0):
 
 
 class Followed:
-    """One trajectory of ``LARGE`` numbers of discs, whose log is read in the order of time.
+    """One trajectory by the kernel with cells, whose log is read in the order of time.
 
-    ``counted`` names the hops that are logged.
+    ``counted`` names the hops that are logged, maybe those along a ring.
     """
 
     def __init__(self, scene, counted):
-        self.scene, self.law, self.grid = scene, law_of(scene), large_grid(scene)
+        self.scene, self.law, self.grid = scene, law_of(scene), grid_of(scene)
         self.epoch, self.laps = epoch_of(scene), np.zeros(scene.discs)
         self.motion = cells.new_motion(scene.discs, self.grid, self.law.rough)
         self.log = cells.new_log(scene.discs, ENTRIES, rows_of(scene) // scene.discs)

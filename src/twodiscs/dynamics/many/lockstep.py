@@ -231,6 +231,17 @@ def nearest(separation, ring):
     return separation
 
 
+@optional(lambda before, after, ring: crosses(before, after))
+def changes_order(before, after, ring):
+    """Return whether a separation along x changes sign in a flight; on a ring, the nearest image.
+
+    A flight on a ring changes a separation by less than half of the circumference. If the change is
+    larger, another image has become the nearest one.
+    """
+    before, after = nearest(before, ring), nearest(after, ring)
+    return crosses(before, after) & (abs(after - before) < ring[1])
+
+
 @optional(lambda dx, dy, du, dv, sigma, ring: contact_of(dx, dy, du, dv, sigma))
 def meeting_of(dx, dy, du, dv, sigma, ring):
     """Return (gap, speed) of two discs; on a ring, of the image that is met first."""
@@ -340,7 +351,7 @@ def advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops
                 dx, dy = xi[l] - xj[l], yi[l] - yj[l]
                 hops[l] += 1.0 if crosses(oyi[l] - oyj[l], dy) else 0.0
                 if hops_x is not None:
-                    across[l] += 1.0 if crosses(oxi[l] - oxj[l], dx) else 0.0
+                    across[l] += 1.0 if changes_order(oxi[l] - oxj[l], dx, law.ring) else 0.0
                 dx = nearest(dx, law.ring)
                 square = dx * dx + dy * dy
                 exchange = (dx * (ui[l] - uj[l]) + dy * (vi[l] - vj[l])) / square
@@ -359,7 +370,7 @@ def count_events(states, seed, first, lanes, duration, law, hops_x, kicks):
     """Follow the columns of ``states`` (rows, replicas) for a ``duration`` and add up their counts.
 
     Returns (sums, products): Σ N_e (n) and Σ N_e N_f for e ≤ f (n, n) over all replicas, int64, in
-    the order of ``CLASSES``. ``hops_x`` is None where hops in x are impossible. ``kicks`` are those
+    the order of ``CLASSES``. ``hops_x`` is None if hops in x are not counted. ``kicks`` are those
     of the lanes, None without friction: the column k has the stream of ``seed`` for the replica
     ``first`` + k.
     """
@@ -426,12 +437,19 @@ def of_lanes(first, stop, kicks):
     )  # fmt: skip
 
 
+@optional(lambda counts, first, hops: None)
+def add_hops(counts, first, hops):
+    """Add the hops in x in ``counts`` (n, lanes) to ``hops``, from the replica ``first`` on."""
+    hops[first : first + counts.shape[1]] += counts[HORIZONTAL]
+
+
 @compiled
-def advance_states(states, laps, time, law, kicks, lanes=LANES):
+def advance_states(states, laps, time, law, kicks, hops, lanes=LANES):
     """Advance the columns of ``states`` (rows, replicas) by a ``time`` > 0.
 
     On a ring the rounds of discs are added to ``laps`` (N, replicas). ``kicks`` are those of the
-    columns, None without friction.
+    columns, None without friction. The hops in x are added to ``hops`` (replicas,) unless it is
+    None.
     """
     discs, replicas = laps.shape
     for first in range(0, replicas, lanes):
@@ -447,10 +465,11 @@ def advance_states(states, laps, time, law, kicks, lanes=LANES):
         while np.max(remaining) > 0.0:
             find_events(x, y, u, v, remaining, times, codes, speeds, law, some_kicks)
             count_laps(rounds, x, u, times, law.ring)
-            advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, None, spins)
+            advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops, spins)
             kick_lanes(u, v, spins, times, law, some_kicks)
         states[:, first:stop] = some
         laps[:, first:stop] += rounds
+        add_hops(counts, first, hops)
 
 
 @compiled

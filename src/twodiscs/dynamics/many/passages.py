@@ -17,12 +17,13 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK, open_kicks, renew_kicks
-from twodiscs.dynamics.law import crosses, crossing_time
+from twodiscs.dynamics.law import crossing_time
 from twodiscs.dynamics.many.lockstep import (
     COLLISIONS,
     ManyLaw,
     N,
     advance,
+    changes_order,
     discs_in,
     find_events,
     kick_lanes,
@@ -34,7 +35,7 @@ from twodiscs.dynamics.two.passages import LARGEST_CLUSTER, SUMS
 from twodiscs.model.checks import InputError, check_choice
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import hopping_along
-from twodiscs.sampling.jit import compiled, optional
+from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.many import insertions
 from twodiscs.sampling.many.initial import (
     LARGE,
@@ -111,12 +112,6 @@ def draw_on_surface(state, pair, states, most):
     return states.shape[1], proposals
 
 
-@optional(lambda change, ring: True)
-def is_short(change, ring):
-    """Return whether a separation made this ``change`` by motion, not by a change of image."""
-    return abs(change) < ring[1]
-
-
 @compiled
 def follow_pair(states, remaining, gap, net, hops, law, kicks):
     """Follow the columns of ``states`` (rows, lanes) for the times ``remaining`` (lanes,).
@@ -138,9 +133,9 @@ def follow_pair(states, remaining, gap, net, hops, law, kicks):
         advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, None, spins)
         kick_lanes(u, v, spins, times, law, kicks)
         for l in range(lanes):
-            apart = nearest(old_x[0, l] - old_x[1, l], law.ring)
-            end = nearest(x[0, l] - x[1, l], law.ring)
-            if crosses(apart, end) & is_short(end - apart, law.ring):
+            apart = old_x[0, l] - old_x[1, l]
+            if changes_order(apart, x[0, l] - x[1, l], law.ring):
+                apart = nearest(apart, law.ring)
                 net[l] += math.copysign(1.0, rising[l])
                 hops[l] += 1.0
                 if gap > 0.0:
