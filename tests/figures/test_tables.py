@@ -174,11 +174,11 @@ def _long_files(rows):
     for is_kicked, look in looks.items():
         own = [row for row in order if bool(row["friction"]) == is_kicked]
         yield "diffusion", "files", *look, _columns(own, "distance")
-        # Blocked, and at the farthest distance where discs pass.
+        # At the first blocked radius, and at the farthest distance where discs pass.
         moved = [
             row for row in of(rows, quantity="displacement")
             if row["moment_of_inertia"] is None and bool(row["friction"]) == is_kicked
-            and (row["distance"] < 0 or row["distance"] > 0.1)
+            and (row["radius"] == 0.28 or row["distance"] > 0.1)
         ]  # fmt: skip
         due = [
             (row["time"] / math.sqrt(2 * row["discs"] - 1), row["estimate"], row["stderr"])
@@ -194,7 +194,7 @@ def _long_files(rows):
     for look, row in zip(files.OPEN, kicked, strict=True):
         where = {"distance": row["distance"], "friction": row["friction"]}
         (single,) = of(rows, quantity="single_file", **where)
-        (rate,) = of(rows, quantity="rate", method="insertion", distance=row["distance"])
+        (rate,) = of(rows, quantity="rate", discs=row["discs"], **where)
         twice_d = row["estimate"] * rate["estimate"]
         # F √t = 2 D t at this time.
         time = (single["estimate"] / twice_d) ** 2

@@ -56,12 +56,10 @@ def _of(rows, quantity, **wanted):
 
 
 def _moved(axes, rows):
-    """Draw displacements in long files, blocked and at the farthest open distance."""
-    shown = [
-        distance for some in ((r for r in rows if (r["distance"] > 0) == sign) for sign in (0, 1))
-        for distance in [max((r["distance"] for r in some), default=None)] if distance is not None
-    ]  # fmt: skip
-    for distance in shown:
+    """Draw displacements in long files, blocked at the first such radius and at the first open."""
+    distances = [row["distance"] for row in rows]
+    shown = [next((d for d in distances if (d > 0) == is_open), None) for is_open in (False, True)]
+    for distance in filter(None, shown):
         here = select(rows, distance=distance)
         blocked = distance < 0
         kinds = dict.fromkeys((row["friction"], row["moment_of_inertia"]) for row in here)
@@ -106,7 +104,7 @@ def _collapse(axes, rows):
             continue
         own = {name: row[name] for name in ("scene", "distance", "friction")}
         (single,) = select(rows, quantity="single_file", **own)
-        (rate,) = select(rows, quantity="rate", method="insertion", distance=row["distance"])
+        (rate,) = select(rows, quantity="rate", discs=row["discs"], **own)
         d, f = row["estimate"] * rate["estimate"] / 2, single["estimate"]
         crossover = (f / (2 * d)) ** 2
         moved = select(rows, quantity="displacement", **own)

@@ -9,6 +9,7 @@ the coefficient D of diffusion along a ring, by the correlations of hops and by 
 """
 
 import math
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -30,7 +31,7 @@ from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.two import strip
 from twodiscs.dynamics.two.passages import HOPS_OF_BLOCK, cluster_sizes, hop_sums
 from twodiscs.model.box import Box
-from twodiscs.model.events import HOPS
+from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.estimates import Estimate, LinearFit, mean_of
@@ -74,6 +75,9 @@ KICKED = {
 #: events, the fewest hops, and the blocks of initial states for the rate of hops.
 PAUSE, WORK, KICK, FEWEST_KICKED, STRIPS = 12, 4, 4, 2**9, 16
 
+#: Necks are long from this x on: a pair forgets its velocity several times within it.
+LONG_NECK = 5
+
 #: Numbers of discs in a file on a ring; the time from which on displacements count, in mean times
 #: between hops of a disc in one direction; the most replicas and the fewest; samples for the rate.
 FILES, FOLLOWED, MOST_FILES, FEWEST_FILES, FILE_SAMPLES = (4, 8), 2, 2**12, 2**8, 2**19
@@ -86,9 +90,6 @@ FRICTION, STEP, RECORDS, LAGS = 4.0, 0.5, 128, (1, 2, 4, 8, 16, 32, 64)
 
 #: The lags between which displacements give F, and those between which they give D.
 SINGLE, HOPPED = (8, 32), (16, 32)
-
-#: The number of discs on the ring whose rate of hops is sampled.
-SAMPLED_FILE = 8
 
 #: Blocks of pairs of discs for c.
 LIMIT_BLOCKS = 512
@@ -327,11 +328,11 @@ def exponents(measured):
 
 def one_friction(name, box, friction, halvings, events, seed):
     """Yield the rows of discs with ``friction`` at distances below h/4, the largest one first."""
-    before = None
+    measured = []
     for n in halvings:
         scene = scene_at(box, "horizontal_hop", n, friction=friction)
         near = NearThreshold(name, scene, "horizontal_hop", n, seed)
-        gap = PAUSE * box_time(scene, near.hop)
+        gap = pause_of(scene, near.hop)
         price = 2 * gap * (exact.event_rate(scene) + KICK * friction)
         hops = min(max(WORK * events / price, FEWEST_KICKED), MOST_HOPS)
         found = cluster_sizes(scene, near.hop, gap, int(hops) // HOPS_OF_BLOCK, near.cluster_seed)
@@ -339,14 +340,53 @@ def one_friction(name, box, friction, halvings, events, seed):
         yield from rows
         if n == halvings[0]:
             yield near.rate(STRIPS)
-        if before and kappa:
-            octaves, far = n - before[0].halvings, before[1]
-            times = [one.mean / k.value for one, k in (before, (near, kappa))]
-            error = math.hypot(*(k.stderr / k.value for k in (far, kappa)))
-            slope = -math.log2(times[1] / times[0]) / octaves
-            estimate = Estimate(slope, error / math.log(2) / octaves, 2)
-            yield near.row("local_exponent", "fit", estimate)
-        before = (near, kappa) if kappa else None
+        measured.append((near, kappa))
+    yield from local_exponents(measured)
+
+
+def pause_of(scene, hop):
+    """Return the time without a hop that ends a cluster: with friction it is shorter."""
+    return PAUSE * box_time(scene, hop) if scene.friction else quiet_time(scene, hop)
+
+
+def scaled_friction(scene, hop):
+    """Return x = γ√(εσ) of a ``Scene``."""
+    return scene.friction * math.sqrt(scene.room(hop) * scene.contact_distance)
+
+
+def diffusive_limit(scene, hop):
+    """Return κ x of two smooth discs between walls whose separation diffuses through the neck.
+
+    It is 3/4 for a short neck. The density of the separation u has the factor A − |u|, which adds
+    the share 2√(2εσ)/(πA) to the resistance of the neck.
+    """
+    length = math.sqrt(2 * scene.room(hop) * scene.contact_distance)
+    return 3 / 4 / (1 + 2 * length / (math.pi * float(scene.reach(AXIS[hop]))))
+
+
+def local_exponents(measured):
+    """Yield κ x of long necks against its limit, and exponents of τ/κ between two distances.
+
+    ``measured`` are pairs (``NearThreshold``, κ) with friction, the largest distance first. τ goes
+    as ε⁻² times a factor that is regular at the threshold. Without this factor the exponent is
+    −2 + |d ln κ/d ln x|/2.
+    """
+    before = None
+    for near, kappa in measured:
+        if kappa is None:
+            before = None
+            continue
+        x = scaled_friction(near.scene, near.hop)
+        if x >= LONG_NECK:
+            product = Estimate(kappa.value * x, kappa.stderr * x, kappa.n)
+            limit = diffusive_limit(near.scene, near.hop)
+            yield near.row("scaled_coefficient", "clusters", product) | {"reference": limit}
+        if before:
+            far, length = before[0], math.log(before[1] / x)
+            slope = math.log(kappa.value / far.value) / length
+            error = math.hypot(far.stderr / far.value, kappa.stderr / kappa.value) / length
+            yield near.row("local_exponent", "fit", Estimate(abs(slope) / 2 - 2, error / 2, 2))
+        before = kappa, x
 
 
 def one_ring(name, box, inertia, events, seed):
@@ -379,8 +419,8 @@ def one_long_file(name, box, radius, friction, known, seed, inertia=None):
 
     Rough discs have an ``inertia``, I/(m r²), and no law, because their F is not known. If
     ``friction`` is not None, it is the rate of kicks. Squares of lengths are over ℓ². An open
-    file of smooth discs has rows of the ``density`` and of the ``rate`` of hops, which do not
-    depend on friction. With friction they are ``known``, {quantity: ``Estimate``}.
+    file of smooth discs has a row of the ``density``, which does not depend on friction. With
+    friction it is ``known``, {"density": ``Estimate``}.
     """
     limit, per_disc = box.height / 4, box.width / 2
     is_open = radius < limit
@@ -400,7 +440,9 @@ def one_long_file(name, box, radius, friction, known, seed, inertia=None):
         more["time"] = None if lag is None else lag * STEP * unit
         return row(start, found, quantity=quantity, method=method, replicas=found.n, **more)
 
-    places = file.recorded(scene, STEP * unit, RECORDS, LONG_REPLICAS, stream("states"), rate)
+    places, hops = file.recorded(
+        scene, STEP * unit, RECORDS, LONG_REPLICAS, stream("states"), rate
+    )  # fmt: skip
     numbers = file.order(places, scene.width)
     ordered = file.in_order(places, numbers, scene.width)
     moved, whole_file = (file.squares(x, LAGS) / per_disc**2 for x in (places, ordered))
@@ -433,18 +475,11 @@ def one_long_file(name, box, radius, friction, known, seed, inertia=None):
         cells = compared(found, Estimate(due, error, 1), found.n)
         yield make_row("single_file", "states", found, SINGLE[1], **cells)
     if is_open:
-        hops = known.get("rate")
-        if hops is None:
-            ring = Scene(
-                per_disc * SAMPLED_FILE, box.height, radius, discs=SAMPLED_FILE, periodic="x"
-            )
-            sampled = file.sampled_rate(ring, FILE_SAMPLES, stream("rate"))
-            slower = file.thermal_speed(scene) / file.thermal_speed(ring)  # as rates are
-            hops = Estimate(slower * sampled.value, slower * sampled.stderr, sampled.n)
-            yield make_row("rate", "insertion", hops)
+        per_time = hops / (RECORDS * STEP * unit)
+        yield make_row("rate", "states", mean_of(per_time))
         early, late = (LAGS.index(lag) for lag in HOPPED)
-        walked = mean_of((steps[late] - steps[early]) / (HOPPED[1] - HOPPED[0]) / (STEP * unit))
-        yield make_row("diffusion", "order", file.quotient(walked, hops), HOPPED[1])
+        walked = (steps[late] - steps[early]) / ((HOPPED[1] - HOPPED[0]) * STEP * unit)
+        yield make_row("diffusion", "order", file.quotient(walked, per_time), HOPPED[1])
 
 
 def in_the_limit(seed):
@@ -484,17 +519,20 @@ def in_file(name, box, events, seed):
 def in_long_file(name, box, blocked, seed):
     """Yield the rows of long files on a ring, smooth, with kicks and rough.
 
-    One is blocked, at the radius ``blocked``, also of rough discs; the others are open.
+    They are blocked at the radii ``blocked``, at the first one also without friction and of rough
+    discs; the others are open.
     """
-    for radius in (blocked, *(radius_at(box.height / 4, n) for n in OPEN)):
+    for radius in (blocked[0], *(radius_at(box.height / 4, n) for n in OPEN)):
         found = {}
         for friction in (None, FRICTION):
             for one in one_long_file(name, box, radius, friction, {**found}, seed):
-                if one["quantity"] in ("density", "rate"):
+                if one["quantity"] == "density":
                     parts = (one[part] for part in ("estimate", "stderr", "replicas"))
-                    found[one["quantity"]] = Estimate(*parts)
+                    found["density"] = Estimate(*parts)
                 yield one
-    yield from one_long_file(name, box, blocked, None, {}, seed, ONE_INERTIA)
+    yield from one_long_file(name, box, blocked[0], None, {}, seed, ONE_INERTIA)
+    for radius in blocked[1:]:
+        yield from one_long_file(name, box, radius, FRICTION, {}, seed)
 
 
 # Long runs --------------------------------------------------------------------------------------
@@ -503,14 +541,15 @@ def in_long_file(name, box, blocked, seed):
 def at_distances(one):
     """Yield pairs (``NearThreshold``, pause) of a threshold ``one`` of a long run.
 
-    The ``pauses`` of the configuration are over that of the build.
+    The distance is halved ``every`` times from one to the next, once if this is not given. The
+    ``pauses`` of the configuration are over that of the build.
     """
     box = Box(one["width"], one["height"])
-    for halvings in range(one["first"], one["last"] + 1):
-        scene = scene_at(box, one["hop"], halvings)
+    for halvings in range(one["first"], one["last"] + 1, one.get("every", 1)):
+        scene = scene_at(box, one["hop"], halvings, friction=one.get("friction", 0.0))
         near = NearThreshold(one["name"], scene, one["hop"], halvings, one["seed"])
         for pause in one.get("pauses", [1]):
-            yield near, pause * quiet_time(scene, near.hop)
+            yield near, pause * pause_of(scene, near.hop)
 
 
 def cluster_counts(one):
@@ -539,6 +578,8 @@ def cluster_rows(one, counts):
         found += own
     if "pauses" in one:  # at one distance
         return found
+    if "friction" in one:
+        return [*found, *local_exponents(measured)]
     found += exponents(measured)
     return [*found, *fits(found)]
 
@@ -547,6 +588,74 @@ def long_run(thresholds):
     """Yield the rows of many hops at ``thresholds``, at distances that no build goes down to."""
     for one in thresholds:
         yield from cluster_rows(one, cluster_counts(one))
+
+
+def file_of(box, discs, halvings):
+    """Return the ``Scene`` of ``discs`` on a ring, and the unit of its times, h over v_th."""
+    scene = Scene(
+        box.width / 2 * discs, box.height, radius_at(box.height / 4, halvings), discs=discs,
+        periodic="x",
+    )  # fmt: skip
+    return scene, box.height / file.thermal_speed(scene)
+
+
+def file_counts(one, run):
+    """Return the counts of a file ``one`` of a long ``run``, a list for each replica.
+
+    They are the hops of all pairs, and for each pause the passages, both between the margins; then
+    the hops in all the time, and for both lags Σ n² over the discs and all pairs of times, n the
+    places by which a disc has moved in the order.
+    """
+    box, found = Box(run["width"], run["height"]), []
+    scene, unit = file_of(box, one["discs"], one["halvings"])
+    rate = one["friction"] / unit if "friction" in one else None
+    step, number = run["step"] * unit, run["records"]
+    window = run["margin"] * unit, number * step - run["margin"] * unit
+    kind = f"long run {one['discs']} {one.get('friction')}"
+    seed = hop_seed(scene, "horizontal_hop", run["name"], run["seed"], kind)
+    for places, times, pairs in file.logged(scene, step, number, one["replicas"], seed, rate):
+        counted = [file.passages(times, pairs, window, gap * unit) for gap in run["pauses"]]
+        numbers = file.order(places, scene.width)
+        moved = [int(((numbers[lag:] - numbers[:-lag]) ** 2).sum()) for lag in run["lags"]]
+        found.append([counted[0][0], [each for _, each in counted], times.size, moved])
+    return found
+
+
+def file_rows(one, run, counts):
+    """Yield the rows of passages.csv on a file ``one`` of a long ``run`` from its ``counts``.
+
+    κ is that of the first pause that is long against a flight, corrected for the passages of the
+    pair and of its neighbours in it. D/(ν ℓ²) over κ is the last row.
+    """
+    box = Box(run["width"], run["height"])
+    scene, unit = file_of(box, one["discs"], one["halvings"])
+    start = start_of(run["name"], scene, "horizontal_hop", 2.0 ** -one["halvings"])
+    start["friction"] = one["friction"] / unit if "friction" in one else None
+    hops, passed, total, moved = (np.array([count[k] for count in counts]) for k in range(4))
+    discs, duration = one["discs"], run["records"] * run["step"] * unit
+    per_time = 2 * total / (discs * duration)
+    rate = mean_of(per_time)
+    yield row(start, rate, quantity="rate", method="states", replicas=rate.n)
+    steps = [
+        moved[:, k] / (discs * (run["records"] + 1 - lag)) for k, lag in enumerate(run["lags"])
+    ]
+    walked = (steps[1] - steps[0]) / ((run["lags"][1] - run["lags"][0]) * run["step"] * unit)
+    moves = file.quotient(walked, per_time)
+    time = run["lags"][1] * run["step"] * unit
+    yield row(start, moves, quantity="diffusion", method="order", time=time, replicas=moves.n)
+    for k, pause in enumerate(run["pauses"]):
+        found = file.quotient(passed[:, k], hops)
+        # Two discs take part in a hop, and each has two neighbours.
+        kappa = plateau(found, pause * unit, 2 / rate.value, partial(of_clusters, others=2))
+        if kappa:
+            cells = {"method": "clusters", "time": pause * unit, "replicas": kappa.n}
+            yield row(start, kappa, quantity="coefficient", **cells)
+
+
+def long_files(files, **run):
+    """Yield the rows of a long ``run`` of ``files`` of several numbers of discs on a ring."""
+    for one in files:
+        yield from file_rows(one, run, file_counts(one, run))
 
 
 # The table --------------------------------------------------------------------------------------
@@ -582,5 +691,6 @@ PARTS = {
     part.__name__: part
     for part in (
         near_threshold, on_ring, with_friction, in_file, in_long_file, in_the_limit, long_run,
+        long_files,
     )
 }  # fmt: skip

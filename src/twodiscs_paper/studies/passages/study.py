@@ -51,9 +51,11 @@ class Passages(Table):
             "κ(t); passage_time: τ/κ; exponent: of 1 − κ for smooth discs, of κ for rough ones, "
             "as powers of the distance, from this distance and the one before; last_exponent: the "
             "same, fitted to the last five distances; passage_exponent: of the time between "
-            "passages, over all distances; local_exponent: the same, from this distance and the "
-            "one before; rate: hops per time, of both of two discs, or of each of more discs; "
-            "diffusion: D/(ν ℓ²) with ν hops of a disc per time in either direction, each by ℓ; "
+            "passages, over all distances; local_exponent: of that time with friction, from this "
+            "distance and the one before, without the regular factor of τ: −2 + |d ln κ/d ln x|/2; "
+            "scaled_coefficient: κ x, x = γ√(εσ); rate: hops per time, of both of two discs, or of "
+            "each of more discs; diffusion: D/(ν ℓ²) with ν hops of a disc per time in either "
+            "direction, each by ℓ; "
             "single_file: F of the mean square displacement F √t, over ℓ² in files of discs; "
             "density: S, the relative variance of the number of discs in a long piece of a file; "
             "in long files, over ℓ²: displacement, the mean square displacement of a tagged disc "
@@ -65,14 +67,15 @@ class Passages(Table):
         "method": TEXT(
             "clusters: odd clusters over hops; hops: initial states on the surface of the hop; "
             "states: initial states of the invariant measure; order: by the order of the discs in "
-            "a file; insertion: Monte Carlo for a ring of 8 discs; fit: to other rows; limit: the "
-            "motion in the limit ε → 0"
+            "a file, with ν of the same motion; fit: to other rows; limit: the motion in the limit "
+            "ε → 0"
         ),
         "time": TIME("t; for clusters, the time without a hop that ends a cluster"),
         "estimate": Column(float, "time, 1/time or none", "estimate"),
         "stderr": AS_ESTIMATE("its standard error"),
         "reference": AS_ESTIMATE(
-            "expected value: exact, or by the other method; for more than two discs by Monte Carlo"
+            "expected value: exact, or by the other method; for more than two discs by Monte "
+            "Carlo; of κ x the limit for large x, 3/4 less the factor A − |u| of the density of u"
         ),
         "reference_stderr": AS_ESTIMATE(
             "standard error of the reference; empty if the reference is exact"
@@ -103,8 +106,8 @@ class Passages(Table):
 #: all others.
 INERTIAS, OTHERS = [0.1, 0.25, 0.5, 1.0], [0.5]
 
-#: The radius over the height of the box at which discs of a long file cannot pass.
-BLOCKED = 0.28
+#: The radii over the height of the box at which discs of a long file cannot pass.
+BLOCKED = (0.28, 0.27, 0.3)
 
 
 def _parts(configuration):
@@ -122,7 +125,8 @@ def _parts(configuration):
         if first and scene.box.fits(scene.box.height / 4):
             own_parts = ("on_ring", "with_friction", "in_file")
             parts |= {part: {"part": part} | own for part in own_parts}
-        if first and scene.box.fits(blocked := BLOCKED * scene.box.height):
+        blocked = [part * scene.box.height for part in BLOCKED]
+        if first and all(scene.box.fits(radius) for radius in blocked):
             alone = {"name": scene.name, "box": scene.box.parameters(), "blocked": blocked} | seed
             parts["in_long_file"] = {"part": "in_long_file"} | alone
     return parts | {"in_the_limit": {"part": "in_the_limit"} | seed}

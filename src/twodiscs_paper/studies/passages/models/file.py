@@ -2,7 +2,8 @@
 
 The ring has the same length per disc, ℓ, as the ring of two discs. In the frame of zero momentum a
 disc moves along the ring by hops alone, by ℓ at each hop. If hops were uncorrelated, a disc with ν
-hops per time in either direction would have D = ν ℓ².
+hops per time in either direction would have D = ν ℓ². A gap for a hop is a fluctuation of the
+density, so ν depends on the number of discs. It is counted in the same motion as D.
 
 Before that, discs move with the density of the file. Its mode of the wave number q has the
 correlation C(q, t), and S is the relative variance of the number of discs in a long piece. Then
@@ -23,98 +24,34 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import LANES
 from twodiscs.dynamics.many import engine
-from twodiscs.dynamics.many.lockstep import (
-    N,
-    advance,
-    discs_in,
-    find_events,
-    law_of,
-    nearest,
-    new_spins,
-    take_spins,
-)
+from twodiscs.dynamics.many.lockstep import HORIZONTAL
 from twodiscs.points.estimates import Estimate, mean_of
-from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.many import initial, insertions
 from twodiscs.theory import channel
 from twodiscs.theory.virial import rates
 
 
-@compiled
-def follow(states, lanes, times, law, squares, crossings):
-    """Follow initial ``states`` (rows, replicas) on a ring to the ascending ``times``.
+def quotient(values, others):
+    """Return ⟨``values``⟩/⟨``others``⟩ of the same replicas as an ``Estimate``.
 
-    Fills ``squares`` (replicas, times) with the mean over the discs of the squared displacement
-    along x, and ``crossings`` (replicas) with the number of hops of all pairs up to the last time.
-    ``replicas`` is a multiple of ``lanes``.
+    The error is that of the ``values`` − ratio × ``others``, so it has their correlation.
     """
-    discs, replicas = discs_in(states, law.rough), states.shape[1]
-    spins = new_spins(lanes, discs, law.rough)
-    x, y = np.zeros((discs, lanes)), np.zeros((discs, lanes))
-    u, v = np.zeros((discs, lanes)), np.zeros((discs, lanes))
-    old_x, old_y = np.zeros((discs, lanes)), np.zeros((discs, lanes))
-    moved, level = np.zeros((discs, lanes)), np.zeros(lanes)
-    remaining, flight = np.zeros(lanes), np.zeros(lanes)
-    codes, speeds, counts = np.zeros(lanes), np.zeros(lanes), np.zeros((N, lanes))
-    for first in range(0, replicas, lanes):
-        moved[:], level[:] = 0.0, 0.0
-        for i in range(discs):
-            for l in range(lanes):
-                x[i, l], y[i, l] = states[i, first + l], states[discs + i, first + l]
-                u[i, l] = states[2 * discs + i, first + l]
-                v[i, l] = states[3 * discs + i, first + l]
-        for l in range(lanes):
-            take_spins(states, first + l, l, spins)
-        before = 0.0
-        for k in range(times.size):
-            remaining[:] = times[k] - before
-            before = times[k]
-            while np.max(remaining) > 0.0:
-                find_events(x, y, u, v, remaining, flight, codes, speeds, law)
-                for i in range(discs):
-                    for j in range(i):
-                        for l in range(lanes):
-                            # A flight is too short for two discs to meet around the ring.
-                            apart = nearest(x[i, l] - x[j, l], law.ring)
-                            then = apart + (u[i, l] - u[j, l]) * flight[l]
-                            level[l] += 1.0 if (apart > 0.0) != (then > 0.0) else 0.0
-                    for l in range(lanes):
-                        moved[i, l] += u[i, l] * flight[l]
-                advance(
-                    x, y, u, v, old_x, old_y, remaining, flight, codes, counts, law, None, spins
-                )  # fmt: skip
-            for l in range(lanes):
-                total = 0.0
-                for i in range(discs):
-                    total += moved[i, l] * moved[i, l]
-                squares[first + l, k] = total / discs
-        for l in range(lanes):
-            crossings[first + l] = level[l]
-
-
-def quotient(one, other):
-    """Return the quotient of two independent ``Estimate``s."""
-    ratio = one.value / other.value
-    error = ratio * math.hypot(one.stderr / one.value, other.stderr / other.value)
-    return Estimate(ratio, error, one.n)
+    ratio, below = np.mean(values) / np.mean(others), np.mean(others)
+    spread = mean_of((np.asarray(values) - ratio * np.asarray(others)) / below)
+    return Estimate(ratio, spread.stderr, spread.n)
 
 
 def diffusion(scene, time, replicas, seed):
     """Return (D/(ν ℓ²), hops of a disc per time) as ``Estimate``s, for a ``Scene`` on a ring.
 
-    D follows from the displacements between ``time`` and twice ``time``, ν from all hops until
-    then. There are ``replicas`` independent initial states (rounded up to whole lanes).
+    D follows from the growth of the displacements from ``time`` to twice ``time``, ν from all hops
+    until then. There are ``replicas`` independent initial states.
     """
-    replicas = -(-replicas // LANES) * LANES
-    states = initial.states(scene, replicas, seed)
-    squares, crossings = np.zeros((replicas, 2)), np.zeros(replicas)
-    follow(states, LANES, np.array([time, 2 * time]), law_of(scene), squares, crossings)
-    hops = mean_of(2 * crossings / (scene.discs * 2 * time))
-    per_disc = scene.width / scene.discs
-    moved = mean_of((squares[:, 1] - squares[:, 0]) / (2 * time) / per_disc**2)
-    return quotient(moved, Estimate(hops.value / 2, hops.stderr / 2, replicas)), hops
+    places, hops = recorded(scene, time, 2, replicas, seed)
+    early, late = squares(places, [1, 2]) / (scene.width / scene.discs) ** 2
+    per_time = hops / (2 * time)
+    return quotient((late - early) / time, per_time), mean_of(per_time)
 
 
 def sampled_rate(scene, samples, seed):
@@ -217,20 +154,59 @@ def law(scene, friction, time, variance=None):
 
 
 def recorded(scene, step, number, replicas, seed, friction=None):
-    """Return the places of discs along a ring at ``number`` + 1 times, ``step`` apart.
+    """Return the places of discs along a ring at ``number`` + 1 times, ``step`` apart, and hops.
 
-    They have the shape (times, N, replicas), and go on beyond the ends of the ring. If ``friction``
-    is given, all velocities are drawn anew at the times of a Poisson process of this rate.
+    Places have the shape (times, N, replicas), and go on beyond the ends of the ring. Hops are how
+    often a disc changed order with another one in all that time, a mean over the discs of each
+    replica. If ``friction`` is given, all velocities are drawn anew at the times of a Poisson
+    process of this rate.
     """
     moving = scene if friction is None else replace(scene, friction=friction)
     states, laps = initial.states(scene, replicas, seed), np.zeros((scene.discs, replicas))
+    hops = np.zeros(replicas)
     places = np.empty((number + 1, scene.discs, replicas))
     places[0] = states[: scene.discs]
     kicks = engine.kicks_of(moving, replicas, seed)
     for k in range(1, number + 1):
-        engine.advance_all(moving, states, laps, step, kicks)
+        engine.advance_all(moving, states, laps, step, kicks, hops)
         places[k] = states[: scene.discs] + scene.width * laps
-    return places
+    return places, 2 * hops / scene.discs
+
+
+def logged(scene, step, number, replicas, seed, friction=None):
+    """Yield (places, times, pairs) of each replica: ``recorded``, with the time of each hop.
+
+    Places have the shape (times, N, 1). A pair is a number of two discs.
+    """
+    moving = scene if friction is None else replace(scene, friction=friction)
+    path, n = engine.Followed(moving, ("horizontal_hop",)), scene.discs
+    states = initial.states(scene, replicas, seed)
+    for replica in range(replicas):
+        path.start(states[:, replica : replica + 1], seed, replica)
+        places, times, pairs = [states[:n, replica]], [], []
+        for _ in range(number):
+            for log, order in path.go_on(step):
+                hops = order[log.classes[order] == HORIZONTAL]
+                times.append(log.times[hops])
+                pairs.append(log.discs[hops].min(axis=1) * n + log.discs[hops].max(axis=1))
+            places.append(path.motion.x + scene.width * path.laps)
+        yield np.array(places)[:, :, None], np.concatenate(times), np.concatenate(pairs)
+
+
+def passages(times, pairs, window, pause):
+    """Return (hops, passages) in a ``window`` of time, from the ``times`` of hops of ``pairs``.
+
+    Hops of a pair with less than a ``pause`` between one and the next are a cluster. A cluster of
+    odd size is one passage. It is in the window if its first hop is.
+    """
+    by_pair = np.lexsort((times, pairs))
+    times, pairs = times[by_pair], pairs[by_pair]
+    first = np.ones(times.size, bool)
+    first[1:] = (np.diff(pairs) != 0) | (np.diff(times) > pause)
+    begins, inside = times[first], (window[0] <= times) & (times < window[1])
+    sizes = np.diff(np.append(np.flatnonzero(first), times.size))
+    odd = (window[0] <= begins) & (begins < window[1]) & (sizes % 2 == 1)
+    return int(inside.sum()), int(odd.sum())
 
 
 def order(places, length):
@@ -256,12 +232,8 @@ def in_order(places, numbers, length):
 def squares(values, lags):
     """Return the mean squares of differences of ``values`` (times, N, replicas), (lags, replicas).
 
-    A lag is a number of times. Means are over discs and all pairs of times, and all discs together
-    rest.
+    A lag is a number of times. Means are over discs and all pairs of times. All discs together rest
+    if they conserve their momentum. Otherwise their motion counts: in the sum over waves above it
+    is the wave q = 0, without which a ring is not a piece of a long file.
     """
-    found = []
-    for lag in lags:
-        moved = values[lag:] - values[:-lag]
-        moved = moved - moved.mean(axis=1, keepdims=True)
-        found.append((moved**2).mean(axis=(0, 1)))
-    return np.array(found)
+    return np.array([((values[lag:] - values[:-lag]) ** 2).mean(axis=(0, 1)) for lag in lags])

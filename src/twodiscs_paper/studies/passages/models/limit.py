@@ -7,11 +7,15 @@ it over σ. For ε → 0 the room is then u²/2, the relative velocity along the
 of the neck, and in the neck the adiabatic invariants w_i = v_i × room/ε are kept.
 
 A pair leaves the neck with the invariants w of the flux through it, at a relative speed g. The
-total velocity along the hop is P, with P² + g² = 2, and the disc that leads has the speed
-p = (P + g)/2. After this disc met the wall, the pair comes back at the relative speed P, and it
-passes if P² > 2(w'₁² + w'₂²), with the invariants w' that it has then. If not, the neck reflects
-the pair, and it does not come back a second time. The distance of the neck from the wall is
-distributed evenly, so c = 2 ⟨p/g ∫ 1[passes] dU⟩ with the separation U at which the disc turns.
+total velocity along the hop is P ≥ 0, with P² + g² = 2, and the disc that leads has the speed
+p = (P + g)/2. (For P < 0 the other disc turns the pair round, as in a mirror. The mean is over
+P ≥ 0; over both signs it would be c/2.) After the disc met the wall, the pair comes back at the
+relative speed P, and it passes if P² > 2(w'₁² + w'₂²), with the invariants w' that it has then. If
+not, the neck reflects the pair, and no wall sends it back again: the disc that turned then has the
+velocity (P − g)/2. If P < g it leaves the wall. If P > g it meets the wall again, but the other
+disc, at the speed p, leaves faster, and the separation grows at the speed g. The distance of the
+neck from the wall is distributed evenly, so c = 2 ⟨p/g ∫ 1[passes] dU⟩ with the separation U at
+which the disc turns.
 """
 
 import math
