@@ -149,9 +149,9 @@ def test_the_lines_of_the_readme_run_in_an_empty_environment(version, sdist, tmp
     install = ["uv", "pip", "install", "--quiet", "--python", python, "--constraint", lock, sdist]
     subprocess.run(install, check=True)
     page = (REPOSITORY / "README.md").read_text(encoding="utf-8")
-    ((line, shown),) = re.findall(r"```console\n\$ (.*)\n((?:.*\n)*?)```", page)
+    (line,) = re.findall(r"`(twodiscs exact [^`]*)`", page)
     command = [python.with_name("twodiscs"), *line.split()[1:]]
-    assert subprocess.check_output(command, text=True) == shown
+    assert "1.3380472009164113" in subprocess.check_output(command, text=True)
     (code,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     subprocess.run([python, "-c", code], cwd=tmp_path, check=True)
     assert (tmp_path / "trajectory.png").exists()
