@@ -72,6 +72,62 @@ def test_the_parameters_of_a_long_run_are_those_of_a_part(name, table, monkeypat
     assert given == [configuration.get("thresholds", configuration.get("counted"))]
 
 
+def kept_files():
+    """Return (run, files, counts, rows) of the long run of files."""
+    configuration, found = kept("files", Passages)
+    run = {name: value for name, value in configuration.items() if name not in ("part", "files")}
+    counts = read_json(PAPER / "long_run" / "files" / "counts.json")["files"]
+    return run, configuration["files"], counts, found
+
+
+def test_the_table_of_files_is_that_of_its_counts():
+    run, files, counts, found = kept_files()
+    made = [
+        row
+        for one, count in zip(files, counts, strict=True)
+        for row in passages.file_rows(one, run, count)
+    ]
+    assert_same(made, found)
+    assert [len(count) for count in counts] == [one["replicas"] for one in files]
+
+
+#: Hops of a disc per h over the thermal speed at δ = 1/8, by another program: {N: (value, error)}.
+HOPS = {
+    4: (0.1352, 0.0022), 8: (0.1729, 0.0025), 16: (0.1872, 0.0028), 32: (0.1935, 0.0025),
+    64: (0.1962, 0.0031), 128: (0.1990, 0.0019),
+}  # fmt: skip
+
+
+def test_hops_of_a_disc_come_more_often_in_a_longer_file():
+    """Those of another program within three errors: six have a false alarm in 2 % of the seeds."""
+    found = [
+        (row["discs"], value, error)
+        for row in of(kept_files()[3], quantity="rate", distance=1 / 8)
+        for value, error in [
+            [row[name] * math.sqrt(2 * row["discs"] - 1) for name in ("estimate", "stderr")]
+        ]
+    ]
+    assert {discs for discs, *_ in found} == {*HOPS}
+    for discs, value, error in found:
+        due, spread = HOPS[discs]
+        assert abs(value - due) < 3 * math.hypot(error, spread), discs
+    values = [value for _, value, _ in sorted(found)]
+    assert values == sorted(values)
+
+
+def test_files_diffuse_by_passages_if_hops_are_rare():
+    """D = κ ν ℓ² in a file of 128 discs at δ = 1/32, smooth and with friction, and D < ν ℓ²."""
+    rows = of(kept_files()[3], distance=1 / 32)
+    for friction in {row["friction"] for row in rows}:
+        (moves,) = of(rows, quantity="diffusion", friction=friction)
+        kappa = of(rows, quantity="coefficient", friction=friction)[2:]
+        assert len(kappa) == 3  # a pause of 2, 4 and 8 has the same κ
+        for one in kappa:
+            assert deviation(one, moves) < 5
+            assert one["stderr"] < 0.01 * one["estimate"]
+        assert moves["estimate"] + 5 * moves["stderr"] < 1
+
+
 def test_passages_agree_with_those_of_the_build():
     _, found = kept("passages", Passages)
     expected = of(Passages.read(PAPER / "expected" / "passages.csv"), scene="paper")
