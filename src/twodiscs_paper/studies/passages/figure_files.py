@@ -20,6 +20,9 @@ OPEN = ((BLUE, "o"), (VERMILLION, "s"), (PURPLE, "D"))
 #: Quantities of long files over the time.
 LONG = ("displacement", "file", "order")
 
+#: Names of curves are apart by this factor of the ordinate at least.
+APART = 1.3
+
 #: The times that are shown, in units of h over the thermal speed: names stand behind the last.
 SHOWN = (0.4, 400)
 
@@ -57,6 +60,7 @@ def _of(rows, quantity, **wanted):
 
 def _moved(axes, rows):
     """Draw displacements in long files, blocked at the first such radius and at the first open."""
+    ends = []
     distances = [row["distance"] for row in rows]
     shown = [next((d for d in distances if (d > 0) == is_open), None) for is_open in (False, True)]
     for distance in filter(None, shown):
@@ -71,7 +75,7 @@ def _moved(axes, rows):
             x, y, error = _of(own, "displacement")
             points(axes, x, y, error, look, None, blocked)
             name = f"{kind}, {'blocked' if blocked else 'open'}"
-            drawing.label(axes, name, (x[-1], y[-1]), (5, 0), ha="left", color=look[0])
+            ends.append((x[-1], y[-1], name, look[0]))
             if blocked and inertia is None:
                 scene = _scene(own[0])
                 time = np.geomspace(x[0], x[-1], 120)
@@ -83,6 +87,10 @@ def _moved(axes, rows):
                 _, place, _ = _of(own, "file")
                 _, walk, _ = _of(own, "order")
                 axes.plot(x, place + walk, color=GREY, lw=0.8, zorder=2)
+    height = 0.0
+    for x, y, name, colour in sorted(ends, key=lambda end: end[1]):
+        height = max(y, APART * height)
+        drawing.label(axes, name, (x, height), (5, 0), ha="left", color=colour)
     for name, line in (
         ("theory of blocked files", {"color": BLACK}),
         ("motion of places, plus hops", {"color": GREY}),
