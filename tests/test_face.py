@@ -5,11 +5,13 @@ import inspect
 import json
 import math
 import pickle
+import re
 import subprocess
 import sys
 
 import numpy as np
 import pytest
+from checkout import REPOSITORY
 from effect_scenes import SCENES
 from figure_cases import unclear
 
@@ -22,6 +24,7 @@ from twodiscs.model.box import Box
 from twodiscs.sampling.starts import components
 from twodiscs_paper.configuration import load
 from twodiscs_paper.pipeline import cost
+from twodiscs_paper.pipeline.build import TARGETS
 
 SCENE = td.Scene(1.5, 1.0, 0.2)
 WORDS = ["--width", "1.5", "--height", "1", "--radius", "0.2"]
@@ -532,3 +535,30 @@ def test_a_radius_that_does_not_fit_has_a_row_that_says_why():
     for call in (td.exact_table, td.scan):
         with pytest.raises(td.InputError, match=r"radius 0\.9 does not fit"):
             call(1.5, 1.0, [0.9])
+
+
+def test_the_names_that_are_promised_are_those_of_the_code():
+    page = (REPOSITORY / "docs/promises.md").read_text(encoding="utf-8")
+    listed = [block.split() for block in re.findall(r"```text\n(.*?)```", page, re.DOTALL)]
+    names, keys, columns, targets = listed
+    assert sorted(names) == sorted(td.__all__)
+    assert {*keys} == set(named_keys(json.loads((REPOSITORY / "config/schema.json").read_text())))
+    tables = ((f"{name}.csv:", *table.columns) for name, table in SCENE_TABLES.items())
+    assert columns == [word for words in tables for word in words]
+    assert targets == [*TARGETS]
+
+
+def named_keys(schema):
+    """Yield the keys of a configuration with those above them: "scenes.box.width"."""
+
+    def below(part, path):
+        while "items" in part:
+            part = part["items"]
+        for one in (part, *part.get("anyOf", ())):
+            if "$ref" in one:
+                one = schema["$defs"][one["$ref"].rpartition("/")[2]]
+            for name, inner in one.get("properties", {}).items():
+                yield path + name
+                yield from below(inner, f"{path}{name}.")
+
+    yield from below(schema, "")

@@ -90,7 +90,7 @@ if TYPE_CHECKING:
     Axis = Literal["x", "y", "z"]
 
 
-__version__ = "0.2.0"
+__version__ = "1.0.0"
 
 #: {module: its names}; a module is imported at the first use of one of them (PEP 562).
 _NAMES = {
