@@ -98,3 +98,13 @@ def test_a_trajectory_is_a_table_as_before(path):
     assert [*path[["time", "u1"]]] == ["time", "u1"]
     with pytest.raises(td.InputError, match="path must be a file to write"):
         path.to_xyz("/nowhere/a.xyz")
+
+
+def test_hops_of_one_flight_in_the_wrong_order_are_refused():
+    """The discs would fly back from one to the other."""
+    path = td.trajectory(td.Scene(1.5, 1.0, 0.05), duration=30)
+    hops = path.event.str.endswith("_hop").to_numpy()
+    k, swapped = np.flatnonzero(hops[1:] & hops[:-1])[0], [*range(len(path))]
+    swapped[k], swapped[k + 1] = k + 1, k
+    with pytest.raises(td.InputError, match="must have all rows from its first to its last"):
+        path.iloc[swapped].states_at(1)
