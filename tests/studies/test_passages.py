@@ -490,6 +490,30 @@ def test_rows_with_friction():
     assert list(measure.fits([complete(row) for row in rows])) == []
 
 
+@pytest.mark.parametrize("halvings", [8, 10])
+def test_the_limit_of_long_necks_is_the_resistance_of_their_density(halvings):
+    """∫ρ(0)/ρ du with ρ ∝ (A − |u|) L(u)²; the next order is 2εσ/A², (π/2)² times the share squared."""
+    scene = measure.scene_at(BOX, HOP, halvings, friction=160.0)
+    room = scene.height - 4 * scene.radius
+    a, sigma, u = scene.range_x, scene.contact_distance, np.linspace(0.0, 0.5, 200_001)
+    density = (1 - u / a) * (1 + u**2 / (2 * room * sigma)) ** 2
+    resistance = 2 * np.trapezoid(1 / density, u)
+    share = 2 * math.sqrt(2 * room * sigma) / (math.pi * a)
+    due = 3 / 4 * math.pi / 2 * math.sqrt(2 * room * sigma) / resistance
+    assert 0.01 < share < 0.045
+    assert measure.diffusive_limit(scene, HOP) == pytest.approx(due, rel=3 * share**2)
+    kappa = Estimate(0.1, 0.01, 100)
+    near = measure.NearThreshold("a", scene, HOP, halvings, 1)
+    found = list(measure.local_exponents([(near, kappa)]))
+    x = 160 * math.sqrt(room * sigma)
+    if x < measure.LONG_NECK:
+        assert not found
+        return
+    (row,) = found
+    assert (row["estimate"], row["stderr"]) == pytest.approx((0.1 * x, 0.01 * x))
+    assert row["reference"] == pytest.approx(due, rel=3 * share**2)
+
+
 def test_discs_that_diffuse_pass_as_a_long_neck_says():
     """κ is D_u/∫du/ρ over the flux of hops, with ρ of the whole box: 3/(4x) for a short neck.
 
