@@ -144,7 +144,7 @@ def test_rates_of_256_discs_in_a_channel_are_exact():
     sums, products = engine.run_classes(scene, 4, 0, 1, duration, replicas=replicas, hops=False)
     found = sums / replicas / duration
     errors = np.sqrt((np.diag(products) / replicas - (sums / replicas) ** 2) / (replicas - 1))
-    for event, rate in rates(scene, channel.volume_and_areas(scene, hops=False)).items():
+    for event, rate in rates(scene, channel.derivatives(scene, hops=False)).items():
         if rate > 0:
             k = [*SHELLS].index(event)
             error = errors[k] / duration
