@@ -40,6 +40,10 @@ def test_rows_are_those_of_the_table(name, tmp_path):
     deep = scene.depth is not None
     assert all((row["z1"] is not None) == (row["z2"] is not None) == deep for row in rows)
     assert {row["event"] for row in rows} >= {"start", "disc_collision", "vertical_hop", "end"}
+    for row in rows:
+        wall, ends = row["event"].startswith("wall"), row["event"] in ("start", "end")
+        due = (int(row["event"][-1]), None) if wall else (None, None) if ends else (1, 2)
+        assert (row["first"], row["second"]) == due
 
 
 def test_centres_go_on_beyond_the_box_along_a_periodic_axis():
