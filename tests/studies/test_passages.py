@@ -492,7 +492,7 @@ def test_rows_with_friction():
 
 @pytest.mark.parametrize("halvings", [8, 10])
 def test_the_limit_of_long_necks_is_the_resistance_of_their_density(halvings):
-    """∫ρ(0)/ρ du with ρ ∝ (A − |u|) L(u)²; the next order is 2εσ/A², (π/2)² times the share squared."""
+    """∫ρ(0)/ρ du with ρ ∝ (A − |u|) L(u)²; the next order is 2εσ/A², 2.5 share²."""
     scene = measure.scene_at(BOX, HOP, halvings, friction=160.0)
     room = scene.height - 4 * scene.radius
     a, sigma, u = scene.range_x, scene.contact_distance, np.linspace(0.0, 0.5, 200_001)
