@@ -17,6 +17,7 @@ rule configuration:
 
 if MAIN:
     LONG_RUNS = (
+        "files/files",
         "accuracy_cost/accuracy_cost",
         "far/mean_times",
         "passages/passages",
