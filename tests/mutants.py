@@ -198,6 +198,18 @@ MUTANTS = [
     ("ratio of another box in the errata", "return right, ratios[0], radius", "return right, ratios[-1], radius"),
     ("samples among the events of the report", 'int(cost["events"][cost["stage"] == "dynamics"].sum())', 'int(cost["events"].sum())'),
     ("shards that depend on the accuracy", "work=lambda w: SCENES[w.scene].shard_arguments(w.stage)", "work=lambda w: SCENES[w.scene].arguments(w.stage)"),
+    ("Brownian discs that get the same push", "state[4], state[5] = v - share * y, w + share * y", "state[4], state[5] = v - share * y, w - share * y"),
+    ("slow separation of reflected discs", "math.sqrt(2.0) * step * a, step * b, step * c", "step * a, step * b, step * c"),
+    ("kicks twice as rare", "time = 1.0 if kind == REFLECTED else exponential(stream) / 2", "time = 1.0 if kind == REFLECTED else exponential(stream)"),
+    ("whole steps before and after a crossing", "before, after = phase, 1.0 - phase", "before, after = 1.0, 1.0"),
+    ("crossings without the weight of the flux", "forward = length * math.sqrt(2 * exponential(stream))", "forward = length * abs(normal_pair(stream)[0])"),
+    ("discs that overlap a little", "if u * u + (y - z) ** 2 < 1.0:", "if u * u + (y - z) ** 2 < 0.9:"),
+    ("wall that holds a disc", "y = -y if y < 0.0 else 2 * breadth - y", "y = -y if y < 0.0 else breadth"),
+    ("first crossing or the last", "if crossings and not early:", "if crossings:"),
+    ("clusters of later crossings only", "sizes[min(size + later + earlier, LARGEST)] += 1", "sizes[min(size + later, LARGEST)] += 1"),
+    ("moves of one disc counted as steps", 'MOVES = {"kicked": 2, "singly": 2}', 'MOVES = {"kicked": 2, "singly": 1}'),
+    ("disc that moves along the channel alone", "y = folded(y + step * b, breadth)", "y = folded(y, breadth)"),
+    ("error of a ratio without its correlation", '- 2 * ratio * counts["passage*crossings"] / pairs', '+ 2 * ratio * counts["passage*crossings"] / pairs'),
 ]
 # fmt: on
 

@@ -30,9 +30,10 @@ STUDIES = {s.name: s for s in sorted(_declared(), key=lambda study: (study.order
 STUDY_FIGURES = {name: e for study in STUDIES.values() for name, e in study.figures.items()}
 ENTRIES = {**FIGURES, **STUDY_FIGURES, "animation": ANIMATION}
 
-#: The tables of studies, {name: table}, and all tables.
+#: The tables of studies, {name: table}, those of long runs that figures read, and all tables.
 STUDY_TABLES = {table.name(): table for study in STUDIES.values() for table in study.tables}
-TABLES = {**SCENE_TABLES, **STUDY_TABLES, "benchmark": Benchmark}
+KEPT_TABLES = {table.name(): table for study in STUDIES.values() for table in study.kept}
+TABLES = {**SCENE_TABLES, **STUDY_TABLES, **KEPT_TABLES, "benchmark": Benchmark}
 
 #: The tables with seconds that belong to no study, and the documents that show them.
 TIMED = {"cost", "benchmark", "paper", "paper_numbers", "report"}

@@ -6,6 +6,7 @@ from twodiscs_paper.studies.distributions import figure as distributions
 from twodiscs_paper.studies.effects import figure as effects
 from twodiscs_paper.studies.more_discs import figure as more_discs
 from twodiscs_paper.studies.passages import figure as passages
+from twodiscs_paper.studies.passages import figure_brownian as brownian
 from twodiscs_paper.studies.passages import figure_diffusion as diffusion
 from twodiscs_paper.studies.passages import figure_files as files
 from twodiscs_paper.studies.passages import figure_friction as friction
@@ -23,6 +24,7 @@ DRAW = {
     "effects": effects.draw,
     "more_discs": more_discs.draw,
     "passages": passages.draw,
+    "brownian": brownian.draw,
     "diffusion": diffusion.draw,
     "files": files.draw,
     "friction": friction.draw,

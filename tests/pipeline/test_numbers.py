@@ -372,6 +372,7 @@ def test_the_page_on_passages_has_the_numbers_of_the_build_and_of_the_long_run()
     """Every value with an error is that of a row, rounded as in the manuscript."""
     folders = PAPER / "expected", PAPER / "long_run" / "passages"
     rows = [row for folder in folders for row in TABLES["passages"].read(folder / "passages.csv")]
+    rows += TABLES["brownian"].read(PAPER / "long_run" / "brownian" / "brownian.csv")
     printed = (with_error(row["estimate"], row["stderr"]) for row in rows if row["stderr"])
     known = {re.sub("[$ -]", "", text) for text in printed}
     page = (PAPER.parent / "docs" / "passages.md").read_text()

@@ -1,20 +1,51 @@
-"""Brownian dynamics of two discs in a ring: laws that can be solved, and two ways to a number.
+"""Brownian dynamics of two discs in a ring: laws that can be solved, and the long run.
 
 Comparisons are held to five standard errors: false alarms in fewer than one of a million each.
 """
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
+from figure_cases import bars, unclear
 from scipy.integrate import quad
 from scipy.stats import norm
 
+from twodiscs.figures import style
+from twodiscs.points.base import read_json
 from twodiscs_paper.studies.passages import brownian as study
+from twodiscs_paper.studies.passages import figure_brownian as figure
 from twodiscs_paper.studies.passages.models import brownian
+from twodiscs_paper.studies.passages.study import Brownian
 
 SIGMA = 5
+KEPT = Path(__file__).resolve().parents[2] / "paper" / "long_run" / "brownian"
 every_program = pytest.mark.parametrize("program", study.PROGRAMS)
+
+
+@pytest.fixture(scope="module")
+def kept():
+    """The rows of the long run."""
+    return Brownian.read(KEPT / "brownian.csv")
+
+
+@pytest.fixture(scope="module")
+def configuration():
+    """The configuration of the long run."""
+    return yaml.safe_load((KEPT / "config.yaml").read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module")
+def counts():
+    """The counts of the long run."""
+    return read_json(KEPT / "counts.json")
+
+
+def of(rows, **where):
+    """Return those of ``rows`` that have these values."""
+    return [row for row in rows if where.items() <= row.items()]
 
 
 def deviation(found, other):
@@ -172,3 +203,96 @@ def test_positions_stay_uniform(program):
     ):  # fmt: skip
         change = value(states).astype(float) - value(before)
         assert abs(change.mean()) < SIGMA * change.std() / math.sqrt(len(change))
+
+
+# The long run -----------------------------------------------------------------------------------
+
+
+def test_the_table_is_that_of_its_counts(kept, counts):
+    made = [Brownian.empty(**row) for row in Brownian.rows(counts)]
+    assert len(made) == len(kept)
+    for one, other in zip(made, kept, strict=True):
+        for column, value in other.items():
+            if isinstance(value, float):
+                value = pytest.approx(value, rel=1e-9)
+            assert one[column] == value, column
+
+
+def test_the_counts_are_those_of_the_configuration(monkeypatch, configuration, counts):
+    for kind in ("crossings", "passages"):
+        due = [
+            {"program": program, "step": step, "halvings": n}
+            for program, step, n, _ in study.points(configuration[kind])
+        ]
+        assert [{k: point[k] for k in due[0]} for point in counts[kind]] == due
+        samples = [point[-1] for point in study.points(configuration[kind])]
+        for point, number in zip(counts[kind], samples, strict=True):
+            assert len(point["seeds"]) == len(configuration["seeds"]) == 2
+            for seed in point["seeds"]:
+                found = seed.get("pairs") or sum(n for _, n in seed["sizes"])
+                assert found == number
+    monkeypatch.setattr(study, "counted", lambda *given: given)
+    monkeypatch.setattr(study, "rows", lambda counted: counted)
+    assert Brownian.part(**configuration) == tuple(configuration.values())
+
+
+@pytest.mark.slow
+def test_points_of_the_long_run_are_the_same_again(configuration, counts):
+    seeds = configuration["seeds"]
+    for kind, count, program, step, n in (
+        ("crossings", study.crossing_counts, "reflected", 2.0**-3, 3),
+        ("crossings", study.crossing_counts, "singly", 2.0**-3, 2),
+        ("crossings", study.crossing_counts, "together", 2.0**-5, 3),
+        ("passages", study.passage_counts, "reflected", 2.0**-2, 4),
+        ("passages", study.passage_counts, "together", 2.0**-2, 2),
+    ):
+        (point,) = of(counts[kind], program=program, step=step, halvings=n)
+        for seed, own in zip(seeds, point["seeds"], strict=True):
+            samples = own.get("pairs") or sum(number for _, number in own["sizes"])
+            assert count(seed, program, step, n, samples) == own
+
+
+def test_seeds_and_methods_agree(kept):
+    judged = [row["seeds_z"] for row in kept if row["seeds_z"] is not None]
+    judged += [row["z"] for row in kept if row["z"] is not None and row["program"] != "kicked"]
+    assert len(judged) > 100
+    # Hundreds of scores: one beyond 4.9 in 10^4 of such runs.
+    assert max(map(abs, judged)) < SIGMA
+
+
+def test_reflected_discs_have_the_exponents_of_both_theories(kept):
+    """Of a neck of 8 steps and more, and of one of 1/8 and less, from each seed."""
+    fits = of(kept, program="reflected", method="crossings", quantity="exponent")
+    long, short = ([r for r in fits if (r["neck"] > 1) == long] for long in (True, False))
+    assert {row["seed"] for row in long} == {row["seed"] for row in short} == {None, 1, 2}
+    for row in long:
+        assert row["stderr"] < 0.03
+        assert abs(row["estimate"] + 1.5) < SIGMA * row["stderr"]
+    for row in short:
+        assert row["stderr"] < 0.03
+        # 1 − κ ∝ ε^½ there: half of it is left at the widest neck.
+        assert -2 < row["estimate"] < -1.95
+
+
+def test_rejected_discs_pass_a_channel_that_closes(kept):
+    """The time stays finite, at a quarter of σ a step; that of reflected discs goes as ε^−2."""
+    times = of(kept, program="together", step=0.25, quantity="passage_time")
+    first, last = times[-2:]
+    grown = last["estimate"] / first["estimate"]
+    error = grown * math.hypot(*(t["stderr"] / t["estimate"] for t in times[-2:]))
+    assert last["room"] == first["room"] / 4
+    assert grown + SIGMA * error < 4**1.5
+
+
+def test_the_figure_shows_the_table(kept):
+    with style.context():
+        drawn = figure.draw(None, {"brownian": kept})
+        assert unclear(drawn) == []
+    panels = dict(zip(("coefficient", "local_exponent"), drawn.axes, strict=True))
+    for quantity, axes in panels.items():
+        for program, (colour, _) in figure.LOOKS.items():
+            for step, marker in figure.MARKERS.items():
+                own = of(kept, quantity=quantity, program=program, step=step)
+                due = sorted((row["neck"], row["estimate"], row["stderr"]) for row in own)
+                np.testing.assert_allclose(bars(axes, colour, marker), due, rtol=1e-9)
+    assert len(drawn.legends[0].get_texts()) == len(figure.LOOKS) + len(figure.MARKERS)

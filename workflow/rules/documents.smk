@@ -19,6 +19,7 @@ if MAIN:
     LONG_RUNS = (
         "files/files",
         "accuracy_cost/accuracy_cost",
+        "brownian/brownian",
         "far/mean_times",
         "passages/passages",
         "tails/tails",

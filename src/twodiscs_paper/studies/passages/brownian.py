@@ -40,8 +40,9 @@ MOVES = {"kicked": 2, "singly": 2}
 #: Half of the length of the ring, in σ: the box 1.5 × 1 has this length close to h/4.
 HALF = 1.5
 
-#: Exponents are fitted where the neck is ``LONG`` steps or more, or ``SHORT`` steps or less.
-LONG, SHORT = 8.0, 0.125
+#: Exponents are fitted where the neck is ``LONG`` steps or more, or ``SHORT`` steps or less. Where
+#: the exponent is halfway, follows from a parabola through ln κ over the logarithms of ``MIDDLE``.
+LONG, SHORT, MIDDLE = 8.0, 0.125, (0.5, 2.0)
 
 
 def side_volume(room):
@@ -225,6 +226,7 @@ def rows(counts):
                 steps = both["passage"][0] if method == "passages" else both["steps"]
                 yield row(cells, found, samples=found.n, steps=steps)
     yield from exponents(counts)
+    yield crossover(counts["crossings"])
 
 
 def _cells(point, method, quantity):
@@ -298,6 +300,29 @@ def _fits(cells, chosen, estimates):
     yield row(cells | agree, together, samples=together.n)
     for number, slope in enumerate(seeds, 1):
         yield row(cells, slope, seed=number, samples=slope.n)
+
+
+def crossover(counts):
+    """Return the row of the neck over step at which the exponent of reflected discs is −7/4.
+
+    There d ln κ/d ln(neck) is −1/2, because the time between passages over V is ∝ 1/(κ ε²).
+    """
+    low, high = MIDDLE
+    found = []
+    for point in counts:
+        length = neck(point["step"], point["halvings"])
+        if point["program"] == "reflected" and low <= length <= high:
+            kappa = of_crossings(point, joined(point["seeds"]))["coefficient"]
+            found.append((math.log(length), math.log(kappa.value), kappa.stderr / kappa.value))
+    x, y, error = np.array(found).T
+    (bend, slope, _), covariance = np.polyfit(x, y, 2, w=1 / error, cov="unscaled")
+    place = -(0.5 + slope) / (2 * bend)
+    # The derivatives of ln(neck) by the curvature and the slope.
+    by = np.array([-place / bend, -1 / (2 * bend), 0.0])
+    spread = math.sqrt(by @ covariance @ by)
+    where = Estimate(math.exp(place), math.exp(place) * spread, len(x))
+    cells = {"program": "reflected", "quantity": "crossover", "method": "crossings"}
+    return row(cells, where, samples=where.n)
 
 
 def _time(point, found):

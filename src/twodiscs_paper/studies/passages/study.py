@@ -102,6 +102,76 @@ class Passages(Table):
         return [*rows, *measure.fits(rows)]
 
 
+class Brownian(Table):
+    """
+    One row per quantity of two discs in Brownian dynamics: steps of equal length in a channel that
+    is closed to a ring. Lengths are in units of the contact distance σ, times in steps.
+    """
+
+    columns = {
+        "program": TEXT(
+            "how discs move in a step. reflected: thermal velocities are drawn for each step, and "
+            "collisions are elastic; kicked: the same with random times between draws, half a step "
+            "on average; together: both discs are displaced, and the step is rejected if they "
+            "overlap; singly: two moves of one random disc each, a move is rejected if discs "
+            "overlap"
+        ),
+        "step": Column(
+            float, "σ", "s, the standard deviation of a coordinate of a free disc after a step"
+        ),
+        "room": Column(
+            float,
+            "σ",
+            "ε, the width of the neck; for a local exponent, the geometric mean of two; for a "
+            "fitted one, the smallest",
+        ),
+        "neck": NUMBER("√(εσ)/s, the length of the neck over that of a step"),
+        "seed": COUNT("1, 2 …: an exponent from one of the seeds; empty for all seeds together"),
+        "quantity": TEXT(
+            "coefficient: κ, the rate of passages over that of crossings in transition state "
+            "theory, s ε²/(√π V) in one direction; crossing_rate: of all crossings, over the same; "
+            "passage_time: mean time from the largest separation to the largest one on the other "
+            "side; first_time: to the first crossing; local_exponent: of the time between passages "
+            "over V, as a power of ε, from two neighbouring widths; exponent: the same, fitted "
+            "where the neck is at least 8 steps or at most 1/8 of a step; crossover: the neck over "
+            "step at which it is −7/4. V is the volume of the allowed positions"
+        ),
+        "method": TEXT(
+            "crossings: random crossings, followed in both directions of time until the discs are "
+            "too far apart to touch; passages: pairs from their largest separation to that on the "
+            "other side"
+        ),
+        "estimate": Column(float, "step or none", "estimate"),
+        "stderr": AS_ESTIMATE("its standard error"),
+        "diffusive": NUMBER("κ of a separation that diffuses"),
+        "reference": AS_ESTIMATE(
+            "expected value: 1 for crossings of reflected discs, by crossings for passages, of "
+            "reflected discs for kicked ones"
+        ),
+        "reference_stderr": AS_ESTIMATE(
+            "standard error of the reference; empty if the reference is exact"
+        ),
+        "z": Z,
+        "seeds_z": NUMBER("difference of two seeds in standard errors"),
+        "samples": COUNT("crossings, or pairs; for an exponent, points"),
+        "steps": COUNT("steps, or moves of one disc, simulated for the estimate"),
+    }
+
+    @staticmethod
+    def rows(counts):
+        """Return the rows that follow from the ``counts`` of a long run."""
+        from twodiscs_paper.studies.passages import brownian
+
+        return brownian.rows(counts)
+
+    @staticmethod
+    def part(seeds, crossings, passages):
+        """Return the rows of a long run (see ``brownian.counted``)."""
+        from twodiscs_paper.studies.passages import brownian
+
+        return brownian.rows(brownian.counted(seeds, crossings, passages))
+
+
 #: Moments of inertia of rough discs, for the last hop of the first box and for
 #: all others.
 INERTIAS, OTHERS = [0.1, 0.25, 0.5, 1.0], [0.5]
@@ -136,6 +206,7 @@ STUDY = Study(
     "passages",
     builds="which hops are passages, and diffusion by them",
     tables=(Passages,),
+    kept=(Brownian,),
     seconds=50.0,
     order=6,
     figures={
@@ -195,6 +266,27 @@ STUDY = Study(
                 """
             ),
             tables=("passages",),
+        ),
+        "brownian": Entry(
+            "Passages in Brownian dynamics",
+            DYNAMICS,
+            Caption(
+                """
+                Passages of two discs in Brownian dynamics, in a channel of the height 2σ + ε that
+                is closed to a ring of the length 3σ. In a step each coordinate of a free disc moves
+                by a normal deviate of the standard deviation s. The abscissa is the length √(εσ) of
+                the neck over s. Reflected discs fly through the step and collide elastically; if
+                steps are rejected, they are those of both discs or of one disc. (a) κ, the rate of
+                passages over the rate of crossings in transition state theory. Open symbols follow
+                random crossings in both directions of time, dots are first passages. Dashed: 1, and
+                √(2/π) s/√(εσ) of a separation that diffuses. (b) The local power of ε with which
+                the mean time between passages grows, divided by the volume of the allowed
+                positions. Dashed: the powers that theories of diffusion and of transition states
+                have, and 0 of a time that stays finite. Error bars are one standard error. The
+                table is that of a long run.
+                """
+            ),
+            kept={"brownian": "paper/long_run/brownian/brownian.csv"},
         ),
         "diffusion": Entry(
             "Diffusion by hops",

@@ -1,0 +1,70 @@
+"""Passages in Brownian dynamics: one function of neck over step, if no step is rejected."""
+
+import math
+
+import numpy as np
+
+from twodiscs.figures import drawing, panels
+from twodiscs.figures.style import BLACK, BLUE, GREEN, GREY, PURPLE, VERMILLION
+from twodiscs_paper.studies.passages.figure import columns, points, select
+
+#: {program: (colour, its name)}.
+LOOKS = {
+    "reflected": (BLUE, "reflected"),
+    "kicked": (PURPLE, "reflected, random times"),
+    "together": (VERMILLION, "rejected, both discs"),
+    "singly": (GREEN, "rejected, one disc"),
+}
+
+#: {length of a step: marker}.
+MARKERS = {2.0**-2: "o", 2.0**-3: "s", 2.0**-5: "^", 2.0**-7: "D"}
+
+#: The abscissas and the ordinates that are shown.
+NECKS, KAPPAS, EXPONENTS = (0.006, 60), (6e-3, 120), (-3.6, 0.4)
+
+#: κ times neck over step, for a separation that diffuses through a long neck.
+DIFFUSIVE = math.sqrt(2 / math.pi)
+
+
+def draw(box, tables):
+    """Draw the rows of brownian.csv; the ``box`` is not that of the channel."""
+    rows = tables["brownian"]
+    figure, (upper, lower) = panels.stacked(kappa=2.7, exponent=2.0)
+    for program, (colour, _) in LOOKS.items():
+        for step, marker in MARKERS.items():
+            for method in ("crossings", "passages"):
+                own = select(rows, program=program, step=step, method=method)
+                filled = method == "passages"
+                kappas = select(own, quantity="coefficient")
+                if kappas:
+                    points(upper, *columns(kappas, *SHOWN), (colour, marker), filled=filled)
+                powers = select(own, quantity="local_exponent")
+                if powers:
+                    points(lower, *columns(powers, *SHOWN), (colour, marker), filled=filled)
+    dashed = {"color": BLACK, "lw": 0.8, "ls": (0, (4, 2)), "zorder": 5}
+    upper.plot(NECKS, np.ones(2), **dashed)
+    long = np.array([DIFFUSIVE, NECKS[1]])
+    upper.plot(long, DIFFUSIVE / long, **dashed)
+    for power, name in ((-1.5, r"$-\frac{3}{2}$"), (-2.0, "$-2$"), (0.0, "$0$")):
+        lower.axhline(power, color=GREY, lw=0.8, ls=(0, (4, 2)), zorder=1)
+        drawing.label(lower, name, (NECKS[1], power), (3, 0), ha="left", color=GREY)
+    for colour, name in LOOKS.values():
+        upper.plot([], [], color=colour, lw=2, label=name)
+    for step, marker in MARKERS.items():
+        style = panels.open_symbol(GREY, marker, 0.85)
+        upper.plot([], [], ls="", label=rf"$s=\sigma/{1 / step:g}$", **style)
+    upper.set(xscale="log", yscale="log", xlim=NECKS, ylim=KAPPAS)
+    upper.set_ylabel(r"$\kappa$ = passages / crossings of theory")
+    upper.tick_params(which="both", labelbottom=False)
+    upper.yaxis.set_major_formatter("{x:g}")
+    lower.set(xscale="log", xlim=NECKS, ylim=EXPONENTS)
+    lower.set_xlabel(r"neck over step $\sqrt{\varepsilon\sigma}/s$")
+    lower.set_ylabel(r"exponent of the time of passage")
+    lower.xaxis.set_major_formatter("{x:g}")
+    handles, names = upper.get_legend_handles_labels()
+    figure.legend(handles, names, loc="outside upper center", ncols=2)
+    return figure
+
+
+#: The columns that are drawn.
+SHOWN = ("neck", "estimate", "stderr")
