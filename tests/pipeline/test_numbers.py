@@ -372,8 +372,13 @@ def test_the_page_on_passages_has_the_numbers_of_the_build_and_of_the_long_run()
     """Every value with an error is that of a row, rounded as in the manuscript."""
     folders = PAPER / "expected", PAPER / "long_run" / "passages"
     rows = [row for folder in folders for row in TABLES["passages"].read(folder / "passages.csv")]
-    rows += TABLES["brownian"].read(PAPER / "long_run" / "brownian" / "brownian.csv")
-    printed = (with_error(row["estimate"], row["stderr"]) for row in rows if row["stderr"])
+    rows += TABLES["passages"].read(PAPER / "long_run" / "files" / "files.csv")
+    printed = [with_error(row["estimate"], row["stderr"]) for row in rows if row["stderr"]]
+    rows_of_steps = TABLES["brownian"].read(PAPER / "long_run" / "brownian" / "brownian.csv")
+    printed += [with_error(r["estimate"], r["stderr"]) for r in rows_of_steps]
+    for row in of(rows, quantity="rate", periodic="x"):  # in files per h/v_th, h = 1
+        unit = (2 * row["discs"] - 1) ** 0.5
+        printed.append(with_error(unit * row["estimate"], unit * row["stderr"]))
     known = {re.sub("[$ -]", "", text) for text in printed}
     page = (PAPER.parent / "docs" / "passages.md").read_text()
     found = {*re.findall(r"\d+\.\d+\(\d+\)", page)}
