@@ -95,6 +95,13 @@ def test_wide_bins_widen():
     assert edges[-1] <= BINS < (1 + GROWTH) * edges[-1]
 
 
+def test_wide_bins_of_a_point_join_its_equal_bins():
+    found = runs.hop_intervals(PAPER, "vertical_hop", 1, 1)
+    edges = found.wide.edges
+    joined = np.add.reduceat(found.equal.counts[: edges[-1]], edges[:-1])
+    assert found.wide.counts == joined.tolist()
+
+
 def test_a_blocked_hop_has_no_intervals():
     with pytest.raises(ValueError, match="blocked"):
         runs.hop_intervals(PAPER.with_radius(0.3), "horizontal_hop", 1, 1)
