@@ -206,7 +206,7 @@ MUTANTS = [
     ("discs that overlap a little", "if u * u + (y - z) ** 2 < 1.0:", "if u * u + (y - z) ** 2 < 0.9:"),
     ("wall that holds a disc", "y = -y if y < 0.0 else 2 * breadth - y", "y = -y if y < 0.0 else breadth"),
     ("first crossing or the last", "if crossings and not early:", "if crossings:"),
-    ("clusters of later crossings only", "sizes[min(size + later + earlier, LARGEST)] += 1", "sizes[min(size + later, LARGEST)] += 1"),
+    ("clusters of later crossings only", "sizes[min(size + later + earlier, LARGEST_CLUSTER)] += 1", "sizes[min(size + later, LARGEST_CLUSTER)] += 1"),
     ("moves of one disc counted as steps", 'MOVES = {"kicked": 2, "singly": 2}', 'MOVES = {"kicked": 2, "singly": 1}'),
     ("disc that moves along the channel alone", "y = folded(y + step * b, breadth)", "y = folded(y, breadth)"),
     ("error of a ratio without its correlation", '- 2 * ratio * counts["passage*crossings"] / pairs', '+ 2 * ratio * counts["passage*crossings"] / pairs'),
