@@ -21,6 +21,7 @@ from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES, read_table
 from twodiscs_paper.drawings import DRAW
 from twodiscs_paper.studies.effects import figure as effects
 from twodiscs_paper.studies.passages import figure as passages
+from twodiscs_paper.studies.passages import figure_brownian as brownian
 from twodiscs_paper.studies.passages import figure_diffusion as diffusion
 from twodiscs_paper.studies.passages import figure_files as files
 from twodiscs_paper.studies.passages import figure_friction as friction
@@ -66,6 +67,7 @@ def cases():
     yield from _pressure()
     yield from _thresholds()
     yield from _distributions()
+    yield from _brownian()
     rows = table("tails")
     for (event, radius), look in zip(
         dict.fromkeys((row["event"], row["radius"]) for row in rows), tails.LOOKS, strict=False
@@ -273,6 +275,18 @@ def _distributions():
             for y, s in columns
         ]
         yield "distributions", "passages", *look, due
+
+
+def _brownian():
+    """Open and full symbols of one look are of crossings and of first passages."""
+    (path,) = STUDY_FIGURES["brownian"].kept.values()
+    rows = [row for row in read_table(EXPECTED.parents[1] / path) if row["stderr"] is not None]
+    for program, (colour, _) in brownian.LOOKS.items():
+        for step, marker in brownian.MARKERS.items():
+            own = of(rows, program=program, step=step)
+            for panel, quantity in (("kappa", "coefficient"), ("exponent", "local_exponent")):
+                due = _columns(of(own, quantity=quantity), "neck")
+                yield "brownian", panel, colour, marker, due
 
 
 CASES = [case for case in cases() if case[-1]]

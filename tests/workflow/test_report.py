@@ -180,8 +180,8 @@ def test_key_figures_have_their_captions_beneath_them(front, complete):
 
 
 def test_a_section_a_scene_and_thumbnails_of_the_rest(front, complete):
-    names = ["Scene full", "Scene walls", "Studies, over all scenes", "How it was made"]
-    assert front["sections"] == names
+    scenes = ["How accurate, how long", "Scene full", "Scene walls"]
+    assert front["sections"] == [*scenes, "Studies, over all scenes", "How it was made"]
     drawn = {*(complete.path / "results").glob("*/figures/*.png")}
     drawn |= {*(complete.path / "results" / "figures").glob("*.png")}
     assert len(front["thumbnails"]) + len(front["figures"]) == len(drawn)
@@ -196,9 +196,9 @@ def test_the_animation_can_be_paused(front):
 def test_it_begins_with_all_mean_times_and_its_contents(front, complete):
     # Six events at each of three radii, two at one.
     assert front["numbers"] == [[1 + 6] * 3, [1 + 2]]
-    assert front["opened"] == 2
+    assert front["opened"] == 4  # in each scene, and as many on accuracy
     assert front["anchors"] == sorted(front["anchors"])
-    assert len(front["anchors"]) == 5  # mean times, two scenes, studies, how it was made
+    assert len(front["anchors"]) == 6  # accuracy, mean times, two scenes, studies, how it was made
 
 
 def test_the_order_is_the_same_in_any_window_and_nothing_is_wider_than_it(front):

@@ -17,7 +17,7 @@ from itertools import chain, combinations, combinations_with_replacement
 
 import numpy as np
 
-from twodiscs.model.checks import check_fraction
+from twodiscs.model.checks import InputError, check_fraction
 from twodiscs.model.events import EVENTS
 from twodiscs.theory.plain import RULE
 
@@ -77,10 +77,13 @@ def mean_of(values):
     """Return the mean of independent ``values`` along their first axis, as an ``Estimate``.
 
     The error comes from their spread. For values in two dimensions the result is a list of
-    estimates, one for each column.
+    estimates, one for each column. Raises ``InputError`` for fewer than two values, which have no
+    spread.
     """
     values = np.asarray(values, float)
     n = len(values)
+    if n < 2:
+        raise InputError(f"values must be at least two, not {n}")
     means, errors = values.mean(axis=0), np.std(values, axis=0, ddof=1) / math.sqrt(n)
     if values.ndim == 1:
         return Estimate(float(means), float(errors), n)

@@ -11,6 +11,7 @@ from twodiscs.dynamics.many.engine import (
     expected_rates,
     kicks_of,
 )
+from twodiscs.dynamics.many.engine import advance_all as advance_all
 from twodiscs.dynamics.many.lockstep import (
     BESIDE,
     COLLISIONS,
