@@ -110,3 +110,16 @@ def test_both_kernels_have_the_same_kicks(monkeypatch):
     assert one[2] == pytest.approx(one[0][:, 0], abs=1e-7)
     assert one[1] == other[1]
     assert Counter(name for name, *_ in one[1])["kick"] > 3
+
+
+@pytest.mark.slow
+def test_chains_of_different_blocks_have_different_kicks(monkeypatch):
+    """From one and the same state, chains differ by their kicks alone, in all blocks."""
+    chains, mean = 4, engine.mean_interval(FEW, "vertical_hop")
+    states = initial.states_of(initial.initial_of(FEW), 1, 3, 0)
+    monkeypatch.setattr(engine, "states_of", lambda *given: np.repeat(states, chains, axis=1))
+    bins = mean / 16, np.arange(65) // 8 + 65
+    sums = np.zeros((3, 74), np.int64)
+    given = 8 * mean, FEW, "vertical_hop", 3, 0, 2, chains, bins, sums
+    times, _ = engine.record_within(*given, np.ones(1, np.bool_))
+    assert np.unique(times).size == 2 * chains
