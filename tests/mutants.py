@@ -139,7 +139,7 @@ MUTANTS = [
     ("discs as an effect that is compiled", 'for text in effects if not text.endswith(" discs")', "for text in effects"),
     ("one stream for two estimates", 'self._seed("states"), on_surface', 'self._seed("times"), on_surface'),
     ("sign of an exponent", "math.log2(values[0] / values[1])", "math.log2(values[1] / values[0])"),
-    ("length of a ring for a disc", "per_disc = scene.width / scene.discs\n    moved", "per_disc = scene.width / 2\n    moved"),
+    ("length of a ring for a disc", "(scene.width / scene.discs) ** 2", "(scene.width / 2) ** 2"),
     ("error of the slope of κ", "math.hypot(4 * early.stderr", "math.hypot(early.stderr"),
     ("fit to all distances", '-one["distance"])[-LAST:]', '-one["distance"])'),
     ("error of a logarithm", 'errors = [one["stderr"] / value', 'errors = [one["stderr"]'),

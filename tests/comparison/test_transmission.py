@@ -109,7 +109,7 @@ def test_the_order_of_three_discs_decays_by_passages():
     parts = [td.observe(scene, ordered, [early, late], 2**15, seed=n) for n in range(16)]
     found = np.array([part.mean for part in parts])
     kappa = td.transmission(scene, hop, 2**16, seed=1).coefficient
-    rate = kappa.value / td.mean_times(scene)[hop] / 2
+    rate = kappa.value / td.mean_times(scene)[f"{hop}_time"] / 2
     for time, means in zip((early, late), found.T, strict=True):
         values, vectors = np.linalg.eig(np.array([[-3, 2], [1, -2]]) * rate * time)
         start = np.linalg.solve(vectors, [2 / 3, 1 / 3])
@@ -134,7 +134,7 @@ def test_the_order_of_the_discs_decays_by_passages():
     early, late = 48.0, 250.0
     parts = [td.observe(scene, ordered, [early, late], 2**17, seed=n) for n in range(16)]
     decays = np.array([np.log(part.mean[0] / part.mean[1]) for part in parts]) / (late - early)
-    kappa = decays * td.mean_times(scene)[hop] / 2
+    kappa = decays * td.mean_times(scene)[f"{hop}_time"] / 2
     due = td.transmission(scene, hop, 2**18, seed=1).coefficient
     error = math.hypot(kappa.std(ddof=1) / math.sqrt(kappa.size), due.stderr)
     assert error < 0.003 * due.value
