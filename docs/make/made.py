@@ -25,7 +25,7 @@ EXPECTED = ROOT / "paper" / "expected"
 PAPER = {"name": SCENE, "width": BOX.width, "height": BOX.height, "effects": {}}
 
 
-#: What the first page of the site shows beside the text of README.md. Pages have these pictures.
+#: The part of the site's first page that README.md has not. Other pages have these pictures too.
 FRONT = """## See it
 
 <iframe src="explorer-page.html" title="The explorer" loading="lazy"

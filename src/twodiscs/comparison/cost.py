@@ -1,4 +1,4 @@
-"""What an accuracy costs: the processor time of an error, for each quantity and method.
+"""The cost of an accuracy: the processor time of an error, for each quantity and method.
 
 Independent samples have the relative error √(c/t) after a processor time t. The cost c is the time
 of a block of samples times its squared relative error, so it holds for every error above the floor
@@ -141,7 +141,7 @@ def blocks_wanted(scene, pilots, target):
 
 
 class Forecast(NamedTuple):
-    """What a run takes and reaches within its budget; ``reached`` are relative errors by event."""
+    """The time and events of a run within its budget; ``reached`` are relative errors by event."""
 
     seconds: float
     events: float

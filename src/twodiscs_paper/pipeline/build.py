@@ -174,9 +174,9 @@ def closing(results, dag, configured, scenes=()):
     """Return the last lines of a build.
 
     They are the files of its targets, the verdict of the check in the folder of ``results``, and
-    the path of the report. If the check or the report were not built
-    and are older than a file of ``configured``, the paths of the configuration, a line says so. The
-    last lines are about accuracies of ``scenes``, as described, that were not reached.
+    the path of the report. If the check or the report were not built and are older than a file of
+    ``configured``, the paths of the configuration, a line says so. The last lines are about
+    accuracies of ``scenes``, as described, that were not reached.
     """
     made = {str(path) for job in dag.jobs for path in job.output}
     lines = []
