@@ -53,6 +53,12 @@ def test_a_mistake_on_the_command_line(unbuilt):
     assert "Configuration: seed must be" in run.stderr
 
 
+def test_a_misspelt_target_gets_the_name_that_is_closest(unbuilt):
+    run = unbuilt.snakemake("--dry-run", "mean_hop_times", passes=False)
+    assert run.returncode != 0
+    assert "'mean_hop_times' is no target; did you mean 'mean_hop_time'?" in run.stdout
+
+
 def test_days_of_processor_time_are_written_without_an_exponent(unbuilt, tmp_path):
     path = tmp_path / "long.yaml"
     path.write_text(
