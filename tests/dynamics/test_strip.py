@@ -251,6 +251,23 @@ def test_the_target_is_reached_at_any_distance_from_a_threshold(hop, distance):
     assert point == runs.count_events(scene, {hop: 0.01}, 10**8, 1)
 
 
+@pytest.mark.parametrize(
+    "effects",
+    [
+        {},
+        pytest.param({"moment_of_inertia": 0.1}, marks=pytest.mark.slow),
+        pytest.param({"friction": 5.0}, marks=pytest.mark.slow),
+    ],
+    ids=str,
+)
+def test_planned_blocks_are_enough_and_not_far_too_many(effects):
+    """Shards do these and no more: fewer would miss the error that was asked for."""
+    scene, hop = Scene(1.5, 1.0, 0.2475, **effects), "horizontal_hop"
+    run = strip.run_of(scene, hop, 0.01, 10**9, 1)
+    (excess,) = run.excess_of(run.work(0, run.planned), run.planned)
+    assert 0.5 < excess <= 1
+
+
 def test_a_budget_is_shared_and_spent():
     scene, hop = PAPER.with_radius(0.24), "horizontal_hop"
     point = runs.count_events(scene, {hop: 1e-6, "any_wall": 1e-6}, 10**7, 1)
