@@ -1,21 +1,33 @@
-"""Scene: the geometry that it derives, against bisection in exact arithmetic."""
+"""A scene: without it discs could pass where there is no room, or hit a wall out of reach.
+
+Closed forms are compared with bisection in exact arithmetic, scenes with effects with a
+configuration space made of cells. Centres are put on a grid, cells that overlap or lack energy are
+thrown out, and neighbours are joined. These scenes are some way off every threshold, for a grid to
+see it.
+"""
 
 import math
 import pickle
-from dataclasses import FrozenInstanceError
+from dataclasses import FrozenInstanceError, replace
 from fractions import Fraction
+from itertools import product
 
+import effect_scenes
+import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
+from twodiscs.dynamics.law import law_of
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
-from twodiscs.model.events import EVENTS, HOPS
+from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, WALLS
 from twodiscs.model.scene import REGIMES, Scene, check_two
+from twodiscs.model.two import ENERGY
 
 BOXES = [(1.5, 1.0), (3.0, 1.0), (1.0, 1.0), (2.0, 1.0), (1.0, 2.0), (1.0, 1.7), (1e-6, 1e6)]
-sides = st.floats(-6, 6).map(lambda x: 10**x)
 
 
 def largest_by_bisection(width, height):
@@ -33,14 +45,6 @@ def test_largest_radius_is_where_the_discs_jam(width, height):
     assert Box(width, height).largest_radius == pytest.approx(
         largest_by_bisection(width, height), rel=4 * 2**-52
     )
-
-
-@given(sides, sides)
-def test_largest_radius_separates_what_fits_from_what_does_not(width, height):
-    largest = Box(width, height).largest_radius
-    assert largest == pytest.approx(Box(height, width).largest_radius, rel=4 * 2**-52)
-    assert Box(width, height).fits(largest * (1 - 1e-9))
-    assert not Box(width, height).fits(largest * (1 + 1e-9))
 
 
 def test_discs_that_jam_do_not_fit():
@@ -74,49 +78,247 @@ def test_regimes(width, height, radius, regime, components):
     assert all(scene.is_possible(event) for event in {*EVENTS} - {*HOPS})
 
 
-def test_derived_lengths():
-    scene = Scene(1.5, 1, 0.25)
-    assert (scene.range_x, scene.range_y, scene.contact_distance) == (1.0, 0.5, 0.5)
-    assert scene.largest_radius == Box(1.5, 1).largest_radius
-    assert scene.with_radius(0.1) == Scene(1.5, 1, 0.1)
-
-
-def test_a_scene_is_frozen_and_holds_floats():
-    scene = Scene(3, 1, Fraction(1, 4))
-    assert scene == Scene(3.0, 1.0, 0.25)
-    assert type(scene.width) is type(scene.radius) is float
-    with pytest.raises(FrozenInstanceError):
-        scene.width = 2.0
-
-
 def test_a_copy_is_the_same_whatever_was_asked_before():
     """Cached values are not in a pickle, by which libraries compare arguments."""
-    scene = Scene(1.5, 1.0, 0.25, periodic="x")
+    scene = Scene(1.5, 1, Fraction(1, 4), periodic="x")
+    assert type(scene.height) is type(scene.radius) is float
     new = pickle.dumps(scene)
     assert scene.axes
     assert scene.largest_radius
     assert pickle.dumps(scene) == new
     assert pickle.loads(new) == scene
+    with pytest.raises(FrozenInstanceError):
+        scene.width = 2.0
 
 
-SCENES = {
-    "plain": Scene(1.5, 1.0, 0.2),
-    "effects": Scene(1.5, 1.0, 0.2, mass_ratio=2.0),
-    "many": Scene(1.5, 1.0, 0.15, discs=3),
-}
-
-
-@pytest.mark.parametrize("family", SCENES)
-def test_a_scene_knows_its_family(family):
-    assert SCENES[family].family == family
-
-
-def test_all_discs_have_a_radius_and_a_mass():
-    assert (SCENES["many"].radii, SCENES["many"].masses) == ((0.15,) * 3, (1.0,) * 3)
-    assert (SCENES["effects"].radii, SCENES["effects"].masses) == ((0.2, 0.2), (1.0, 2.0))
-
-
-def test_two_discs_are_required_in_one_sentence():
-    assert check_two(SCENES["effects"], "shells") is SCENES["effects"]
+def test_scenes_of_two_discs_and_of_more_are_told_apart():
+    plain, many = Scene(1.5, 1.0, 0.2), Scene(1.5, 1.0, 0.15, discs=3)
+    unequal = replace(plain, mass_ratio=2.0)
+    assert [one.family for one in (plain, unequal, many)] == ["plain", "effects", "many"]
+    assert (many.radii, many.masses) == ((0.15,) * 3, (1.0,) * 3)
+    assert (unequal.radii, unequal.masses) == ((0.2, 0.2), (1.0, 2.0))
+    assert check_two(unequal, "shells") is unequal
     with pytest.raises(InputError, match=r"^discs must be 2 for shells, not 3$"):
-        check_two(SCENES["many"], "shells")
+        check_two(many, "shells")
+
+
+SCENES = [
+    Scene(1.5, 1.0, 0.2, radius_ratio=1.3),
+    Scene(1.5, 1.0, 0.2, radius_ratio=1.9),
+    Scene(1.0, 1.0, 0.25, radius_ratio=1.25),
+    Scene(1.5, 0.66, 0.29, radius_ratio=0.2),
+    Scene(1.5, 0.66, 0.058, radius_ratio=5.0),
+    Scene(1.0, 1.0, 0.4, radius_ratio=0.3),
+    Scene(1.0, 0.9, 0.4, radius_ratio=0.35),
+    Scene(1.5, 1.0, 0.3, periodic="x"),
+    Scene(1.0, 1.0, 0.3, periodic="x"),
+    Scene(1.5, 1.0, 0.3, periodic="y"),
+    Scene(0.6, 1.0, 0.2, periodic="y"),
+    Scene(1.5, 1.0, 0.3, periodic="xy"),
+    Scene(1.0, 1.0, 0.32, periodic="xy"),
+    Scene(1.5, 1.0, 0.15, field=2.0),
+    Scene(1.5, 1.0, 0.15, field=0.8),
+    Scene(0.7, 1.0, 0.2, field=1.0),
+    Scene(0.7, 1.5, 0.2, field=0.4),
+    Scene(1.5, 1.0, 0.15, field=0.9, mass_ratio=4.0, radius_ratio=1.5),
+    Scene(1.5, 1.0, 0.3, field=1.2, mass_ratio=0.2, radius_ratio=0.6),
+    Scene(0.9, 1.5, 0.2, field=0.7, periodic="x"),
+    Scene(0.7, 1.5, 0.2, field=0.4, periodic="x"),
+]
+
+#: Cells along each coordinate of each disc.
+CELLS = 24
+
+
+def grid(scene, axis, disc, cells=CELLS):
+    """Return the coordinates of a disc along an axis, from wall to wall or all the way round."""
+    side, r = scene.side(axis), scene.radii[disc]
+    if axis in scene.periodic:
+        return side * np.arange(cells) / cells
+    return np.linspace(r, side - r, cells)
+
+
+def allowed(scene, x1, y1, x2, y2):
+    """Say of centres, arrays that broadcast, whether the discs are apart and have energy."""
+    square = 0.0
+    for axis, gap in (("x", x1 - x2), ("y", y1 - y2)):
+        if axis in scene.periodic:
+            gap = gap - scene.side(axis) * np.round(gap / scene.side(axis))
+        square = square + gap**2
+    (r1, r2), (m1, m2) = scene.radii, scene.masses
+    potential = scene.field * (m1 * (y1 - r1) + m2 * (y2 - r2))
+    return (square >= scene.contact_distance**2 * (1 - 1e-12)) & (potential < ENERGY)
+
+
+def configurations(scene):
+    """Return the cells that are allowed, along x1, y1, x2, y2."""
+    centres = [grid(scene, axis, disc) for disc in (0, 1) for axis in "xy"]
+    return allowed(scene, *np.meshgrid(*centres, indexing="ij", sparse=True))
+
+
+def components(scene, open_cells):
+    """Return how many disjoint parts the cells make."""
+    number = np.arange(open_cells.size).reshape(open_cells.shape)
+    ends = []
+    for direction, axis in enumerate("xyxy"):
+        count = CELLS if axis in scene.periodic else CELLS - 1
+        here = np.take(number, range(count), direction)
+        there = np.take(number, range(1, count + 1), direction, mode="wrap")
+        both = open_cells.flat[here] & open_cells.flat[there]
+        ends.append((here[both], there[both]))
+    rows, columns = (np.concatenate(part) for part in zip(*ends, strict=True))
+    links = coo_array((np.ones(rows.size, bool), (rows, columns)), shape=(number.size,) * 2)
+    _, label = connected_components(links, directed=False)
+    sizes = np.bincount(label[open_cells.ravel()])
+    return np.count_nonzero(sizes > 0.001 * open_cells.sum())
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=repr)
+def test_components(scene):
+    """The cells fall into as many parts as the scene says, with a hop where it says so."""
+    open_cells = configurations(scene)
+    assert components(scene, open_cells) == scene.ergodic_components
+    for hop in HOPS:
+        axis = AXIS[hop]
+        if axis in scene.periodic:
+            assert not scene.is_possible(hop)
+            continue
+        other = "x" if axis == "y" else "y"
+        # Both centres at the same place along the axis of the hop.
+        level = np.linspace(max(scene.radii), scene.side(axis) - max(scene.radii), 40)
+        centres = dict.fromkeys((axis + "1", axis + "2"), level[:, None, None])
+        centres[other + "1"] = grid(scene, other, 0, 80)[None, :, None]
+        centres[other + "2"] = grid(scene, other, 1, 80)[None, None, :]
+        assert np.any(allowed(scene, **centres)) == scene.is_possible(hop)
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=repr)
+def test_confined(scene):
+    """Disc 1 reaches a far wall from the other side of disc 2 unless the scene says it is confined.
+
+    If the hop is open, all starts get there.
+    """
+    for axis, confined in zip("xy", scene.confined, strict=True):
+        if axis in scene.periodic:
+            assert not confined
+            continue
+        other = "x" if axis == "y" else "y"
+        wall = scene.side(axis) - scene.radii[0]
+        beyond = grid(scene, axis, 1, 200)
+        centres = {
+            axis + "1": wall,
+            axis + "2": beyond[beyond > wall, None, None],
+            other + "1": grid(scene, other, 0, 80)[None, :, None],
+            other + "2": grid(scene, other, 1, 80)[None, None, :],
+        }
+        behind = bool(np.any(allowed(scene, **centres)))
+        hop = {"x": scene.horizontal_hops, "y": scene.vertical_hops}[axis]
+        assert confined == (not hop and not behind)
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=repr)
+def test_walls_that_are_reached(scene):
+    """Disc 1 reaches a wall, and anything a wall, where the scene says so."""
+    centres = {
+        f"{axis}{disc + 1}": grid(scene, axis, disc, 40) for axis, disc in product("xy", (0, 1))
+    }
+    for event in WALLS:
+        axis = AXIS[event]
+        last = centres[axis + "1"][[-1 if DECLARED[event].side > 0 else 0]]
+        held = centres | {axis + "1": last}
+        mesh = np.meshgrid(*held.values(), indexing="ij", sparse=True)
+        found = np.any(allowed(scene, **dict(zip(held, mesh, strict=True))))
+        assert (found and axis in scene.walled) == scene.is_possible(event)
+
+
+@given(
+    st.sampled_from(["", "x", "y", "xy"]),
+    st.floats(0.3, 3.0),
+    st.floats(0.2, 5.0),
+    st.none() | st.floats(0.3, 3.0),
+)
+@settings(max_examples=200, deadline=None, derandomize=True)
+def test_largest_radius(periodic, width, ratio, depth):
+    check_largest_radius(
+        Scene(width, 1.0, 1e-6, depth=depth, radius_ratio=ratio, periodic=periodic)
+    )
+
+
+@pytest.mark.parametrize("scene", effect_scenes.SCENES.values(), ids=effect_scenes.SCENES)
+def test_largest_radius_with_every_effect(scene):
+    # A field may keep discs apart before they jam.
+    check_largest_radius(replace(scene, field=0.0))
+
+
+def check_largest_radius(scene):
+    """Discs fit below the largest radius and not above it."""
+    largest = scene.largest_radius
+    assert scene.with_radius(largest * (1 - 1e-12)).largest_radius == largest
+    with pytest.raises(ValueError, match="does not fit"):
+        scene.with_radius(largest * (1 + 1e-12))
+
+
+@pytest.mark.parametrize(
+    ("effects", "conserved", "components"),
+    [
+        ({}, (), 4),
+        ({"periodic": "x"}, ("x",), 3),
+        ({"periodic": "xy", "mass_ratio": 2}, ("x", "y"), 2),
+        ({"depth": 1.2, "periodic": "xz"}, ("x", "z"), 4),
+        ({"moment_of_inertia": 0.5}, (), 6),
+        # Rough walls push discs along them.
+        ({"moment_of_inertia": 0.5, "periodic": "x"}, (), 6),
+    ],
+)
+def test_momenta_that_are_conserved_and_0_do_not_count(effects, conserved, components):
+    scene = Scene(1.5, 1.0, 0.2, **effects)
+    assert (scene.conserved, scene.velocity_components) == (conserved, components)
+
+
+@pytest.mark.parametrize(
+    ("effects", "right", "top"),
+    [
+        ({}, 4, 4),  # two discs, two walls
+        ({"radius": 0.3}, 2, 4),  # discs that cannot pass along x
+        ({"radius": 0.38}, 2, 2),
+        ({"field": 0.4}, 4, 2),
+        ({"mass_ratio": 2}, 2, 2),
+        ({"radius_ratio": 0.5, "field": 0.4}, 2, 1),
+        ({"radius": 0.3, "field": 0.4}, 2, 2),
+    ],
+)
+def test_walls_of_one_rate_that_a_trajectory_reaches_are_counted_together(effects, right, top):
+    scene = Scene(1.5, 1.0, **{"radius": 0.2} | effects)
+    by_axis = {"x": right, "y": top}
+    for event in EVENTS:
+        assert scene.copies(event) == (by_axis[AXIS[event]] if event in WALLS else 1)
+
+
+def test_energy_to_pass_one_above_the_other_is_that_of_the_cheaper_order():
+    """The upper disc is the other one's diameter up: g m2 2r1 with disc 2 on top, or g m1 2r2."""
+    for ratios in ({"radius_ratio": 2, "mass_ratio": 3}, {"radius_ratio": 0.5, "mass_ratio": 0.2}):
+        scene = Scene(3.0, 2.0, 0.1, **ratios)
+        limit = ENERGY / (2 * min(scene.masses[1] * scene.radii[0], scene.radii[1]))
+        weak, strong = (replace(scene, field=part * limit) for part in (0.999, 1.001))
+        assert weak.horizontal_hops
+        assert not strong.horizontal_hops
+    # No energy to spare is none.
+    assert not Scene(3.0, 2.0, 0.25, field=1.0).horizontal_hops
+    assert Scene(3.0, 2.0, 0.25, field=math.nextafter(1.0, 0)).horizontal_hops
+
+
+@pytest.mark.parametrize("scene", effect_scenes.SCENES.values(), ids=effect_scenes.SCENES)
+def test_the_motion_has_the_lengths_of_the_theory(scene):
+    """The motion takes doubles and the theory fractions, from different properties."""
+    assert scene.contact_distance == pytest.approx(float(scene.exact_contact), rel=1e-15)
+    law = law_of(scene)
+    for axis in scene.walled:
+        halves = [getattr(law, f"half_{axis}{disc}") for disc in "12"]
+        reach = halves[0] + (halves[0] if halves[1] is None else halves[1])
+        assert reach == pytest.approx(float(scene.reach(axis)), rel=1e-15)
+
+
+def test_friction_is_limited_by_the_time_along_the_shortest_side():
+    assert Scene(1.5, 1.0, 0.2, friction=9.9e5).friction == 9.9e5
+    with pytest.raises(InputError, match=r"the shortest side, which is 1000000\.0, not 1010000\.0"):
+        Scene(1.5, 1.0, 0.2, friction=1.01e6)
