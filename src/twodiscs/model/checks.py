@@ -211,16 +211,6 @@ def check_choice(name, value, allowed):
     return value
 
 
-def check_ascending(name, values):
-    """Return ``values`` as floats; raise ``InputError`` unless they are ascending lengths."""
-    if isinstance(values, str | bytes) or not hasattr(values, "__len__"):
-        raise InputError(f"{name} must be a sequence of numbers, not {quote(values)}")
-    lengths = [check_length(name, value) for value in values]
-    if not lengths or sorted(set(lengths)) != lengths:
-        raise InputError(f"{name} must ascend and must not be empty, not {quote(lengths)}")
-    return lengths
-
-
 # Calls --------------------------------------------------------------------------------------------
 
 
