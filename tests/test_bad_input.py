@@ -39,6 +39,7 @@ from twodiscs_paper.configuration.model import Model
 BOX = Box(1.5, 1.0)
 PAPER = BOX.scene(0.2)
 RING, FIELD = Scene(1.5, 1.0, 0.2, periodic="x"), Scene(1.5, 1.0, 0.2, field=0.4)
+FOUR = Scene(6.0, 1.0, 0.2, discs=4, periodic="x")
 NAN, INF = math.nan, math.inf
 START = dict(zip(components(PAPER), (-0.5, 0.0, 0.5, 0.0, 1.0, 0.0, 0.0, 0.0), strict=True))
 
@@ -126,6 +127,10 @@ td.simulate(PAPER, seed=2**63) → seed must be an integer from 0 to 2^63 - 1, n
 td.simulate(PAPER, True) → must be a number above 0 and at most 1, or one of draft, …, not True
 td.simulate(RING, events='right_wall') → 'right_wall': the periodic axis x has no walls
 td.simulate(RING, events='horizontal_hop') → x two discs have no order that a hop could change
+td.sample(RING, 1, quantities='horizontal_hop_area') → x two discs have no order that a hop could
+td.intervals(RING, 'horizontal_hop') → x two discs have no order that a hop could change
+td.simulate(FOUR, events='horizontal_hop') → axis x are those of neighbours, see transmission
+td.intervals(FOUR, 'horizontal_hop') → axis x are those of neighbours, see transmission
 td.sample(PAPER, quantities='any_wall') → did you mean any_wall_area?
 td.sample(PAPER, 1, shell='0.5') → shell must be a number between 0 and 1, not '0.5'
 td.sample(PAPER, 1, shell=1.0) → shell must lie between 0 and 1, ends excluded, not 1.0

@@ -1,6 +1,8 @@
-"""The command line: exact numbers for people and scripts, and mistakes as one sentence."""
+"""The command line: a number could lose digits, an option or a result could get lost on its way.
 
-import argparse
+Mistakes in words are in ``test_bad_input.py``.
+"""
+
 import csv
 import io
 import json
@@ -13,6 +15,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from checkout import REPOSITORY
 from commands import command
 from snakemake.jobs import Reason
 
@@ -31,46 +34,33 @@ from twodiscs_paper.pipeline import build
 BOX = ["--width", "1.5", "--height", "1"]
 
 
-def exact(monkeypatch, capsys, *words):
-    """Run ``twodiscs exact`` in this process; return exit status, standard output and error."""
-    status = command(monkeypatch, cli, "exact", *words)
-    shown = capsys.readouterr()
-    return status, shown.out, shown.err
+@pytest.fixture
+def shell(monkeypatch, capsys):
+    """A function that runs ``twodiscs`` in this process and returns what it prints."""
+
+    def run(*words):
+        assert command(monkeypatch, cli, *words) == 0
+        return capsys.readouterr().out
+
+    return run
 
 
-def test_json_holds_every_digit(monkeypatch, capsys):
-    status, out, err = exact(monkeypatch, capsys, *BOX, "--radius", "0.3", "--json")
-    assert status == 0
-    assert err == ""
-    numbers = json.loads(out)
-    assert numbers == exact_numbers(Scene(1.5, 1, 0.3))
-    assert list(numbers["areas"]) == list(numbers["mean_times"]) == list(EVENTS)
-    assert numbers["mean_times"]["horizontal_hop"] is None
-
-
-def test_the_table_holds_every_digit(monkeypatch, capsys):
-    status, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.3")
-    assert status == 0
+def test_every_form_of_exact_numbers_holds_every_digit(shell):
+    words = "exact", *BOX, "--radius", "0.3"
     numbers = exact_numbers(Scene(1.5, 1, 0.3))
-    rows = {line.split()[0]: line.split()[1:] for line in out.splitlines() if line}
+    times, printed = numbers["mean_times"], json.loads(shell(*words, "--json"))
+    assert printed == numbers
+    assert list(printed["areas"]) == list(printed["mean_times"]) == list(EVENTS)
+    assert times["horizontal_hop"] is None
+    rows = {line.split()[0]: line.split()[1:] for line in shell(*words).splitlines() if line}
     assert rows["volume"] == [repr(numbers["volume"]), "length⁴"]
     assert rows["event"] == ["area", "(length³)", "mean", "time", "(time)"]
-    for event in EVENTS:
-        time = numbers["mean_times"][event]
-        assert rows[event] == [
-            repr(numbers["areas"][event]),
-            "impossible" if time is None else repr(time),
-        ]
-    assert "impossible" in rows["horizontal_hop"]
-
-
-def test_csv_has_the_numbers_of_the_radius(monkeypatch, capsys):
-    _, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.1", "--csv")
-    rows = {row["quantity"]: row for row in csv.DictReader(io.StringIO(out))}
-    assert {float(row["radius"]) for row in rows.values()} == {0.1}
-    times = exact_numbers(Scene(1.5, 1, 0.1))["mean_times"]
-    for event in EVENTS:
-        assert float(rows[f"{event}_time"]["exact"]) == times[event]
+    table = {row["quantity"]: row for row in csv.DictReader(io.StringIO(shell(*words, "--csv")))}
+    assert {float(row["radius"]) for row in table.values()} == {0.3}
+    for event, time in times.items():
+        text = "impossible" if time is None else repr(time)
+        assert rows[event] == [repr(numbers["areas"][event]), text]
+        assert table[f"{event}_time"]["exact"] == ("" if time is None else text)
 
 
 @pytest.mark.parametrize(
@@ -97,25 +87,13 @@ def test_every_option_reaches_the_function(name, given, monkeypatch):
     assert taken == given
 
 
-def test_a_trajectory_begins_at_its_start(monkeypatch, capsys):
-    start = [-0.5, 0.1, 0.5, 0.0, 0.6, 0.8, 0.0, 0.0]
-    words = "--radius", "0.2", "--duration", "1", "--csv", "--start", *start
-    assert not command(monkeypatch, cli, "trajectory", *BOX, *words)
-    first, *_ = csv.DictReader(io.StringIO(capsys.readouterr().out))
-    names = ("x1", "y1", "x2", "y2", "u1", "v1", "u2", "v2")
-    assert [float(first[name]) for name in names] == start
-
-
-def test_cost_prints_times_of_errors_as_a_table_and_for_scripts(monkeypatch, capsys):
+def test_cost_prints_times_of_errors_as_a_table_and_for_scripts(shell):
     words = "cost", *BOX, "--radius", "0.2", "--errors", "1e-2", "paper", "--shell", "0.1"
-    shown = {}
-    for form in ([], ["--json"], ["--csv"]):
-        assert command(monkeypatch, cli, *words, *form) == 0
-        shown[tuple(form)] = capsys.readouterr().out
-    assert shown[()].startswith(str(Scene(1.5, 1, 0.2)))
-    assert " 0.01 0.0003 " in re.sub(" +", " ", shown[()])
-    rows = json.loads(shown["--json",])
-    table = [*csv.DictReader(io.StringIO(shown["--csv",]))]
+    text = shell(*words)
+    assert text.startswith(str(Scene(1.5, 1, 0.2)))
+    assert " 0.01 0.0003 " in re.sub(" +", " ", text)
+    rows = json.loads(shell(*words, "--json"))
+    table = [*csv.DictReader(io.StringIO(shell(*words, "--csv")))]
     assert [row["method"] for row in table] == [row["method"] for row in rows]
     (area,) = (row for row in rows if row["quantity"] == "top_wall_area" if "rej" in row["method"])
     assert area["floor"] > 3e-4
@@ -131,37 +109,23 @@ def test_a_result_for_scripts_has_its_note_beside_it(monkeypatch, capsys):
     assert shown.out.startswith("radius,")
 
 
-def test_effects_are_options(monkeypatch, capsys):
+def test_effects_are_options_with_their_meanings(shell):
     named = {"radius_ratio": 0.5, "mass_ratio": 2.0, "field": 0.5}
-    words = ["--radius-ratio", "0.5", "--mass-ratio", "2", "--field", ".5"]
-    status, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.1", *words, "--json")
-    assert status == 0
-    assert json.loads(out) == exact_numbers(Scene(1.5, 1, 0.1, **named))
-    _, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.1", *words)
-    assert all(f"{name.replace('_', ' '):<20}{value}" in out for name, value in named.items())
-    _, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.1", "--depth", "1.2")
-    assert out.startswith("Two balls of radius 0.1 in a box of 1.5 × 1.0 × 1.2\n")
-    assert "\nvelocity components 6\n" in out
-    _, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.1", "--periodic", "yx")
-    assert "\nvelocity components 2\ntotal momentum      0 along x, y\n" in out
-    _, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.1")
-    assert "velocity components" not in out
-
-
-def test_every_effect_has_an_option_with_its_meaning(monkeypatch, capsys):
-    status, out, _ = exact(monkeypatch, capsys, "--help")
-    assert status == 0
+    words = "exact", *BOX, "--radius", "0.1"
+    some = *words, "--radius-ratio", "0.5", "--mass-ratio", "2", "--field", ".5"
+    assert json.loads(shell(*some, "--json")) == exact_numbers(Scene(1.5, 1, 0.1, **named))
+    text = shell(*some)
+    assert all(f"{name.replace('_', ' '):<20}{value}" in text for name, value in named.items())
+    balls = shell(*words, "--depth", "1.2")
+    assert balls.startswith("Two balls of radius 0.1 in a box of 1.5 × 1.0 × 1.2\n")
+    assert "\nvelocity components 6\n" in balls
+    torus = shell(*words, "--periodic", "yx")
+    assert "\nvelocity components 2\ntotal momentum      0 along x, y\n" in torus
+    assert "velocity components" not in shell(*words)
+    page = shell("exact", "--help")
     for name, effect in EFFECTS.items():
-        assert f"--{name.replace('_', '-')}" in out
-        assert effect.meaning in " ".join(out.split())
-
-
-def test_the_installed_command():
-    words = [Path(sys.executable).with_name("twodiscs"), "exact", *BOX, "--radius", "1"]
-    done = subprocess.run(words, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.startswith("error: radius 1.0 does not fit")
-    assert done.stderr.count("\n") == 1
+        assert f"--{name.replace('_', '-')}" in page
+        assert effect.meaning in " ".join(page.split())
 
 
 # Standard output ---------------------------------------------------------------------------------
@@ -171,20 +135,28 @@ EXACT = ("exact", *BOX, "--radius", "0.2")
 
 def installed(*words, redirected="", **environment):
     """Return the completed process of ``twodiscs`` in a shell, with streams ``redirected``."""
-    line = shlex.join([sys.executable, "-m", "twodiscs", *words])
+    line = shlex.join([str(Path(sys.executable).with_name("twodiscs")), *words])
     return subprocess.run(
         f"{line} {redirected}", shell=True, capture_output=True, check=False,
-        env={**os.environ, **environment},
+        env={**os.environ, "PYTHONIOENCODING": "utf-8", **environment},
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("words", [EXACT, ("exact", "--help")])
-@pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp1252", "utf-8"])
-def test_no_encoding_loses_a_result(encoding, words):
-    done = installed(*words, PYTHONIOENCODING=encoding)
-    expected = installed(*words, PYTHONIOENCODING="utf-8").stdout.decode("utf-8")
-    assert (done.returncode, done.stderr) == (0, b"")
-    assert done.stdout == expected.encode(encoding, "backslashreplace")
+def test_no_stream_loses_a_result(shell):
+    """An encoding without its letters, a closed standard error, a full device."""
+    expected = shell(*EXACT)
+    for encoding in ("ascii", "cp1252"):
+        done = installed(*EXACT, PYTHONIOENCODING=encoding)
+        assert (done.returncode, done.stderr) == (0, b"")
+        assert done.stdout == expected.encode(encoding, "backslashreplace")
+    assert installed(*EXACT, redirected="2>&-").stdout.decode() == expected
+    done = installed("exact", *BOX, redirected="2>&-")
+    assert (done.returncode, done.stdout) == (2, b"")
+    done = installed(*EXACT, redirected="> /dev/full")
+    *result, error = done.stderr.decode().splitlines()
+    assert done.returncode == 2
+    assert error == "error: standard output: No space left on device"
+    assert result == expected.splitlines()
 
 
 def test_a_closed_output_is_refused_before_the_work():
@@ -192,32 +164,14 @@ def test_a_closed_output_is_refused_before_the_work():
     assert (done.returncode, done.stderr) == (2, b"error: standard output is closed\n")
 
 
-def test_a_closed_standard_error_changes_nothing():
-    assert installed(*EXACT, redirected="2>&-").stdout == installed(*EXACT).stdout
-    words = "simulate", *BOX, "--radius", "0.2", "--budget", "1"
-    done = installed(*words, redirected="2>&-")
-    assert (done.returncode, done.stdout) == (0, installed(*words).stdout)
-    done = installed("exact", *BOX, redirected="2>&-")
-    assert (done.returncode, done.stdout) == (2, b"")
-
-
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="only Linux has a device that is full")
-@pytest.mark.parametrize("form", [(), ("--json",), ("--csv",)])
-def test_a_result_that_finds_no_space_is_printed_on_standard_error(form):
-    done = installed(*EXACT, *form, redirected="> /dev/full")
-    *result, error = done.stderr.decode().splitlines()
-    assert done.returncode == 2
-    assert error == "error: standard output: No space left on device"
-    assert result == installed(*EXACT, *form).stdout.decode().splitlines()
-
-
-# Arguments --------------------------------------------------------------------------------------
-
-
-def test_a_number_is_a_float_or_a_mistake_of_the_caller():
-    assert arguments.number("1e-3") == 1e-3
-    with pytest.raises(argparse.ArgumentTypeError, match="must be a number, not 'x'"):
-        arguments.number("x")
+@pytest.mark.parametrize("words", [EXACT, ("--version",)])
+def test_who_reads_may_stop_reading(words):
+    reader, writer = os.pipe()
+    os.close(reader)
+    program = [sys.executable, "-m", "twodiscs", *words]
+    run = subprocess.run(program, stdout=writer, stderr=subprocess.PIPE, text=True, check=False)
+    os.close(writer)
+    assert run.stderr == ""
 
 
 @pytest.mark.parametrize(
@@ -238,7 +192,7 @@ def test_run_turns_an_error_into_a_sentence(capsys, error, sentence):
     assert capsys.readouterr().err == sentence
 
 
-@pytest.mark.parametrize("status", [None, 0, 1])
+@pytest.mark.parametrize("status", [None, 1])
 def test_run_exits_with_what_main_returns(status):
     with pytest.raises(SystemExit) as caught:
         arguments.run(lambda: status)
@@ -334,10 +288,10 @@ def test_targets_may_stand_behind_options(monkeypatch, capsys):
 
 
 def test_targets_are_those_of_the_page():
-    page = (Path(__file__).parents[1] / "docs/pipeline.md").read_text(encoding="utf-8")
+    page = (REPOSITORY / "docs/pipeline.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| (?:<!--.*?--> )?(`[^|]*) \|", page, re.MULTILINE)
     assert {*re.findall("`(\\w+)`", " ".join(rows))} <= {*build.TARGETS}
-    rules = " ".join(p.read_text() for p in (Path(__file__).parents[1] / "workflow").rglob("*smk"))
+    rules = " ".join(p.read_text() for p in (REPOSITORY / "workflow").rglob("*smk"))
     fixed = {*build.TARGETS} - {*FIGURES} - {*STUDIES} - {"all"}
     assert [n for n in fixed if not re.search(f"rule {n}:|rule \\w+ as {n} with:", rules)] == []
 
@@ -421,6 +375,6 @@ def test_a_shell_completes(tmp_path, line, proposed):
         "_ARGCOMPLETE_SUPPRESS_SPACE": "1", "COMP_LINE": line, "COMP_POINT": str(len(line)),
         "COMP_TYPE": "9",
     }  # fmt: skip
-    where = {"env": {**os.environ, **shell}, "cwd": Path(__file__).parents[1]}
+    where = {"env": {**os.environ, **shell}, "cwd": REPOSITORY}
     subprocess.run([sys.executable, "-c", program], timeout=60, **where)
     assert path.read_text().splitlines() == proposed
