@@ -1,4 +1,4 @@
-"""The agreement over all scenes: few scores, and their results by hand."""
+"""Without these tests the agreement could count what is no test, or weigh it wrongly."""
 
 import math
 
@@ -86,31 +86,22 @@ def one(rows, **where):
     return row["count"], row["estimate"], row.get("stderr")
 
 
-def test_the_mean_square_is_that_of_independent_tests_with_a_normal_law(rows):
+def test_rows_are_as_by_hand(rows):
+    """Of tests with a normal law, of bins and of effects whose count is no sum of others.
+
+    A bin of half of all intervals has the error √(n/4)/n/width if they are independent. The
+    parabola p − at² whose means over (0, 1) and (1, 2) are 1.3 and 1 begins at 1.35.
+    """
     squares = sum(z**2 for values in SCORES.values() for z in values)
-    expected = 32, squares / 16, math.sqrt(2 / 32)
-    assert one(rows, quantity="mean_square") == pytest.approx(expected)
-
-
-def test_correlations_are_those_at_the_same_radii(rows):
+    due = 32, squares / 16, math.sqrt(2 / 32)
+    assert one(rows, quantity="mean_square") == pytest.approx(due)
     assert one(rows, event="right_wall") == (8, pytest.approx(-1), None)
     assert one(rows, event="vertical_hop", other="disc_collision") == (8, pytest.approx(0), None)
-
-
-def test_errors_of_chains_are_compared_with_those_of_counts(rows):
-    """A bin of half of all intervals has the error √(n/4)/n/width if they are independent."""
     assert one(rows, quantity="error_ratio") == (1, pytest.approx(3), None)
-    assert measure.error_ratio([])["estimate"] == 1
-
-
-def test_the_density_at_zero_is_that_of_a_parabola(rows):
-    """The parabola p − at² whose means over (0, 1) and (1, 2) are 1.3 and 1 begins at 1.35."""
     error = math.hypot(7 * 100, 10) / 6 * 0.5 / math.sqrt(40_000) / 0.25
     assert one(rows, quantity="density_at_zero", scene="a") == pytest.approx((2, 1.35, error))
-
-
-def test_effects_whose_count_is_a_sum_of_others_are_no_tests(rows):
     assert one(rows, quantity="effects") == (2, 1.5, None)
+    assert measure.error_ratio([])["estimate"] == 1
     assert not [*measure.tests_of_effects([])]
 
 

@@ -1,4 +1,4 @@
-"""Brownian dynamics of two discs in a ring: laws that can be solved, and the long run.
+"""Without these tests Brownian steps, κ, its exponents or the long run could be wrong.
 
 Comparisons are held to five standard errors: false alarms in fewer than one of a million each.
 """
@@ -137,17 +137,16 @@ def test_both_methods_agree(program):
         assert deviation(found, far[quantity]) < SIGMA, (quantity, found, far[quantity])
 
 
-def test_clusters_hold_each_crossing_once():
+def test_clusters_hold_each_crossing_once_and_seeds_are_joined_as_one_run_is():
     counts = study.crossing_counts(1, "reflected", 0.125, 4, 100)
     assert sum(number for _, number in counts["sizes"]) == 2 * brownian.CROSSINGS
     assert counts["tried"] == 2 * brownian.CROSSINGS  # none is rejected
-
-
-def test_seeds_are_joined_as_one_run_is():
-    one, two = (study.passage_counts(seed, "singly", 0.25, 2, 8) for seed in (1, 2))
-    both = study.joined([one, two])
+    pairs = [study.passage_counts(seed, "singly", 0.25, 2, 8) for seed in (1, 2)]
+    both = study.joined(pairs)
     assert both["pairs"] == 16
-    assert both["passage"] == [a + b for a, b in zip(one["passage"], two["passage"], strict=True)]
+    assert both["passage"] == [
+        sum(each) for each in zip(*(p["passage"] for p in pairs), strict=True)
+    ]
     clusters = [study.crossing_counts(seed, "singly", 0.125, 3, 64) for seed in (1, 2)]
     sizes = dict(study.joined(clusters)["sizes"])
     assert sum(sizes.values()) == 128
@@ -155,31 +154,6 @@ def test_seeds_are_joined_as_one_run_is():
 
 
 # The motion -------------------------------------------------------------------------------------
-
-
-@pytest.mark.slow
-def test_a_flight_keeps_energy_and_room_and_goes_back():
-    stream, breadth = np.random.default_rng(5), 1.02
-    for _ in range(300):
-        state = np.zeros(7)
-        state[0], state[1] = 0.3 * stream.normal(), 0.01 * stream.random()
-        state[2] = breadth - 0.005 * stream.random()
-        if np.hypot(state[0], state[2] - state[1]) < 1:
-            continue
-        state[3:6] = stream.normal(size=3)
-        start = state.copy()
-
-        def energy(state):
-            return state[3] ** 2 / 2 + state[4] ** 2 + state[5] ** 2
-
-        crossings = brownian.fly(state, 0.2, study.HALF, breadth)
-        assert energy(state) == pytest.approx(energy(start), rel=1e-12)
-        assert np.hypot(state[0], state[2] - state[1]) > 1 - 1e-12
-        assert 0 <= min(state[1:3]) <= max(state[1:3]) <= breadth
-        state[3:6] *= -1
-        assert brownian.fly(state, 0.2, study.HALF, breadth) == crossings
-        state[3:6] *= -1
-        np.testing.assert_allclose(state[:6], start[:6], atol=1e-6)
 
 
 @pytest.mark.slow
@@ -220,36 +194,34 @@ def test_the_table_is_that_of_its_counts(kept, counts):
 
 def test_the_counts_are_those_of_the_configuration(monkeypatch, configuration, counts):
     for kind in ("crossings", "passages"):
-        due = [
-            {"program": program, "step": step, "halvings": n}
-            for program, step, n, _ in study.points(configuration[kind])
-        ]
-        assert [{k: point[k] for k in due[0]} for point in counts[kind]] == due
-        samples = [point[-1] for point in study.points(configuration[kind])]
-        for point, number in zip(counts[kind], samples, strict=True):
+        for point, due in zip(counts[kind], study.points(configuration[kind]), strict=True):
+            assert (point["program"], point["step"], point["halvings"]) == due[:3]
             assert len(point["seeds"]) == len(configuration["seeds"]) == 2
             for seed in point["seeds"]:
-                found = seed.get("pairs") or sum(n for _, n in seed["sizes"])
-                assert found == number
+                assert (seed.get("pairs") or sum(n for _, n in seed["sizes"])) == due[3]
     monkeypatch.setattr(study, "counted", lambda *given: given)
     monkeypatch.setattr(study, "rows", lambda counted: counted)
     assert Brownian.part(**configuration) == tuple(configuration.values())
 
 
 @pytest.mark.slow
-def test_points_of_the_long_run_are_the_same_again(configuration, counts):
-    seeds = configuration["seeds"]
-    for kind, count, program, step, n in (
-        ("crossings", study.crossing_counts, "reflected", 2.0**-3, 3),
-        ("crossings", study.crossing_counts, "singly", 2.0**-3, 2),
-        ("crossings", study.crossing_counts, "together", 2.0**-5, 3),
-        ("passages", study.passage_counts, "reflected", 2.0**-2, 4),
-        ("passages", study.passage_counts, "together", 2.0**-2, 2),
-    ):
-        (point,) = of(counts[kind], program=program, step=step, halvings=n)
-        for seed, own in zip(seeds, point["seeds"], strict=True):
-            samples = own.get("pairs") or sum(number for _, number in own["sizes"])
-            assert count(seed, program, step, n, samples) == own
+@pytest.mark.parametrize(
+    ("kind", "program", "step", "halvings"),
+    [
+        ("crossing", "reflected", 2.0**-3, 3),
+        ("crossing", "singly", 2.0**-3, 2),
+        ("crossing", "together", 2.0**-5, 3),
+        ("passage", "reflected", 2.0**-2, 4),
+        ("passage", "together", 2.0**-2, 2),
+    ],
+)
+def test_points_of_the_long_run_are_the_same_again(
+    configuration, counts, kind, program, step, halvings
+):
+    (point,) = of(counts[f"{kind}s"], program=program, step=step, halvings=halvings)
+    for seed, own in zip(configuration["seeds"], point["seeds"], strict=True):
+        samples = own.get("pairs") or sum(number for _, number in own["sizes"])
+        assert getattr(study, f"{kind}_counts")(seed, program, step, halvings, samples) == own
 
 
 def test_seeds_and_methods_agree(kept):
@@ -265,13 +237,10 @@ def test_reflected_discs_have_the_exponents_of_both_theories(kept):
     fits = of(kept, program="reflected", method="crossings", quantity="exponent")
     long, short = ([r for r in fits if (r["neck"] > 1) == long] for long in (True, False))
     assert {row["seed"] for row in long} == {row["seed"] for row in short} == {None, 1, 2}
-    for row in long:
-        assert row["stderr"] < 0.03
-        assert abs(row["estimate"] + 1.5) < SIGMA * row["stderr"]
-    for row in short:
-        assert row["stderr"] < 0.03
-        # 1 − κ ∝ ε^½ there: half of it is left at the widest neck.
-        assert -2 < row["estimate"] < -1.95
+    assert max(row["stderr"] for row in fits) < 0.03
+    assert all(abs(row["estimate"] + 1.5) < SIGMA * row["stderr"] for row in long)
+    # 1 − κ ∝ ε^½ for short necks: half of it is left at the widest one.
+    assert all(-2 < row["estimate"] < -1.95 for row in short)
 
 
 def test_rejected_discs_pass_a_channel_that_closes(kept):

@@ -4,12 +4,10 @@ import dataclasses
 import inspect
 import json
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
 from twodiscs.model.effects import EFFECTS
-from twodiscs_paper import catalogue
 from twodiscs_paper.catalogue import STUDIES, STUDY_TABLES
 from twodiscs_paper.configuration.load import load, read
 from twodiscs_paper.drawings import DRAW
@@ -37,25 +35,6 @@ def default():
     return loaded(read(CONFIG / "config.yaml"))
 
 
-@pytest.fixture(scope="module")
-def only_effects():
-    """A configuration without a plain scene."""
-    return loaded(read(CONFIG / "scenes" / "rough.yaml"))
-
-
-def test_a_folder_that_declares_a_study_is_enough(tmp_path, monkeypatch):
-    """And studies stand in their order, those of the same by name."""
-    (tmp_path / "studies" / "waits").mkdir(parents=True)
-    (tmp_path / "studies" / "waits" / "study.py").touch()
-    first = dataclasses.replace(STUDIES["errata"], name="waits", order=2)
-    modules = {"twodiscs_paper.studies.waits.study": SimpleNamespace(STUDY=first, other=3)}
-    modules["twodiscs_paper.errata.study"] = SimpleNamespace()
-    monkeypatch.setattr(catalogue, "__file__", str(tmp_path / "catalogue.py"))
-    monkeypatch.setattr(catalogue, "import_module", modules.__getitem__)
-    assert list(catalogue._declared()) == [first]
-    assert list(STUDIES) == sorted(STUDIES, key=lambda name: STUDIES[name].order)
-
-
 @every_study
 def test_parameters_are_plain_values_that_its_table_takes(study, default):
     """The first table, which is named as the study is."""
@@ -71,6 +50,7 @@ def test_parameters_are_plain_values_that_its_table_takes(study, default):
 
 @every_study
 def test_what_is_read_is_a_table_of_a_scene_or_of_a_study_before(study, default):
+    assert list(STUDIES) == sorted(STUDIES, key=lambda name: STUDIES[name].order)
     before = list(STUDY_TABLES)[: list(STUDY_TABLES).index(study.name)]
     for name, (scene, table) in study.reads(default).items():
         assert name.endswith(table)
@@ -103,8 +83,9 @@ def test_budgets_follow_the_main_scene_within_limits():
     assert found == [2**16, 250_000, 2**22]
 
 
-def test_a_configuration_without_plain_scenes_has_studies(only_effects):
+def test_a_configuration_without_plain_scenes_has_studies():
     """Those that are not about plain scenes need no main one."""
+    only_effects = loaded(read(CONFIG / "scenes" / "rough.yaml"))
     kept = [study for study in STUDIES.values() if not study.about_plain]
     assert [study.name for study in kept] == ["accuracy_cost", "effects"]
     assert only_effects.main is None

@@ -1,4 +1,4 @@
-"""Times to the next hop: fits against independent methods, measurements against exact relations.
+"""Without these tests fits of hazards and what they are sorted by could be wrong, or their errors.
 
 Statistical comparisons allow five standard errors. Errors from 128 blocks are known to 6 %, and
 their scores are turned into normal deviates; with some 150 comparisons a false alarm comes in fewer
@@ -14,15 +14,11 @@ import pytest
 from factory import written
 
 from twodiscs.dynamics import runs
-from twodiscs.figures import style
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.theory import laws
-from twodiscs_paper.studies.distributions import figure
 from twodiscs_paper.studies.distributions import measure as distributions
 from twodiscs_paper.studies.distributions.study import Distributions
-from twodiscs_paper.studies.tails.measure import tail
-from twodiscs_paper.studies.thresholds import figure as thresholds_figure
 
 BOX = Box(1.5, 1.0)
 PAPER = BOX.scene(0.24)
@@ -95,12 +91,10 @@ def test_rate_trend_their_errors_and_chi_square_are_those_of_binomial_counts():
 
 
 def test_a_hazard_that_falls_slowly_shows_in_the_trend():
-    middles = (EDGES[1:] + EDGES[:-1]) / 2
-    chances = -np.expm1(-0.4 * (middles / 6) ** -0.2 * np.diff(EDGES))
+    chances = -np.expm1(-0.4 * ((EDGES[1:] + EDGES[:-1]) / 12) ** -0.2 * np.diff(EDGES))
     bins = bins_of(EDGES, chances, 10**6, None)
     _, trend, chi2, degrees = distributions.constant_hazard(bins)
     assert trend.value == pytest.approx(-0.2, abs=0.02)
-    assert trend.value < -8 * trend.stderr
     assert chi2 > 3 * degrees
 
 
@@ -116,29 +110,19 @@ def test_density_at_zero_of_a_parabola():
     assert spread == pytest.approx(found[0].stderr, rel=5 / math.sqrt(2 * 2000) + 0.01)
 
 
-def test_errors_of_hazards_are_what_they_say():
+def test_hazards_of_an_exponential_are_its_rate_within_their_errors():
     """Bins are independent, given those before: the mean square of scores is 1, at 5 sigma."""
     rng, z = np.random.default_rng(8), []
     for _ in range(40):
         counts = np.bincount((rng.exponential(2.0, 10**4) / 0.25).astype(int), minlength=30)
-        z += [
-            (row.rate - 0.5) / row.error for row in distributions.hazard(counts[:30], 10**4, 0.25)
-        ]
+        rows = list(distributions.hazard(counts[:30], 10**4, 0.25))
+        z += [(row.rate - 0.5) / row.error for row in rows]
+        for row, after in pairwise(rows):
+            assert (row.last, row.alive - row.count) == (after.first, after.alive)
+            assert row.last - row.first >= distributions.GROWTH * row.first
+            assert row.count >= distributions.FEWEST_IN_BIN
     assert len(z) > 500
     assert abs(np.mean(np.square(z)) - 1) < 5 * math.sqrt(2 / len(z))
-
-
-def test_hazard_of_an_exponential_is_its_rate():
-    rng = np.random.default_rng(3)
-    counts = np.bincount((rng.exponential(2.0, 10**5) / 0.25).astype(int), minlength=60)
-    rows = list(distributions.hazard(counts[:60], 10**5, 0.25))
-    assert len(rows) > 20
-    for row in rows:
-        assert abs(row.rate - 0.5) < 5 * row.error
-        assert row.last - row.first >= distributions.GROWTH * row.first
-        assert row.count >= distributions.FEWEST_IN_BIN
-    for row, after in pairwise(rows):
-        assert (row.last, row.alive - row.count) == (after.first, after.alive)
 
 
 # Measurements -------------------------------------------------------------------------------------
@@ -147,9 +131,7 @@ def test_hazard_of_an_exponential_is_its_rate():
 @pytest.mark.parametrize(
     ("box", "radius", "hop"),
     [
-        ((1.5, 1.0), 0.05, "vertical_hop"),
         ((1.5, 1.0), 0.24, "vertical_hop"),
-        ((1.5, 1.0), 0.3, "vertical_hop"),
         ((1.5, 1.0), 0.2, "horizontal_hop"),
         ((3.0, 1.0), 0.4, "vertical_hop"),
         ((1.0, 1.5), 0.1, "horizontal_hop"),
@@ -193,19 +175,6 @@ def test_intervals_are_those_of_chains():
     assert hazards[-1]["last"] > 4 * mean
 
 
-def test_hazards_add_up_to_the_survival_of_weighted_starts():
-    rows = measured(PAPER, "vertical_hop", 7, 2**20)
-    survival = 1.0
-    for row in rows:
-        if row["quantity"] == "hazard" and row["last"] <= 4 * rows[0]["reference"]:
-            survival *= math.exp(-row["estimate"] * (row["last"] - row["first"]))
-            last = row["last"]
-    found = tail(PAPER, "vertical_hop", [last], 200, 8)[0]
-    intervals = rows[0]["count"]
-    error = math.hypot(found.stderr, math.sqrt(survival / intervals))
-    assert abs(found.value - survival) < 5 * error
-
-
 def test_radii_near_the_threshold():
     def near(hop, width=1.5, height=1.0):
         return distributions.near_threshold(Box(width, height), hop)
@@ -215,14 +184,6 @@ def test_radii_near_the_threshold():
     assert near("vertical_hop", 3.0) == []
     assert near("vertical_hop", 1.0, 3.0)[0] == 0.21
     assert near("horizontal_hop", 1e6) == []  # an interval takes more than 1e7 events
-
-
-@pytest.mark.parametrize("drawn", [figure, thresholds_figure])
-def test_without_any_rows_the_box_is_named(drawn):
-    box = Box(1e6, 1.0)
-    with style.context():
-        found = drawn.draw(box, {"distributions": []})
-    assert "10^{6}" in found.axes[0].get_title("left")
 
 
 # The table and the figure -------------------------------------------------------------------------
