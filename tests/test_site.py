@@ -1,6 +1,5 @@
-"""The site: without it links would be dead, entries without a place, and lines of Python wrong."""
+"""The site: links could be dead, entries without a place, and lines of the gallery wrong."""
 
-import json
 import re
 import subprocess
 import sys
@@ -11,14 +10,13 @@ from checkout import REPOSITORY
 
 import twodiscs as td
 from twodiscs_paper.catalogue import ENTRIES, TABLES
-from twodiscs_paper.pipeline.build import TARGETS
 
 pytest.importorskip("sphinx", reason="Sphinx builds the site")
 
 
 @pytest.mark.slow
 def test_the_site_is_complete(tmp_path):
-    """As ``make docs`` builds it: links, pictures, the search, and what declarations make."""
+    """As ``make docs`` builds it: links, pictures, and what declarations make."""
     site = tmp_path / "site"
     command = [
         *(sys.executable, "-m", "sphinx", "--conf-dir", "docs/make", "--doctree-dir", tmp_path),
@@ -32,25 +30,15 @@ def test_the_site_is_complete(tmp_path):
             if not re.match("https://|data:", target):
                 assert ((site / name).parent / target).exists(), (name, target)
         assert not re.search(r'<(?:script|link|img|iframe)[^>]*"https?://', text), name
-    assert pages["index.html"] == pages["README.html"]
-    assert pages["docs/python.html"].count("../tutorial-") > 1
-    assert "<iframe" in pages["docs/explorer.html"]
     assert [n for n in td.__all__ if f'id="twodiscs.{n}"' not in pages["docs/reference.html"]] == []
     assert [n for n in TABLES if f"<h3>{n}.csv<" not in pages["results/README.html"]] == []
-    for name, entry in ENTRIES.items():
-        assert entry.title in pages["docs/gallery.html"]
-        assert f"snakemake --cores 2 {made.target(name)}\n" in pages["docs/gallery.html"]
-    text = (site / "searchindex.js").read_text(encoding="utf-8")
-    index = json.loads(text.removeprefix("Search.setIndex(").removesuffix(")"))
-    recipes = index["docnames"].index("docs/recipes")
-    words = [*index["terms"].items(), *index["titleterms"].items()]
-    found = [pages for word, pages in words if word.startswith("gravit")]
-    assert any(recipes in (pages if isinstance(pages, list) else [pages]) for pages in found)
+    gallery = pages["docs/gallery.html"]
+    assert [n for n in ENTRIES if f"--cores 2 {made.target(n)}\n" not in gallery] == []
+    assert "gravit" in (site / "searchindex.js").read_text(encoding="utf-8")
 
 
 @pytest.mark.slow
 def test_the_lines_of_the_gallery_draw_their_figures(tmp_path, monkeypatch):
-    assert {made.target(name) for name in ENTRIES} <= {*TARGETS}
     monkeypatch.chdir(tmp_path)
     lines = {name: line for name in ENTRIES if (line := made.in_python(name))}
     assert len(lines) > 15
