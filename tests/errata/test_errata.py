@@ -1,4 +1,4 @@
-"""The errata: printed formulas that they call wrong are wrong, and their corrections are right.
+"""The errata: a formula could be called wrong that is right, or a correction be wrong itself.
 
 The verdicts are computed; here they are compared with those found by hand, and formulas are spoilt
 to see them turn.
@@ -20,30 +20,13 @@ from twodiscs_paper.errata.study import Errata
 from twodiscs_paper.reference import QUANTITIES, MpScene, mean_time
 
 WRONG = {
-    "axis of the cylinder",
-    "volumewhd",
-    "factor of 2 or 4",
-    "VolumenCasoFeo",
-    "eq:surface-area",
-    "AreaH",
-    "caption on the hop area",
-    "hoptau",
-    "hoptaulimit",
-    "hop time near w/4",
-    "collision time is smooth",
-    "impactwall",
-    "range of two components",
-    "range of four components",
-    "hop surface orthogonal to Y",
-    "pasoraro",
-    "app:colgeneral, first line",
-    "app:colgeneral with b = 0",
-    "app:colgeneral as a quarter",
-    "vertical hops excluded",
-    "A_whole",
-    "lower triangle of the wall",
-    "limit of thin shells",
-}
+    "axis of the cylinder", "volumewhd", "factor of 2 or 4", "VolumenCasoFeo", "eq:surface-area",
+    "AreaH", "caption on the hop area", "hoptau", "hoptaulimit", "hop time near w/4",
+    "collision time is smooth", "impactwall", "range of two components", "range of four components",
+    "hop surface orthogonal to Y", "pasoraro", "app:colgeneral, first line",
+    "app:colgeneral with b = 0", "app:colgeneral as a quarter", "vertical hops excluded", "A_whole",
+    "lower triangle of the wall", "limit of thin shells",
+}  # fmt: skip
 RIGHT_IN_RANGE = {"AreaChoque", "colltau", "collision time goes to zero", "exponential tails"}
 
 #: The labels of all equations in the source.
@@ -70,12 +53,9 @@ def verdicts():
     return {statement.label: errata.judge(statement) for statement in STATEMENTS}
 
 
-def spoilt(label, change):
-    """Return the verdict on a statement with ``change`` made to the printed formula."""
-    statement = BY_LABEL[label]
-    printed = statement.printed
-    changed = dataclasses.replace(statement, printed=lambda q: change(printed(q)))
-    return errata.judge(changed)["verdict"]
+def judged(label, printed):
+    """Return the row of a statement with another ``printed`` formula."""
+    return errata.judge(dataclasses.replace(BY_LABEL[label], printed=printed))
 
 
 # Verdicts -----------------------------------------------------------------------------------------
@@ -97,23 +77,16 @@ def test_whatever_is_not_right_says_what_is():
         assert (row["correction"] or "").count("`") % 2 == 0
 
 
-@pytest.mark.parametrize(
-    ("label", "ratio"),
-    [
-        ("AreaH", 2),
-        ("hoptau", 1 / mp.sqrt(2)),
-        ("hoptaulimit", 0.5),
-        ("eq:surface-area", 1 / mp.sqrt(2)),
-        ("limit of thin shells", mp.sqrt(2)),
-        ("A_whole", 4),
-        ("app:colgeneral as a quarter", 4),
-        ("factor of 2 or 4", 0.5),
-        ("pasoraro", 0),
-        ("volumeabd", 1),
-    ],
-)
-def test_ratios(label, ratio):
-    assert verdicts()[label]["ratio"] == pytest.approx(float(ratio), rel=1e-15)
+RATIOS = {
+    "AreaH": 2, "hoptau": 1 / mp.sqrt(2), "hoptaulimit": 0.5, "eq:surface-area": 1 / mp.sqrt(2),
+    "limit of thin shells": mp.sqrt(2), "A_whole": 4, "app:colgeneral as a quarter": 4,
+    "factor of 2 or 4": 0.5, "pasoraro": 0, "volumeabd": 1,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("label", RATIOS)
+def test_ratios(label):
+    assert verdicts()[label]["ratio"] == pytest.approx(float(RATIOS[label]), rel=1e-15)
 
 
 def test_a_ratio_is_that_in_the_box_of_the_source_at_the_radius_of_the_row():
@@ -142,38 +115,19 @@ def test_a_formula_is_reported_where_it_fails():
     ["volumeabd", "areax1p", "colltaulim0", "V_l", "A_sector", "app:colgeneral", "largest radius"],
 )
 def test_a_spoilt_formula_is_wrong(label):
+    printed = BY_LABEL[label].printed
     assert verdicts()[label]["verdict"] == "right"
-    assert spoilt(label, lambda value: value * (1 + mpf("1e-9"))) == "wrong"
-    assert spoilt(label, lambda value: mp.mpc(value, 1e-9)) == "wrong"
-    assert spoilt(label, lambda value: value / mpf(0)) == "wrong"
-
-
-@pytest.mark.parametrize("term", range(4))
-def test_every_term_of_a_formula_counts(term):
-    """The volume of volumeabd, with the relative error 1e-9 in one of its terms."""
-
-    def volume(q):
-        a, b, r = q.a, q.b, q.r
-        terms = [
-            16 * a**2 * b**2,
-            -16 * mp.pi * a * b * r**2,
-            64 * (a + b) * r**3 / 3,
-            -8 * r**4,
-        ]
-        terms[term] *= 1 + mpf("1e-9")
-        return sum(terms)
-
-    statement = dataclasses.replace(BY_LABEL["volumeabd"], printed=volume)
-    assert errata.judge(statement)["verdict"] == "wrong"
+    for change in (
+        lambda value: value * (1 + mpf("1e-9")),
+        lambda value: mp.mpc(value, 1e-9),
+        lambda value: value / mpf(0),
+    ):
+        assert judged(label, lambda q, change=change: change(printed(q)))["verdict"] == "wrong"
 
 
 def test_right_in_one_regime_only_is_right_in_range():
-    statement = BY_LABEL["app:colgeneral"]
-
-    def printed(q):
-        return statement.printed(q) if q.b > q.r else mpf(0)
-
-    row = errata.judge(dataclasses.replace(statement, printed=printed))
+    printed = BY_LABEL["app:colgeneral"].printed
+    row = judged("app:colgeneral", lambda q: printed(q) if q.b > q.r else mpf(0))
     assert (row["verdict"], row["radius"], row["ratio"]) == ("right-in-range", 0.3, 0)
 
 
@@ -245,32 +199,7 @@ CORRECTED = {
 
 @pytest.mark.parametrize("label", CORRECTED)
 def test_the_correction_is_right(label):
-    corrected = dataclasses.replace(BY_LABEL[label], printed=CORRECTED[label])
-    assert errata.judge(corrected)["verdict"] == "right"
-
-
-def test_both_slips_of_volumewhd_are_slips():
-    def half_corrected(q, inner, last):
-        return corrected_volume(q) + 32 * inner * q.r**4 / 3 + last * (8 * q.r**4 - 8**4)
-
-    for inner, last in ((2, 0), (0, 1)):
-        statement = dataclasses.replace(
-            BY_LABEL["volumewhd"],
-            printed=lambda q, inner=inner, last=last: half_corrected(q, inner, last),
-        )
-        assert errata.judge(statement)["verdict"] == "wrong"
-    q = MpScene.of(1.5, 1.0, 0.2)
-    assert abs(half_corrected(q, 2, 1) - published.volume_whd(q)) < 1e-50
-
-
-def test_the_intermediate_volume_is_neither_the_free_nor_the_excluded_one():
-    for radius in (0.26, 0.3, 0.37):
-        q = MpScene.of(1.5, 1.0, radius)
-        printed = published.volume_intermediate(q)
-        assert not 0.9 < printed / reference.volume(q) < 1.1
-        assert not 0.9 < printed / reference.excluded_volume(q) < 1.1
-    assert mp.im(published.volume_intermediate(MpScene.of(3.0, 1.0, 0.3))) != 0
-    assert errata.ratio_of(BY_LABEL["VolumenCasoFeo"], MpScene.of(3.0, 1.0, 0.3)) is None
+    assert judged(label, CORRECTED[label])["verdict"] == "right"
 
 
 def test_the_jump_at_a_quarter_of_the_height_comes_from_the_components_alone():
