@@ -1,4 +1,4 @@
-"""The examples in the pages for people: every command, configuration and number in them is tried.
+"""The pages for people: a command, a configuration or a number in them could be wrong.
 
 A page shows commands in indented blocks, or after ``$`` in console blocks, followed by
 their output; scenes in blocks of YAML. ``twodiscs`` is run, ``snakemake`` and ``make`` dry.
@@ -132,14 +132,6 @@ def test_links_lead_somewhere(name):
             assert (folder / target).exists(), target
 
 
-def test_pictures_are_small_and_shown():
-    shown = {place.removeprefix("docs/") for name in NAMES for place in PICTURE.findall(page(name))}
-    pictures = [p for p in (REPOSITORY / "docs").iterdir() if p.suffix in (".png", ".gif")]
-    assert {path.name for path in pictures} == shown
-    for path in pictures:
-        assert path.stat().st_size < {".png": 300_000, ".gif": 600_000}[path.suffix], path
-
-
 def test_citation_agrees_with_the_package():
     citation = yaml.safe_load((REPOSITORY / "CITATION.cff").read_text(encoding="utf-8"))
     package = (REPOSITORY / "pyproject.toml").read_text(encoding="utf-8")
@@ -149,36 +141,36 @@ def test_citation_agrees_with_the_package():
     assert twodiscs.__name__ == citation["title"].partition(":")[0]
 
 
+def program(name, folder):
+    """Write the blocks of Python of a page as one program; return its path."""
+    path = folder / f"{re.sub(r'[^a-z]', '_', name)}.py"
+    text = "".join(body for kind, body in blocks(name) if kind == "python")
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(name, marks=pytest.mark.slow) if name == "docs/recipes.md" else name
+        pytest.param(name, marks=[pytest.mark.slow] * (name == "docs/recipes.md"))
         for name in NAMES
-        if name != "docs/python.md"
+        if name != "docs/python.md" and any(kind == "python" for kind, _ in blocks(name))
     ],
 )
 def test_python_runs(name, tmp_path):
     """The blocks of a page are one program, whose assertions hold; test_tutorial runs the other."""
-    program = "".join(body for kind, body in blocks(name) if kind == "python")
-    if program:
-        (tmp_path / "page.py").write_text(program, encoding="utf-8")
-        done = subprocess.run(
-            [sys.executable, "page.py"], cwd=tmp_path, capture_output=True, text=True, check=False
-        )
-        assert done.returncode == 0, done.stderr
+    words = [sys.executable, program(name, tmp_path)]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
 
 
 @pytest.mark.slow
 def test_python_has_the_types_that_are_declared(tmp_path):
     """As a type checker reads the pages, of which each is one program."""
-    for number, name in enumerate(NAMES):
-        program = "".join(body for kind, body in blocks(name) if kind == "python")
-        (tmp_path / f"page_{number}.py").write_text(program, encoding="utf-8")
+    programs = [program(name, tmp_path) for name in NAMES]
     options = ["--ignore-missing-imports", "--follow-imports", "silent", "--scripts-are-modules"]
-    checked = subprocess.run(
-        [sys.executable, "-m", "mypy", *options, *sorted(tmp_path.glob("*.py"))],
-        cwd=tmp_path, capture_output=True, text=True, check=False,
-    )  # fmt: skip
+    words = [sys.executable, "-m", "mypy", *options, *programs]
+    checked = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert checked.returncode == 0, checked.stdout
 
 
@@ -217,18 +209,15 @@ def test_make_knows_what_to_do(example):
 
 def targets():
     """Return {options that matter: targets} of all snakemake commands; without any, it is all."""
-    found = {}
+    found, options = {}, argparse.ArgumentParser(exit_on_error=False)
+    for name in ("cores", "configfile", "profile", "seconds-between-status-checks"):
+        options.add_argument(f"--{name}")
+    for name in ("dry-run", "touch"):
+        options.add_argument(f"--{name}", action="store_true")
+    for name in ("groups", "group-components"):
+        options.add_argument(f"--{name}", nargs="+")
+    options.add_argument("targets", nargs="*")
     for example in commands("snakemake"):
-        options = argparse.ArgumentParser(exit_on_error=False)
-        options.add_argument("--cores")
-        options.add_argument("--dry-run", action="store_true")
-        options.add_argument("--touch", action="store_true")
-        options.add_argument("--configfile")
-        options.add_argument("--profile")
-        options.add_argument("--seconds-between-status-checks")
-        options.add_argument("--groups", nargs="+")
-        options.add_argument("--group-components", nargs="+")
-        options.add_argument("targets", nargs="*")
         given = options.parse_args(shlex.split(example)[1:])
         assert given.profile is None or (REPOSITORY / given.profile / "config.yaml").is_file()
         chosen = ("--configfile", given.configfile) if given.configfile else ()
@@ -332,8 +321,7 @@ def checked(tmp_path_factory):
 
 
 def test_rows_of_the_check_are_those_of_the_page(checked):
-    with open(checked, newline="", encoding="utf-8") as file:
-        found = list(csv.DictReader(file))
+    found = [*csv.DictReader(checked.read_text(encoding="utf-8").splitlines())]
     lines = re.findall(r"^\| `(\w+)` \|(.*)\|$", page("docs/reading-check.md"), re.MULTILINE)
     assert [name for name, _ in lines] == list(SCENE_TABLES["check"].columns)
     cells = [[cell.strip() for cell in line.split("|")] for _, line in lines]

@@ -1,4 +1,4 @@
-"""A wheel: without the extras the face and the shell work as documented."""
+"""A wheel: a file could be missing in it, or a package of the extras be needed without them."""
 
 import json
 import os
@@ -19,7 +19,6 @@ PROJECT = tomllib.loads((REPOSITORY / "pyproject.toml").read_text(encoding="utf-
 #: An import of a module of the extras fails, as if they were not installed.
 BLOCKED = """
 import sys
-import tarfile
 
 class Absent:
     def find_spec(self, name, path=None, target=None):
@@ -30,16 +29,7 @@ sys.meta_path.insert(0, Absent())
 """
 
 #: The packages of the extras.
-EXTRAS = [
-    re.match(r"[\w-]+", one)[0]
-    for some in PROJECT["optional-dependencies"].values()
-    for one in some
-]
-
-#: The modules of a requirement, where they are not called like it.
-MODULES = {
-    "pyyaml": "yaml",
-}
+EXTRAS = re.findall(r"['\"]([\w-]+)", str([*PROJECT["optional-dependencies"].values()]))
 
 #: The files of the workflow, beside its Snakefile.
 CARRIED = ("workflow", "config", "profiles", "paper")
@@ -63,9 +53,8 @@ def installed(tmp_path_factory):
     (built,) = folder.glob("*.whl")
     target = folder / "target"
     subprocess.run([*pip, "install", *offline, "--target", target, built], check=True)
-    (target / "sitecustomize.py").write_text(
-        BLOCKED.format(absent={MODULES.get(n, n) for n in EXTRAS}), encoding="utf-8"
-    )
+    absent = {{"pyyaml": "yaml"}.get(name, name) for name in EXTRAS}
+    (target / "sitecustomize.py").write_text(BLOCKED.format(absent=absent), encoding="utf-8")
     return target
 
 

@@ -1,4 +1,4 @@
-"""A user's process is the same before and after each public function, in threads too.
+"""A user's process could be another one after a call: it is compared, in threads too.
 
 This file is also a program: ``python tests/test_process.py THREADS`` prints what changed.
 """

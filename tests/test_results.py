@@ -114,22 +114,12 @@ def test_a_point_of_the_pipeline_goes_on_and_a_saved_result_adds_up(stage, tmp_p
     assert whole == alone
 
 
-@pytest.mark.parametrize(
-    ("content", "said"),
-    [
-        ("", "path must be a file that save() wrote"),
-        ("[1]", "path must be a file that save() wrote"),
-        (json.dumps({"twodiscs": td.__version__, "kind": "x"}), "path must be a file that save"),
-    ],
-)  # fmt: skip
-def test_files_of_something_else_are_refused(content, said, tmp_path):
+def test_files_of_something_else_are_refused(tmp_path):
     path = tmp_path / "result.json"
-    path.write_text(content)
-    with pytest.raises(td.InputError) as caught:
-        td.load_result(path)
-    assert said in str(caught.value)
-    with pytest.raises(td.InputError, match="path must be a file to read"):
-        td.load_result(tmp_path / "absent.json")
+    for content in ("", "[1]", json.dumps({"twodiscs": td.__version__, "kind": "x"})):
+        path.write_text(content)
+        with pytest.raises(td.InputError, match=r"path must be a file that save\(\) wrote"):
+            td.load_result(path)
     first, second, _ = td.__version__.split(".")
     for other in ("0", f"{first}.{int(second) + 1}.0", f"{first}.{second}0.0"):
         write_json(path, {"twodiscs": other})

@@ -1,4 +1,7 @@
-"""The configuration: its requests, the parameters of each job, one sentence for each mistake."""
+"""The configuration: a key could be lost, a default wrong, or an edit concern the wrong jobs.
+
+Mistakes in a configuration are in ``test_bad_input.py``.
+"""
 
 import subprocess
 import sys
@@ -9,6 +12,7 @@ from pathlib import Path
 import pytest
 from snakemake.utils import update_config
 
+from twodiscs.dynamics import runs
 from twodiscs.model.box import Box, stream_seed
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import AXIS, EVENTS, HOPS
@@ -31,55 +35,27 @@ def one(**keys):
 # Files of the repository
 
 
-def test_the_default_configuration():
-    configuration = load.load(read(ROOT / "config/config.yaml"))
-    assert configuration.results == "results"
-    assert [request.name for request in configuration.scenes] == ["paper", "long"]
-    paper, long = configuration.scenes
-    assert paper.box == Box(1.5, 1.0)
-    assert len(paper.radii) >= 48
-    assert paper.radii[0] == 0.01
-    assert {0.05, 0.1, 0.2, 0.24, 0.3, 0.38} <= set(paper.radii)
-    assert not {0.25, 0.375, paper.box.largest_radius} & set(paper.radii)
+def test_the_default_configuration_and_its_draft():
+    mapping = read(ROOT / "config/config.yaml")
+    paper, long = load.load(mapping).scenes
+    assert (paper.name, paper.box) == ("paper", Box(1.5, 1.0))
+    assert (long.name, long.box) == ("long", Box(3.0, 1.0))
+    assert {0.01, 0.05, 0.1, 0.2, 0.24, 0.3, 0.38} <= {*paper.radii}
+    assert not {0.25, 0.375, paper.box.largest_radius} & {*paper.radii}
     assert paper.event_budget == 2 * 10**9
-    assert paper.dynamics["accuracy"] == dict.fromkeys(EVENTS, 3e-4)
-    assert long.box == Box(3.0, 1.0)
-    assert len(long.radii) < 20
-
-
-def test_the_draft_is_a_quick_look_at_the_same_scenes():
     # As --configfile does: the draft's lists replace, its blocks are merged.
-    merged = read(ROOT / "config/config.yaml")
-    update_config(merged, read(ROOT / "config/draft.yaml"))
-    draft = load.load(merged)
-    full = load.load(read(ROOT / "config/config.yaml"))
+    update_config(mapping, read(ROOT / "config/draft.yaml"))
+    draft = load.load(mapping)
     assert draft.results == "results/draft"
-    assert draft.seed == full.seed
-    for quick, slow in zip(draft.scenes, full.scenes, strict=True):
+    for quick, slow in zip(draft.scenes, (paper, long), strict=True):
         assert (quick.name, quick.box) == (slow.name, slow.box)
         assert quick.quantities.names == slow.quantities.names
         assert len(quick.radii) <= 10
+        assert slow.dynamics["accuracy"] == dict.fromkeys(EVENTS, 3e-4)
         assert quick.dynamics["accuracy"] == dict.fromkeys(EVENTS, 1e-2)
 
 
 # The schema
-
-
-def keys_of(node, path=""):
-    """Yield (path, node of the schema, whether it is required) of every key beneath a node."""
-    for name, child in node.get("properties", {}).items():
-        yield f"{path}.{name}", child, name in node.get("required", [])
-        yield from keys_of(child, f"{path}.{name}")
-        yield from keys_of(child.get("items", {}), f"{path}.{name}[]")
-
-
-@pytest.mark.parametrize(("path", "node", "required"), list(keys_of(schema.keys())))
-def test_every_key_is_documented(path, node, required):
-    assert node["description"].endswith(".")
-    assert node["allowed"]
-    assert required or {"default", "otherwise", "properties"} & {*node}
-    if node.get("type") == "number" and 1 not in map(node.get, ("maximum", "exclusiveMaximum")):
-        assert node["unit"]
 
 
 def test_every_effect_is_a_key_with_its_meaning_range_and_default():
@@ -111,9 +87,7 @@ def test_reading_a_configuration_needs_no_numerical_package():
 # Defaults and forms
 
 
-@pytest.mark.parametrize(
-    ("width", "height"), [(1.5, 1), (3e6, 1e6), (1, 1), (2, 1), (1e-6, 3e-6), (7, 16), (1, 500)]
-)
+@pytest.mark.parametrize(("width", "height"), [(1.5, 1), (3e6, 1e6), (1e-6, 3e-6), (1, 500)])
 def test_a_name_and_a_box_are_enough(width, height):
     box = {"width": width, "height": height}
     assert one(box=box).quantities.names == {f"{event}_time" for event in EVENTS}
@@ -151,17 +125,14 @@ def test_what_is_false_is_off():
 
 
 def test_hop_histograms_have_three_forms():
-    assert one(watch={"hop_histogram": True}).quantities.hop_histogram == (
-        0.0375,
-        0.112,
-        0.188,
-        0.262,
-    )
-    listed = one(watch={"hop_histogram": [0.2, 0.1]})
-    assert listed.quantities.hop_histogram == (0.1, 0.2)
-    assert listed.histogram == {
-        "event": "vertical_hop", "event_budget": 10**11, "intervals": 10**6
-    }  # fmt: skip
+    request = one(watch={"hop_histogram": True})
+    assert request.quantities.hop_histogram == (0.0375, 0.112, 0.188, 0.262)
+    request = one(watch={"hop_histogram": [0.2, 0.1]})
+    assert request.quantities.hop_histogram == (0.1, 0.2)
+    numbers = {"event_budget": 10**11, "intervals": 10**6}
+    assert request.histogram == {"event": "vertical_hop", **numbers}
+    request = one(watch={"hop_histogram": {"radii": [0.249], "event": "horizontal_hop"}})
+    assert request.quantities.hop_histogram == (0.249,)  # next to a threshold, but it ends
     block = one(watch={"hop_histogram": {"event": "horizontal_hop", "intervals": "1e4"}})
     assert block.quantities.hop_histogram == (0.025, 0.075, 0.125, 0.175)
     asked = block.arguments("intervals")
@@ -357,16 +328,13 @@ def test_what_is_about_a_plain_scene_needs_one():
     assert alone.shared == ("report",)
     with pytest.raises(load.ConfigError, match="shared must leave out 'tails' if every scene"):
         load.load({"scenes": [field], "shared": ["report", "tails"]})
-
-
-def test_a_histogram_next_to_a_threshold_is_taken_if_it_ends():
-    watch = {"hop_histogram": {"radii": [0.249], "event": "horizontal_hop"}}
-    assert one(watch=watch).quantities.hop_histogram == (0.249,)
+    tiny = plain | {"box": {"width": 1e-50, "height": 1e-50}, "watch": {"volume": True}}
+    with pytest.raises(load.ConfigError, match="shared must leave out 'stability' unless"):
+        load.load({"scenes": [tiny], "shared": ["stability"]})
+    assert load.load({"scenes": [tiny], "shared": ["errata"]}).main.name == "plain"
 
 
 def test_the_fewest_intervals_are_a_block():
-    from twodiscs.dynamics import runs
-
     assert scene.LEAST_INTERVALS == runs.CHAINS * runs.RETURNS
 
 
@@ -377,13 +345,6 @@ def test_radii_too_close_to_the_largest_are_refused_for_dynamics_alone():
         one(radii=[close])
     assert one(radii=[far]).radii == (far,)
     assert one(radii=[close], watch={"volume": True}).radii == (close,)
-
-
-def test_stability_needs_sides_that_leave_room_below():
-    scene = {"name": "a", "box": {"width": 1e-50, "height": 1e-50}, "watch": {"volume": True}}
-    with pytest.raises(load.ConfigError, match="shared must leave out 'stability' unless"):
-        load.load({"scenes": [scene], "shared": ["stability"]})
-    assert load.load({"scenes": [scene], "shared": ["errata"]}).main.name == "a"
 
 
 def test_more_discs_are_a_scene_of_their_own():
@@ -414,7 +375,7 @@ def test_results_are_a_folder_that_holds_no_sources(tmp_path, monkeypatch):
             load.check_results(bad, tmp_path)
 
 
-def test_everything_of_many_discs_leaves_out_what_monte_carlo_cannot_sample():
+def test_monte_carlo_samples_at_most_64_discs():
     at_most, more = (one(discs=discs, radii=[0.01], watch=True).quantities for discs in (64, 65))
     assert at_most.volume
     assert at_most.areas == EVENTS
