@@ -1,4 +1,4 @@
-"""The price of jobs: what limits them, how it scales, and which shards they take."""
+"""Without these tests a job could be killed at its limit, or blocks be counted twice or never."""
 
 from itertools import pairwise
 
@@ -7,34 +7,34 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from twodiscs.comparison.scene_tables import Cost, MeanTimes
+from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.load import load
 from twodiscs_paper.pipeline import cost
+
+BLOCK = {"name": "a", "box": {"width": 1.5, "height": 1.0}}
 
 
 def scene(**keys):
     """Return the request of a scene with these ``keys`` in its block, or in the configuration."""
-    block = {"name": "a", "box": {"width": 1.5, "height": 1.0}, "radii": [0.24, 0.3]}
+    block = BLOCK | {"radii": [0.24, 0.3]}
     top = {name: keys.pop(name) for name in ("shard_events",) if name in keys}
     return load({"shared": [], **top, "scenes": [block | keys]}).scenes[0]
 
 
-@pytest.mark.parametrize("stage", ["monte_carlo", "dynamics"])
-def test_a_limit_is_above_the_price(stage):
-    request = scene(accuracy=1e-5, event_budget=1e12)
-    for radius in request.keys[stage].values():
-        jobs = max(1, len(cost.shards(request, stage, radius)))
-        assert 60 * cost.minutes(request, stage) > cost.seconds(request, stage, radius) / jobs
-
-
-@pytest.mark.parametrize("radius", [0.24, 0.24999975, 0.3])
-def test_a_limit_is_above_the_price_of_a_job_whose_budget_ends_it(radius):
+def test_a_limit_is_above_the_price():
     """This holds for a job that only has hops in a strip, too, whose events cost more."""
+    whole = scene(accuracy=1e-5, event_budget=1e12)
+    for stage in ("monte_carlo", "dynamics"):
+        for radius in whole.keys[stage].values():
+            jobs = max(1, len(cost.shards(whole, stage, radius)))
+            assert 60 * cost.minutes(whole, stage) > cost.seconds(whole, stage, radius) / jobs
     for budget in (1e8, 1e9, 5e9, 2e10, 9e10):
         for watched in (["horizontal_hop"], ["horizontal_hop", "top_wall"]):
             request = scene(accuracy=1e-8, event_budget=budget, watch={"mean_times": watched})
-            if not cost.shards(request, "dynamics", radius):
-                limit = 60 * cost.minutes(request, "dynamics")
-                assert limit > 2 * cost.seconds(request, "dynamics", radius)
+            limit = 60 * cost.minutes(request, "dynamics")
+            for radius in (0.24, 0.24999975, 0.3):
+                if not cost.shards(request, "dynamics", radius):
+                    assert limit > 2 * cost.seconds(request, "dynamics", radius)
 
 
 def test_ten_times_the_accuracy_takes_a_hundred_times_the_work():
@@ -55,19 +55,14 @@ def test_the_price_of_a_point_is_that_of_its_shards():
     assert cost.seconds(request, "dynamics", 0.24) == pytest.approx(work / 1e8)
 
 
-def test_days_are_those_of_the_jobs():
-    request = scene(accuracy=1e-7, event_budget=1e15, watch={"mean_times": True})
-    whole = sum(cost.seconds(request, "dynamics", radius) for radius in request.radii)
-    assert cost.days([request]) == pytest.approx(whole / 86400)
-    assert cost.days([scene()]) < 0.1
-
-
-def test_days_of_many_radii_are_those_of_some_times_their_number(monkeypatch):
+def test_days_are_those_of_the_jobs_of_all_radii_or_of_some_times_their_number(monkeypatch):
     radii = [round(0.1 + 0.001 * i, 3) for i in range(21)]
     request = scene(accuracy=1e-7, event_budget=1e15, radii=radii, watch={"mean_times": True})
-    whole = cost.days([request])
-    monkeypatch.setattr(cost, "SOME", 7)
-    assert cost.days([request]) == pytest.approx(whole, rel=0.1)
+    whole = sum(cost.seconds(request, "dynamics", radius) for radius in radii) / 86400
+    for some, worst in ((21, 1e-6), (7, 0.1)):
+        monkeypatch.setattr(cost, "SOME", some)
+        assert cost.days([request]) == pytest.approx(whole, rel=worst)
+    assert cost.days([scene()]) < 0.1
 
 
 def test_what_one_job_can_do_has_no_shards():
@@ -103,15 +98,12 @@ def test_a_tighter_accuracy_keeps_the_shards_but_the_last(error, times):
         cost.shards(scene(shard_events=1e8, accuracy=e, event_budget=1e15), "dynamics", 0.24)
         for e in (error, error / times)
     ]
-    coarse, fine = ({part: [s for s in some if s[0] == part] for part in ("all", "horizontal_hop")}
-                    for some in found)  # fmt: skip
-    for part, shards in coarse.items():
-        assert {*shards[:-1]} <= {*fine[part]}
+    for part in ("all", "horizontal_hop"):
+        coarse, fine = ([shard for shard in some if shard[0] == part] for some in found)
+        assert {*coarse[:-1]} <= {*fine}
 
 
 def test_the_limit_of_a_study_grows_with_what_is_asked_of_it():
-    from twodiscs_paper.catalogue import STUDIES
-
     def limit(seconds):
         configuration = load({"accuracy_cost": {"seconds": seconds}, "scenes": [BLOCK]})
         return cost.study_minutes(STUDIES["accuracy_cost"], configuration)
@@ -120,18 +112,15 @@ def test_the_limit_of_a_study_grows_with_what_is_asked_of_it():
     assert limit(1) < 60
 
 
-BLOCK = {"name": "a", "box": {"width": 1.5, "height": 1.0}}
-
-
 # What will be reached, and what was ---------------------------------------------------------------
 
 
 @pytest.fixture
 def blocks(monkeypatch):
     """Let a pilot have 32 blocks, each of a millisecond."""
-    from twodiscs.comparison import cost
-
-    monkeypatch.setattr(cost, "timed", lambda work, seconds, fewest=1: (work(0, 32), 32, 1e-3))
+    monkeypatch.setattr(
+        "twodiscs.comparison.cost.timed", lambda work, seconds, fewest=1: (work(0, 32), 32, 1e-3)
+    )
 
 
 @pytest.mark.parametrize("radius", [0.01, 0.2, 0.24, 0.3, 0.38])
@@ -144,18 +133,16 @@ def test_the_bound_on_the_events_of_an_accuracy_is_not_below_the_plan(radius):
     assert cost._events(scene(discs=3, radii=[0.1]), 0.1) == float("inf")
 
 
-def test_a_dry_run_says_which_accuracies_are_not_reached(blocks):
+def test_a_dry_run_says_which_accuracies_are_not_reached(blocks, monkeypatch):
     short = scene(accuracy=1e-5, event_budget=2e9, radii=[0.2, 0.3])
-    lines = cost.shortfalls([short, scene(accuracy=1e-2), scene(event_budget=1e12)])
+    others = [scene(accuracy=1e-2), scene(event_budget=1e12)]
+    lines = cost.shortfalls([short, *others])
     assert [line.partition(":")[0] for line in lines] == ["a, radius 0.2", "a, radius 0.3"]
     assert all("1e-5 asked for; the budget of 2e9 events ends it at" in line for line in lines)
     assert "(horizontal_hop_time); without a budget" in lines[0]
-
-
-def test_a_dry_run_measures_at_some_of_many_radii(blocks, monkeypatch):
     monkeypatch.setattr(cost, "SENTENCES", 1)
-    lines = cost.shortfalls([scene(accuracy=1e-5, event_budget=2e9, radii=[0.2, 0.3, 0.31])])
-    assert lines[1:] == ["2 more radii may stop early: see the target forecast"]
+    lines = cost.shortfalls([short, *others])
+    assert lines[1:] == ["1 more radii may stop early: see the target forecast"]
 
 
 def test_a_forecast_has_a_row_for_each_job_and_their_sum(blocks):
@@ -183,9 +170,8 @@ def test_a_build_says_which_accuracies_it_did_not_reach(tmp_path):
     folder = tmp_path / "a"
     folder.mkdir()
     assert cost.missed(tmp_path, DESCRIBED) == []
-    blank = dict.fromkeys(MeanTimes.columns)
     rows = [
-        blank | {"radius": r, "event": e, "target": 1e-5, "relative_stderr": error, "status": s}
+        MeanTimes.empty(radius=r, event=e, target=1e-5, relative_stderr=error, status=s)
         for r, e, error, s in [
             (0.2, "any_wall", 0.9e-5, "reached"), (0.2, "top_wall", 1e-5, "reached"),
             (0.3, "any_wall", 2e-5, "budget"), (0.3, "top_wall", 3e-5, "budget"),
@@ -197,8 +183,10 @@ def test_a_build_says_which_accuracies_it_did_not_reach(tmp_path):
         "a, radius 0.3: 1e-5 asked for; the budget of 2e9 events ended it at 3e-5 (top_wall_time)"
     )
     # The speed is that of the fastest job: the first ones compile.
-    jobs = [("dynamics", 0.2, 10**9, 10.0), ("dynamics", 0.3, 2 * 10**9, 99.0)]
-    names = ("stage", "radius", "events", "seconds")
-    Cost.write(folder / "cost.csv", [dict(zip(names, job, strict=True)) for job in jobs])
+    jobs = [
+        Cost.empty(stage="dynamics", radius=radius, events=events, seconds=seconds)
+        for radius, events, seconds in ((0.2, 10**9, 10.0), (0.3, 2 * 10**9, 99.0))
+    ]
+    Cost.write(folder / "cost.csv", jobs)
     (line,) = cost.missed(tmp_path, DESCRIBED)
     assert line.endswith("at 3e-5 (top_wall_time); without a budget 2e10 events, 3 min")

@@ -391,25 +391,14 @@ def test_lengths_are_in_any_unit(driven, sides, radius, next_radius):
 
 @pytest.mark.parametrize("width", [1280, 390])
 def test_nothing_is_wider_than_the_window_and_every_control_has_a_name(driven, width):
-    """Nor are numbers of many digits."""
     page = driven("seed=7", scenes=in_box(3e-6, 1e-5), width=width)
-    page.until("runs.done > 2000")
-    page.look(
-        "state.paused = true; runs.done *= 1000;"
-        "[runs.sums, runs.squares].forEach(of => of.forEach((sum, i) => { of[i] = 1000 * sum; }));"
-        "renew()"
-    )
-    assert len(page.look("document.querySelector('#any_wall td').innerText")) >= 10
-    of = "...[...document.querySelectorAll('main *')].map"
+    page.until("runs.done > 200")
+    right = "[...document.querySelectorAll('main *')].map(e => e.getBoundingClientRect().right)"
     assert page.look("document.documentElement.scrollWidth") <= width
-    assert page.look(f"Math.max({of}(e => e.getBoundingClientRect().right))") <= width
-    assert page.look(f"Math.min({of}(e => parseFloat(getComputedStyle(e).fontSize)))") >= 13
-    names = page.look(
-        "[...document.querySelectorAll('input, select, summary')]"
-        ".map(e => e.ariaLabel ?? e.labels[0].innerText)"
-    )
-    assert len({*names}) == len(names) == 16
-    assert all(names)
+    assert page.look(f"Math.max(...{right})") <= width
+    controls = "[...document.querySelectorAll('input, select, summary')]"
+    names = page.look(f"{controls}.map(e => e.ariaLabel ?? e.labels[0].innerText)")
+    assert len({*names} - {""}) == len(names) == 16
 
 
 def type_number(page, name, text):
@@ -435,12 +424,12 @@ def test_the_address_holds_the_scene_and_brings_it_back(driven):
     assert page.look("runs.scene.slice(0, 3)") == [3, 1, 0.24]
 
 
-@pytest.mark.parametrize(("text", "kept"), [("", 1.5), ("-1", 1.5), ("0", 1.5), ("250", 250)])
-def test_a_number_that_is_typed_is_taken_if_it_is_a_length(driven, text, kept):
+def test_a_number_that_is_typed_is_taken_if_it_is_a_length(driven):
     page = driven("seed=7")
-    type_number(page, "width", text)
-    fields = "[...document.querySelectorAll('.controls input')].map(e => +e.value)"
-    assert page.look(f"[unit * runs.scene[0], {fields}[1]]") == pytest.approx([kept] * 2, rel=1e-15)
+    shown = "[unit * runs.scene[0], +at('width').nextElementSibling.value]"
+    for text, kept in (("", 1.5), ("-1", 1.5), ("0", 1.5), ("250", 250)):
+        type_number(page, "width", text)
+        assert page.look(shown) == pytest.approx([kept] * 2, rel=1e-15)
 
 
 def test_effects_are_in_the_address_and_in_any_unit(driven):
@@ -492,16 +481,3 @@ def test_the_cursor_reads_the_exact_times_and_the_histogram(driven):
     page.look("intervalsPlot.look(intervalsPlot.at(1.01, 1)[0])")
     assert f"exponential {math.exp(-1.01):.3g}" in page.look("intervalsPlot.readout.value")
     assert_right(driven("radius=0.3&seed=7&runs=2000"), 2000, Box(1.5, 1), 0.3)
-
-
-@pytest.mark.parametrize(
-    ("ends", "log", "many", "ticks"),
-    [
-        ((0, 0.39), "false", 6, [0, 0.1, 0.2, 0.3]),
-        ((1e-3, 1e3), "true", 9, [1e-3, 1e-2, 0.1, 1, 10, 100, 1000]),
-        ((1e-3, 3), "true", 2, [1e-2, 1]),
-    ],
-)
-def test_ticks_are_round_numbers(driven, ends, log, many, ticks):
-    axis = f"new Axis({{log: {log}, range: () => {list(ends)}}})"
-    assert driven("runs=0").look(f"{axis}.ticks({many})") == pytest.approx(ticks)

@@ -1,7 +1,6 @@
-"""The numbers of the manuscript: how they are rounded, and that they agree with the tables."""
+"""Without these tests numbers in paper and pages could differ from the tables, or be misrounded."""
 
 import json
-import math
 import re
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_UP, Context, Decimal
 from pathlib import Path
@@ -27,9 +26,7 @@ SCENES = [
 ]
 
 #: The numbers of tables with seconds in them, which are not kept.
-TIMED_NUMBERS = {
-    *("configurations", "events", "evaluation_seconds"),
-}
+TIMED_NUMBERS = {"configurations", "events", "evaluation_seconds"}
 
 
 def queried(path, label, **contents):
@@ -72,15 +69,8 @@ def test_thousands_of_numbers_are_formatted_as_by_decimal(tmp_path):
     rng = np.random.default_rng(1)
     drawn = rng.lognormal(0, 15, 1000) * rng.choice([-1, 1], 1000)
     # Also ties, floats that are no decimals, and numbers that round to a power of ten.
-    numbers = [
-        *drawn,
-        *(k / 40 for k in range(-100, 400)),
-        0.1 + 0.2,
-        3.000000000004,
-        9.9951,
-        0.0099996,
-        1e22,
-    ]
+    others = 0.1 + 0.2, 3.000000000004, 9.9951, 0.0099996, 1e22
+    numbers = [*drawn, *(k / 40 for k in range(-100, 400)), *others]
     cases = [(float(x), 1 + i % 6) for i, x in enumerate(numbers)]
     errors = [(x, float(abs(x) * 10 ** rng.uniform(-6, 2))) for x, _ in cases if x]
     *found, measured = evaluated(
@@ -99,23 +89,13 @@ def test_thousands_of_numbers_are_formatted_as_by_decimal(tmp_path):
 
 def test_numbers_are_written_as_physicists_do(tmp_path):
     cases = {
-        "digits(0, 2)": "$0$",
-        "digits(3.14159, 3)": "$3.14$",
-        "digits(0.0999, 2)": "$0.1$",
         "digits(-1234.0, 3)": "$-1230$",
         "digits(9996.0, 3)": "$10^(4)$",
         "digits(44312345678, 2)": "$4.4 times 10^(10)$",
-        "digits(1e-15, 2)": "$10^(-15)$",
-        "digits(0.03125, 3)": "$0.0313$",
-        "with-error(0.8134, 0.0021)": "$0.813 (2)$",
         "with-error(-0.6098, 0.1141)": "$-0.61 (11)$",
-        "with-error(1.0, 0.03)": "$1.00 (3)$",
         "with-error(0.9996, 0.00096)": "$0.9996 (10)$",
-        "with-error(0.03, 0.0098)": "$0.030 (10)$",
         "with-error(120.0, 30.0)": "$120 (30)$",
-        "up(3.013, 2)": "$3.1$",
         "up(0.1 + 0.2, 1)": "$0.3$",
-        "up(0.0926, 1)": "$0.1$",
         "down(3.19, 2)": "$3.1$",
         "integer(43)": "43",
         "in-words(2)": "two",
@@ -242,13 +222,9 @@ def test_every_number_has_rows_in_the_expected_tables(printed):
 
 
 def test_every_column_of_cells_has_rows_in_the_expected_tables(printed):
-    columns, filled = set(), set()
-    for name, cell in printed.items():
-        if "/" in name:
-            table, _, column = name.split("/")
-            columns.add((table, column))
-            if cell["text"] not in ("", "--"):
-                filled.add((table, column))
+    cells = [(*name.split("/"), cell["text"]) for name, cell in printed.items() if "/" in name]
+    columns = {(table, column) for table, _, column, _ in cells}
+    filled = {(table, column) for table, _, column, text in cells if text not in ("", "--")}
     assert columns - filled == {("agreement", "events")}  # of a table with times
     assert printed["agreement/paper/failed"]["text"] == "0"
     assert printed["errata/01/number"]["text"] == ""
@@ -279,15 +255,9 @@ def exponent(tables):
     """Return the slope of ln(1 − κ) against ln δ by the normal equations."""
     rows = of(tables["passages"], scene="paper", event="horizontal_hop", quantity="coefficient")
     rows = of(rows, moment_of_inertia=None, friction=None)[-5:]
-    x, y, error = (
-        np.array([f(row) for row in rows])
-        for f in (
-            lambda row: math.log(row["distance"]),
-            lambda row: math.log(1 - row["estimate"]),
-            lambda row: row["stderr"] / (1 - row["estimate"]),
-        )
-    )
-    return np.polyfit(x, y, 1, w=1 / error)[0]
+    columns = [[row[name] for row in rows] for name in ("distance", "estimate", "stderr")]
+    x, kappa, error = map(np.array, columns)
+    return np.polyfit(np.log(x), np.log(1 - kappa), 1, w=(1 - kappa) / error)[0]
 
 
 #: Numbers by a second method, from {name: rows}.

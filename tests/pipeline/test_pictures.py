@@ -1,4 +1,4 @@
-"""The pictures of the pages: one panel each, the one that the text speaks of."""
+"""Without these tests a picture of the pages could show another panel, or one without axes."""
 
 import pytest
 from figure_cases import PAPER, draw, tables_of, unclear
@@ -9,13 +9,9 @@ from twodiscs.figures.catalogue import FIGURES
 from twodiscs_paper.catalogue import STUDY_FIGURES
 
 
-def test_pictures_are_of_figures_that_there_are():
-    names = [name for name, *_ in PANELS.values()]
-    assert set(names) <= {*FIGURES, *STUDY_FIGURES}
-
-
 @pytest.mark.parametrize("picture", [p for p, (name, *_) in PANELS.items() if name in FIGURES])
 def test_a_picture_is_a_panel_with_a_legend_and_names_of_its_axes(picture):
+    assert {name for name, *_ in PANELS.values()} <= {*FIGURES, *STUDY_FIGURES}
     name, *panel = PANELS[picture]
     with style.context():
         figure = draw(name, PAPER, tables_of("paper"))

@@ -1,4 +1,4 @@
-"""Scripts of the workflow: the files that they read and write, shards that add up, their errors."""
+"""Without these tests a script could join wrong shards, or take an edited file for a result."""
 
 import json
 import runpy
@@ -90,26 +90,29 @@ def test_counts_are_the_same_in_any_number_of_shards(run):
     assert point(run, "dynamics", "a.json", one) == point(run, "dynamics", "b.json", some)
 
 
-def test_the_processor_time_of_a_point_includes_that_of_its_shards(run):
-    files = shards(run, "monte_carlo", [(0, 3)])
-    write_json(files[0], read_json(files[0]), 1000.0)
-    point(run, "monte_carlo", "a.json", files)
+def test_the_time_of_a_point_includes_that_of_its_shards_and_an_edited_one_is_refused(
+    run,
+):
+    (file,) = shards(run, "monte_carlo", [(0, 3)])
+    write_json(file, read_json(file), 1000.0)
+    point(run, "monte_carlo", "a.json", [file])
     assert json.loads(Path("a.json").read_text())["seconds"] >= 1000
+    edit(file, "0-3")
+    with pytest.raises(InputError, match=r"all-0-3.json is not what its job wrote; delete it"):
+        point(run, "monte_carlo", "a.json", [file])
+
+
+def edit(path, blocks):
+    """Add an event to the sums of the ``blocks`` of a file."""
+    content = json.loads(Path(path).read_text())
+    content["parts"]["all"]["sums"][blocks][0][0] += 1
+    Path(path).write_text(json.dumps(content))
 
 
 def test_a_part_of_a_point_that_is_missing_is_named(run):
     files = shards(run, "monte_carlo", [(0, 1), (2, 3)])
     with pytest.raises(InputError):
         point(run, "monte_carlo", "a.json", files)
-
-
-def test_an_edited_shard_is_refused(run):
-    (file,) = shards(run, "monte_carlo", [(0, 3)])
-    content = json.loads(Path(file).read_text())
-    content["parts"]["all"]["sums"]["0-3"][0][0] += 1
-    Path(file).write_text(json.dumps(content))
-    with pytest.raises(InputError, match=r"all-0-3.json is not what its job wrote; delete it"):
-        point(run, "monte_carlo", "a.json", [file])
 
 
 @pytest.fixture
@@ -152,10 +155,7 @@ def test_cost_is_the_time_of_the_jobs_and_may_be_missing(run, points):
 
 
 def test_an_edited_point_is_refused(run, points):
-    path = points["dynamics"][0]
-    content = json.loads(path.read_text())
-    content["parts"]["all"]["sums"]["0-1"][0][0] += 1
-    path.write_text(json.dumps(content))
+    edit(points["dynamics"][0], "0-1")
     with pytest.raises(InputError, match="is not what its job wrote; delete it"):
         run("table", MADE, files=points, table="mean_times.csv")
 
@@ -170,12 +170,7 @@ def test_a_point_of_another_stage_is_refused(run, points, stage):
 def test_a_figure_names_its_code_and_its_tables(run, points, tmp_path):
     run("table", MADE, files=points, table="volume.csv")
     Path("sums").write_text("the code\n")
-    params = {
-        "box": PARAMETERS,
-        "names": ["volume"],
-        "radius": None,
-        "seed": 1,
-    }
+    params = {"box": PARAMETERS, "names": ["volume"], "radius": None, "seed": 1}
     files = {"tables": ["volume.csv"], "code": ["figure.py", "sums"], "own_code": []}
     run("figure", params, {"scene": "a", "figure": "volume"}, files, png="a.png", pdf="a.pdf")
     origin = f"twodiscs: scene a, seed 1, code {digest('sums')[:16]}, tables "

@@ -1,4 +1,4 @@
-"""The tutorial: its page and its notebook are what its blocks of Python print."""
+"""Without these tests the tutorial could show what its blocks of Python do not print."""
 
 import math
 import re

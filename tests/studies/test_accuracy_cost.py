@@ -226,24 +226,18 @@ def test_the_long_run_has_four_decades_of_every_method(long):
         assert last["repetitions"] == 1
 
 
-def test_its_errors_are_those_of_c_and_of_the_floor(long):
+def test_its_errors_are_those_of_c_and_its_powers_a_half(long):
     """Root mean squares of independent runs, to five standard errors; the last ones are few."""
-    for rows in series(long).values():
-        for row in rows:
+    powers = []
+    for first, *rows in series(long).values():
+        for row in (first, *rows):
             expected = math.sqrt(row["c"] / row["seconds"] + row["floor"] ** 2)
             if row["repetitions"] >= 32:
                 assert abs(row["error"] - expected) < SIGMA * figure._spread(row) + 0.02 * expected
-
-
-def test_its_powers_are_a_half_to_three_hundredths(long):
-    powers = 0
-    for rows in series(long).values():
-        row = rows[0]
-        if row["slope"] is not None and rows[-1]["error"] > 3 * row["floor"]:
-            assert abs(row["slope"] + 0.5) < SIGMA * row["slope_stderr"]
-            assert row["slope_stderr"] <= 0.03
-            powers += 1
-    assert powers >= 7
+        if first["slope"] is not None and rows[-1]["error"] > 3 * first["floor"]:
+            assert abs(first["slope"] + 0.5) < SIGMA * first["slope_stderr"] <= SIGMA * 0.03
+            powers.append(first["slope"])
+    assert len(powers) >= 7
 
 
 def test_floors_of_time_steps_are_proportional_to_the_step(long):

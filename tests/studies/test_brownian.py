@@ -9,14 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from figure_cases import bars, unclear
 from scipy.integrate import quad
 from scipy.stats import norm
 
-from twodiscs.figures import style
 from twodiscs.points.base import read_json
 from twodiscs_paper.studies.passages import brownian as study
-from twodiscs_paper.studies.passages import figure_brownian as figure
 from twodiscs_paper.studies.passages.models import brownian
 from twodiscs_paper.studies.passages.study import Brownian
 
@@ -209,10 +206,8 @@ def test_the_counts_are_those_of_the_configuration(monkeypatch, configuration, c
     ("kind", "program", "step", "halvings"),
     [
         ("crossing", "reflected", 2.0**-3, 3),
-        ("crossing", "singly", 2.0**-3, 2),
         ("crossing", "together", 2.0**-5, 3),
         ("passage", "reflected", 2.0**-2, 4),
-        ("passage", "together", 2.0**-2, 2),
     ],
 )
 def test_points_of_the_long_run_are_the_same_again(
@@ -251,17 +246,3 @@ def test_rejected_discs_pass_a_channel_that_closes(kept):
     error = grown * math.hypot(*(t["stderr"] / t["estimate"] for t in times[-2:]))
     assert last["room"] == first["room"] / 4
     assert grown + SIGMA * error < 4**1.5
-
-
-def test_the_figure_shows_the_table(kept):
-    with style.context():
-        drawn = figure.draw(None, {"brownian": kept})
-        assert unclear(drawn) == []
-    panels = dict(zip(("coefficient", "local_exponent"), drawn.axes, strict=True))
-    for quantity, axes in panels.items():
-        for program, (colour, _) in figure.LOOKS.items():
-            for step, marker in figure.MARKERS.items():
-                own = of(kept, quantity=quantity, program=program, step=step)
-                due = sorted((row["neck"], row["estimate"], row["stderr"]) for row in own)
-                np.testing.assert_allclose(bars(axes, colour, marker), due, rtol=1e-9)
-    assert len(drawn.legends[0].get_texts()) == len(figure.LOOKS) + len(figure.MARKERS)

@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 from factory import written
 
-from twodiscs.dynamics import runs
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.theory import laws
@@ -153,26 +152,6 @@ def test_what_is_measured_meets_what_is_exact(box, radius, hop):
     assert cut["estimate"] <= passage["estimate"]
     cubic = laws.tail_constant(scene, hop) > 0
     assert (passage["z"] is None) == cubic
-
-
-def test_intervals_are_those_of_chains():
-    """Shares of intervals beyond some times, from separate starts and from hop to hop."""
-    rows = measured(PAPER, "vertical_hop", 5, 2**20)
-    mean = rows[0]["reference"]
-    chains = runs.hop_intervals(PAPER, "vertical_hop", 2**19, 6)
-    hazards = [row for row in rows if row["quantity"] == "hazard"]
-    alive = total = chains.intervals
-    assert len(hazards) > 20
-    for row in hazards:
-        ends = [round(row[end] / chains.bin_width) for end in ("first", "last")]
-        left = alive - sum(chains.equal.counts[slice(*ends)])
-        time = row["last"] - row["first"]
-        # Chains are correlated: the error of their counts may be some times larger.
-        other, error = math.log(alive / left) / time, 3 * math.sqrt(1 / left - 1 / alive) / time
-        assert abs(row["estimate"] - other) < 5 * math.hypot(row["stderr"], error)
-        alive = left
-    assert alive < 1e-2 * total
-    assert hazards[-1]["last"] > 4 * mean
 
 
 def test_radii_near_the_threshold():

@@ -1,4 +1,4 @@
-"""The limit of smooth discs at a threshold, from which c is computed."""
+"""Without these tests the limit of smooth discs at a threshold, and so c, could be wrong."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The long runs of the studies: their tables follow from what is kept, and agree with the build.
+"""Without these tests tables of long runs could differ from their counts, or from the build.
 
 A dozen scores are held to five standard errors: a false alarm in fewer than 1e-5 of all seeds.
 """

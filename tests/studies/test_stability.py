@@ -11,7 +11,6 @@ import pytest
 from factory import written
 from mpmath import mpf
 
-from twodiscs.comparison import scores
 from twodiscs.comparison.scene_tables import Theory, Volume
 from twodiscs.dynamics.law import Law, law_of
 from twodiscs.figures import style
@@ -143,24 +142,6 @@ def test_sampling_and_estimates_hold(box, monkeypatch):
 QUANTITIES = ["volume", *(f"{event}_area" for event in EVENTS)]
 
 
-@any_box
-def test_conditioned_estimates_of_thick_shells_have_their_exact_probability(box):
-    """In every regime, beside every limit; five sigma by exact tails."""
-    radii = stability.ordinary_radii(box) + [r for _, _, r in stability.hard_radii(box)[1:]]
-    for radius in radii:
-        scene = box.scene(radius)
-        point = montecarlo.conditioned_point(scene, QUANTITIES, 2**17, 0.5, 8)
-        for quantity, part in point.quantities.items():
-            if quantity == "volume":
-                expected = exact.volume(scene)
-            else:
-                event = quantity.removesuffix("_area")
-                expected = exact.shell_expectation(scene, event, part.epsilon)
-            probability = min(expected / part.measure, 1.0)
-            z, _ = scores.binomial_z(part.hits, point.samples, probability)
-            assert abs(z) <= 5, (box, radius, quantity)
-
-
 def test_conditioned_agrees_with_rejection():
     """Also in the number of samples in the shells of both walls."""
     values = []
@@ -203,30 +184,31 @@ def test_predicted_times_are_right_to_a_few_roundings(box):
 
 def test_the_formula_of_textbooks_loses_digits_and_contacts_of_distant_discs():
     """Over a distance of 10⁹ radii the discriminant keeps nothing of σ²."""
-    rows = list(stability.time_rows(PAPER, seed=4))
-    textbook = {row["case"]: row for row in rows if row["method"] == "textbook"}
-    contacts = [row for row in rows if row["quantity"] == "contact_time"]
-    ours = {row["case"]: row for row in contacts if row["method"] == "stable"}
+    contacts = [row for row in stability.time_rows(PAPER, 4) if row["quantity"] == "contact_time"]
+    textbook, ours = (
+        {row["case"]: row for row in contacts if row["method"] == method}
+        for method in ("textbook", "stable")
+    )
     assert len(textbook) == len(ours) == 6
     assert textbook["from very far"]["value"] > 1e5 * stability.TIME_BOUND
     assert textbook["grazing"]["value"] > stability.TIME_BOUND
     assert textbook["from very far"]["count"] < ours["from very far"]["count"]
     assert textbook["head-on"]["count"] == ours["head-on"]["count"]
-    # The same formula: a contact after the time 0.6, with nothing to cancel.
-    gap, speed, approaches = stability.textbook_quotient(-1.0, 0.0, None, 1.0, 0.0, None, 0.4)
-    assert gap / speed == pytest.approx(0.6, rel=1e-15)
-    assert approaches
-    assert not stability.textbook_quotient(-1.0, 0.0, None, -1.0, 0.0, None, 0.4)[2]
 
 
-def test_misses_and_false_hits_are_infinite_errors():
-    hit, miss = (-1.0, 0.1, 1.0, 0.0, 0.4), (-1.0, 0.5, 1.0, 0.0, 0.4)
-    assert stability.contact_error(*hit) < 1
-    assert stability.contact_error(*miss) == 0
-    assert stability.contact_error(-1.0, 0.4, 1.0, 0.0, 0.4) is None
-    assert stability.contact_error(*hit, lambda *inputs: (1.0, math.nan, True)) == math.inf
-    assert stability.contact_error(*hit, lambda *inputs: (math.nan, 1.0, True)) == math.inf
-    assert stability.contact_error(*miss, lambda *inputs: (1.0, 1.0, True)) == math.inf
+@pytest.mark.parametrize(
+    ("apart", "formula", "error"),
+    [
+        (0.5, None, 0),
+        (0.4, None, None),
+        (0.1, (1.0, math.nan, True), math.inf),
+        (0.1, (math.nan, 1.0, True), math.inf),
+        (0.5, (1.0, 1.0, True), math.inf),
+    ],
+)
+def test_misses_and_false_hits_are_infinite_errors(apart, formula, error):
+    others = [] if formula is None else [lambda *inputs: formula]
+    assert stability.contact_error(-1.0, apart, 1.0, 0.0, 0.4, *others) == error
 
 
 # Extreme scenes -----------------------------------------------------------------------------------
@@ -250,30 +232,26 @@ def test_the_extremes_are_those_of_every_effect():
                 scene.with_radius(scene.radius * 1.03)
 
 
-def test_rows_of_extremes_are_their_mean_times():
+def test_rows_of_extremes_are_their_mean_times(monkeypatch):
     """A plain box of 1e6 × 1e-6, where most events are never seen, and an ordinary one."""
     scenes = {"long": stability.EXTREMES["1e6 by 1e-6"], "ordinary": stability.PAPER}
     rows = list(stability.extreme_rows(1, scenes))
     assert failed(rows) == []
+    own = {(row["case"], row["quantity"]): row for row in rows}
     for case, scene in scenes.items():
-        own = {row["quantity"]: row for row in rows if row["case"] == case}
         for event, time in exact.mean_times(scene).items():
-            assert own[f"{event}_time"]["exact"] == time
-    few = {row["quantity"]: row for row in rows if row["case"] == "long"}
-    assert few["disc_collision_time"]["z"] is few["virial"]["z"] is None
-    assert few["disc_collision_time"]["passed"] is None
-    assert few["top_wall_time"]["passed"] is True
-    virial = next(r for r in rows if r["case"] == "ordinary" and r["quantity"] == "virial")
+            assert own[case, f"{event}_time"]["exact"] == time
+    assert own["long", "disc_collision_time"]["z"] is own["long", "virial"]["z"] is None
+    assert own["long", "disc_collision_time"]["passed"] is None
+    assert own["long", "top_wall_time"]["passed"] is True
+    virial = own["ordinary", "virial"]
     assert abs(virial["value"] - 1) < 5 * virial["stderr"] < 0.05
-
-
-def test_a_wrong_time_in_an_extreme_scene_does_not_pass(monkeypatch):
+    # A wrong time does not pass.
     times = exact.mean_times
-    monkeypatch.setattr(
-        exact, "mean_times", lambda scene: {e: 1.05 * t for e, t in times(scene).items()}
-    )
-    wrong = failed(stability.extreme_rows(1, {"ordinary": stability.PAPER}))
-    assert {row["quantity"] for row in wrong} >= {"any_wall_time", "disc_collision_time"}
+    wrong = {"mean_times": lambda scene: {e: 1.05 * t for e, t in times(scene).items()}}
+    monkeypatch.setattr(exact, *wrong.popitem())
+    found = failed(stability.extreme_rows(1, {"ordinary": stability.PAPER}))
+    assert {row["quantity"] for row in found} >= {"any_wall_time", "disc_collision_time"}
 
 
 def test_a_bound_that_says_something_is_judged(monkeypatch):

@@ -45,14 +45,6 @@ def test_weighted_starts_agree_with_plain_counting(radius, event):
         assert 0 < a.relative_stderr < 0.15
 
 
-def test_plain_counting_has_the_exact_rate():
-    """All intervals are longer than next to nothing: eight mean times hold eight of them."""
-    scene = PAPER.with_radius(0.1)  # where no hop is rare
-    for event in (*HOPS, "disc_collision"):
-        (estimate,) = mean_of(tails.survivals(scene, event, [1e-12], 20_000, 3))
-        assert abs(estimate.value - 1) <= 5 * estimate.stderr
-
-
 @pytest.mark.parametrize(
     ("radius", "event", "approach"),
     [(0.24, "disc_collision", 4), (0.1, "vertical_hop", 40)],

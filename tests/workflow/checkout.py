@@ -157,10 +157,10 @@ class Checkout:
     def jobs(self, *arguments):
         """Return the jobs of a dry run, sorted: (rule, wildcards as a tuple of "name=value").
 
-        Jobs that only list files are left out.
+        Jobs that only list files are left out. ``printed`` is the text of the dry run.
         """
-        found = []
-        for line in self.snakemake("--dry-run", *arguments).stdout.splitlines():
+        found, self.printed = [], self.snakemake("--dry-run", *arguments).stdout
+        for line in self.printed.splitlines():
             if start := re.match(r"(?:local)?rule (\w+):$", line):
                 found.append([start[1], ()])
             elif wildcards := re.match(r"    wildcards: (.+)$", line):

@@ -1,4 +1,4 @@
-"""The same bytes whichever engine runs the jobs: this machine, a queue of scripts, a real Slurm."""
+"""Without these tests a queue or a Slurm could run other jobs, or give other bytes."""
 
 import time
 from concurrent.futures import ThreadPoolExecutor

@@ -1,44 +1,46 @@
-"""Which jobs run after which edit: what depends on the edit, and nothing else."""
+"""Without these tests an edit could leave what depends on it, or rerun what does not."""
 
 import os
 import re
 
+import pytest
+
 from twodiscs_paper.catalogue import STUDIES
+from twodiscs_paper.studies.effects.study import SCENES
 
 FULL, WALLS = "scene=full", "scene=walls"
 
 
+#: The jobs of a study: rules with their wildcards.
+MEASURED = {"study_table": "table=tails", "shared_figure": "figure=tails"}
+
+
 def expected(*jobs):
-    """Return the sorted jobs, each given as its rule and its wildcards."""
-    return sorted((rule, tuple(wildcards)) for rule, *wildcards in jobs)
+    """Return jobs, each given as its rule and its wildcards."""
+    return {(rule, tuple(wildcards)) for rule, *wildcards in jobs}
 
 
-def test_after_a_full_build_there_is_nothing_to_do(complete):
-    run = complete.snakemake("--dry-run")
-    assert "Nothing to be done" in run.stdout + run.stderr
-
-
-def test_touched_files_rerun_nothing(built):
+def test_after_a_full_build_and_if_files_are_touched_there_is_nothing_to_do(complete, built):
     for folder, _, names in os.walk(built.path):
         if ".snakemake" not in folder:
             for name in names:
                 os.utime(os.path.join(folder, name))
-    run = built.snakemake("--dry-run")
-    assert "Nothing to be done" in run.stdout + run.stderr
+    for place in (complete, built):
+        run = place.snakemake("--dry-run")
+        assert "Nothing to be done" in run.stdout + run.stderr
 
 
 def test_one_more_radius_runs_one_job_of_each_kind(built):
     built.configure(lambda mapping: mapping["scenes"][0]["radii"].append(0.1234))
     jobs = built.jobs()
-    assert [job for job in jobs if any("radius=" in part for part in job[1])] == expected(
+    assert {job for job in jobs if any("radius=" in part for part in job[1])} == expected(
         *((stage, FULL, f"stage={stage}", "radius=0.1234") for stage in ("monte_carlo", "dynamics"))
     )
     assert not [job for job in jobs if WALLS in job[1]]
     assert {rule for rule, _ in jobs} == {
-        *("monte_carlo", "dynamics", "exact", "table", "check"),
-        *("study_table", "figure", "report", "manifest", "provenance"),
-        *("configuration", "shared_figure"),
-    }
+        *("monte_carlo", "dynamics", "exact", "table", "check", "figure", "configuration"),
+        *MEASURED,
+    } | DOCUMENTS
 
 
 #: Sources that no result depends on, or only through the parameters of jobs.
@@ -65,78 +67,53 @@ def test_the_checksums_are_those_of_all_sources(unbuilt):
 
 
 CODE = "\n\nREMARK = 1\n"
-DOCUMENTS = [("report",), ("manifest",), ("provenance",)]
+DOCUMENTS = {"report", "manifest", "provenance"}
 COUNTED = {"monte_carlo", "dynamics", "intervals"}
+DRAWN = {"figure", "shared_figure", "animate"}
+TABLES = {"exact", "trajectory", "table", "check", "figure", "study_table"}
+
+#: (Edited file, rules that run, rules that do not, all others if None).
+EDITS = [
+    ("src/twodiscs_paper/studies/tails/figure.py", {"shared_figure"} | DOCUMENTS, None),
+    ("src/twodiscs_paper/studies/tails/measure.py", {*MEASURED} | DOCUMENTS, None),
+    ("src/twodiscs_paper/pipeline/documents/report.py", {"check", "report", "provenance"}, None),
+    ("workflow/scripts/point.py", COUNTED, {"exact", "trajectory"}),
+    ("src/twodiscs/figures/style.py", DRAWN | DOCUMENTS, None),
+    ("src/twodiscs/comparison/table.py", TABLES, COUNTED),
+    ("src/twodiscs/dynamics/law.py", TABLES | COUNTED | DRAWN | DOCUMENTS, {"configuration"}),
+]
 
 
-def reasons(checkout, *targets):
-    """Return the sentences that a dry run prints as the reasons of its jobs."""
-    printed = checkout.snakemake("--dry-run", *targets).stdout
-    return [line.strip() for line in printed.splitlines() if "reason:" in line]
+@pytest.fixture(scope="module")
+def everything(complete):
+    """All jobs of the build."""
+    return {*complete.jobs("--forceall")}
 
 
-def test_edit_of_a_figure_of_a_study_draws_it_again_and_is_named(built):
-    path = "src/twodiscs_paper/studies/tails/figure.py"
+@pytest.mark.parametrize(("path", "run", "kept"), EDITS, ids=[path for path, *_ in EDITS])
+def test_an_edit_reruns_what_depends_on_it_and_is_named(built, everything, path, run, kept):
     built.edit(path, CODE)
-    assert built.jobs() == expected(("shared_figure", "figure=tails"), *DOCUMENTS)
-    assert any(path in reason for reason in reasons(built, "tails"))
+    jobs = {*built.jobs()}
+    rules = {rule for rule, _ in jobs}
+    assert run <= rules
+    assert not rules & (kept or {rule for rule, _ in everything} - run)
+    assert re.search(rf"reason:.*{path}", built.printed)
+    if "tails" in path:
+        assert jobs - expected(*((rule,) for rule in DOCUMENTS)) == expected(
+            *((rule, wildcard) for rule, wildcard in MEASURED.items() if rule in run)
+        )
+    else:  # all jobs of the rules, of all scenes
+        assert {job for job in everything if job[0] in run & (COUNTED | DRAWN)} <= jobs
 
 
-def test_edit_of_a_study_measures_it_again(built):
-    built.edit("src/twodiscs_paper/studies/tails/measure.py", CODE)
-    assert built.jobs() == expected(
-        ("study_table", "table=tails"), ("shared_figure", "figure=tails"), *DOCUMENTS
-    )
-
-
-def test_edit_of_a_document_makes_documents_again(built):
-    built.edit("src/twodiscs_paper/pipeline/documents/report.py", CODE)
-    assert {rule for rule, _ in built.jobs()} == {"check", "report", "provenance"}
-
-
-def test_edit_of_the_script_of_points_makes_them_again(built):
-    built.edit("workflow/scripts/point.py", "# a remark\n")
-    rules = {rule for rule, _ in built.jobs()}
-    assert rules > COUNTED
-    assert not {"exact", "trajectory"} & rules
-
-
-def test_edit_of_how_figures_look_redraws_all_of_them_and_computes_nothing(built):
-    drawn = [job for job in built.results() if job.endswith(".png")]
-    built.edit("src/twodiscs/figures/style.py", CODE)
+def test_an_edit_of_a_scene_with_effects_counts_that_one_again(built):
+    built.edit("config/scenes/torus.yaml", "# a remark\n")
+    assert not built.jobs()
+    built.replace("config/scenes/torus.yaml", "accuracy: draft", "accuracy: 2e-2")
     jobs = built.jobs()
-    assert {rule for rule, _ in jobs} == {
-        *("figure", "shared_figure", "animate", "report", "manifest", "provenance"),
-    }
-    assert len(jobs) == len(drawn) + len(DOCUMENTS)
-
-
-def test_edit_of_columns_makes_tables_again_and_computes_nothing(built):
-    built.edit("src/twodiscs/comparison/table.py", CODE)
-    rules = {rule for rule, _ in built.jobs()}
-    assert {"exact", "trajectory", "table", "check", "figure", "study_table"} <= rules
-    assert not COUNTED & rules
-
-
-def test_edit_of_the_physics_reruns_all_points_and_what_follows_and_is_named(built):
-    path = "src/twodiscs/dynamics/law.py"
-    everything = built.jobs("--forceall")
-    built.edit(path, CODE)
-    assert {*everything} - {*built.jobs()} == {("configuration", ())}
-    assert any(path in reason for reason in reasons(built))
-
-
-def test_results_are_kept_after_an_edit_that_does_not_matter(built):
-    """By ``--touch``, and the next edit is noticed."""
-    path = "src/twodiscs/dynamics/law.py"
-    point = built.path / "results/full/points/dynamics/0.2.json"
-    content = point.read_bytes()
-    built.edit(path, "# a remark\n")
-    built.snakemake("--cores", "1", "--touch")
-    assert built.jobs() == []
-    assert point.read_bytes() == content
-    built.edit(path, CODE)
-    assert {rule for rule, _ in built.jobs()} >= COUNTED
+    counted = [wildcards for rule, wildcards in jobs if rule == "dynamics"]
+    assert counted == [("scene=effects/torus", "stage=dynamics", "radius=0.3")]
+    assert {rule for rule, _ in jobs} == {"dynamics", "table", *MEASURED} | DOCUMENTS
 
 
 def test_tighter_accuracy_reruns_dynamics_of_that_scene(built):
@@ -169,9 +146,7 @@ def test_a_third_box_leaves_the_others_alone(built):
 
 def test_a_scene_that_watches_wall_times_runs_nothing_else(planned):
     jobs = [job for job in planned if WALLS in job[1]]
-    assert {rule for rule, _ in jobs} == {
-        *("exact", "dynamics", "table", "figure"),
-    }
+    assert {rule for rule, _ in jobs} == {"exact", "dynamics", "table", "figure"}
     drawn = {part for rule, wildcards in jobs for part in wildcards if part.startswith("figure=")}
     assert "figure=mean_wall_time" in drawn
     assert not {f"figure={name}" for name in ("mean_hop_time", "hop_histogram", "volume")} & drawn
@@ -179,19 +154,25 @@ def test_a_scene_that_watches_wall_times_runs_nothing_else(planned):
 
 def test_a_figure_is_a_target_by_its_name(unbuilt):
     scenes = {"volume": [FULL], "model": [FULL, WALLS], "mean_wall_time": [FULL, WALLS]}
-    drawn = [job for job in unbuilt.jobs(*scenes) if job[0] == "figure"]
+    drawn = {job for job in unbuilt.jobs(*scenes) if job[0] == "figure"}
     assert drawn == expected(
         *(("figure", scene, f"figure={name}") for name in scenes for scene in scenes[name])
     )
-
-
-def test_a_drawing_needs_no_simulation(unbuilt):
+    # A drawing needs no simulation.
     jobs = unbuilt.jobs("results/full/figures/model.pdf")
     assert [rule for rule, _ in jobs] == ["figure"]
 
 
-def test_draft_does_not_touch_the_results_of_the_default(built):
-    before = built.results()
-    jobs = built.jobs("--configfile", "config/draft.yaml", "--", "check")
-    assert ("check", ()) in jobs
-    assert built.results() == before
+def test_effects_are_a_target_that_counts_every_scene_as_any_other_and_part_of_all(
+    unbuilt, planned
+):
+    jobs = unbuilt.jobs("effects")
+    rules = {"dynamics", "exact", "table"}
+    assert {rule for rule, _ in jobs} == rules | {"effects", "study_table", "shared_figure"}
+    for rule in rules:
+        scenes = {words[0] for name, words in jobs if name == rule}
+        assert scenes == {f"scene=effects/{name}" for name in SCENES}
+    tables = (("study_table", f"table=effects{end}") for end in ("", "_cost", "_curves"))
+    made = expected(*tables, ("shared_figure", "figure=effects"))
+    assert made <= {*jobs}
+    assert made <= {*planned}

@@ -1,4 +1,4 @@
-"""After a kill jobs end, the next run goes on by itself, and what was half written is made anew."""
+"""Without these tests jobs could outlive a killed run, or the next one trust what it left."""
 
 import os
 import signal
@@ -67,40 +67,36 @@ def begun(checkout, *words):
     return run
 
 
+def slow(*case):
+    return pytest.param(*case, marks=pytest.mark.slow)
+
+
 @pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="processes are found in /proc")
 @pytest.mark.parametrize(
-    "name", ["SIGKILL", *(pytest.param(n, marks=pytest.mark.slow) for n in ("SIGINT", "SIGTERM"))]
+    ("command", "name"),
+    [
+        ("snakemake", "SIGKILL"),
+        slow("snakemake", "SIGINT"),
+        slow("snakemake", "SIGTERM"),
+        ("twodiscs run config/config.yaml", "SIGINT"),
+        slow("twodiscs run config/config.yaml", "SIGKILL"),
+    ],
 )
-def test_a_killed_run_leaves_no_job_and_the_next_one_resumes(tmp_path, name):
+def test_a_killed_run_leaves_no_job_and_the_next_one_resumes(tmp_path, command, name):
     checkout = fresh(tmp_path / "checkout")
     checkout.configuration.write_text(yaml.safe_dump({"shared": [], "scenes": [ENDLESS]}))
-    run = begun(checkout, "snakemake", "--cores", "1", JOB)
+    run = begun(checkout, *command.split(), "--cores", "1", JOB)
     if name == "SIGKILL":
         run.kill()
     else:  # as Ctrl-C in a terminal; alone, Snakemake waits for its jobs
         os.killpg(run.pid, getattr(signal, name))
-    run.wait(60)
+    status = run.wait(60)
+    if command != "snakemake" and name == "SIGINT":
+        assert status not in (0, -signal.SIGINT)  # Snakemake has cleaned up
+        assert not processes(checkout.path)
     wait_until(lambda: not processes(checkout.path))
 
-    if name == "SIGKILL":  # as everywhere
+    if name == "SIGKILL":
         (checkout.path / JOB).write_text("{")  # as far as the job had come
         checkout.snakemake("--unlock")
     assert ("monte_carlo", ("scene=one", "stage=monte_carlo", "radius=0.2")) in checkout.jobs(JOB)
-
-
-@pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="processes are found in /proc")
-@pytest.mark.parametrize("name", [pytest.param("SIGKILL", marks=pytest.mark.slow), "SIGINT"])
-def test_a_build_ends_with_twodiscs_run(tmp_path, name):
-    """Killed or interrupted in a terminal, it takes the jobs along: nobody else works there."""
-    checkout = fresh(tmp_path / "checkout")
-    checkout.configuration.write_text(yaml.safe_dump({"shared": [], "scenes": [ENDLESS]}))
-    run = begun(checkout, "twodiscs", "run", str(checkout.configuration), JOB)
-    if name == "SIGKILL":
-        run.kill()
-        run.wait(60)
-        wait_until(lambda: not processes(checkout.path), 30)
-    else:
-        os.killpg(run.pid, signal.SIGINT)
-        assert run.wait(60) not in (0, -signal.SIGINT)  # Snakemake has cleaned up
-        assert not processes(checkout.path)
-        checkout.snakemake("--dry-run")  # there is no lock

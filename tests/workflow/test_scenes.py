@@ -1,4 +1,4 @@
-"""The jobs of a scene are what it calls for: whatever it watches, whatever its effects are."""
+"""Without these tests a scene could miss a job that it calls for, or run one that it does not."""
 
 import pytest
 import yaml
@@ -13,9 +13,10 @@ from twodiscs_paper.configuration.request import STAGES
 FILES = sorted((REPOSITORY / "config" / "scenes").glob("*.yaml"))
 BLOCKS = {path.stem: read(path) for path in FILES}
 
+BOX = {"name": "a", "box": {"width": 1.5, "height": 1}}
+
 #: Rules for all scenes together, whatever else is built once.
 ALWAYS = {"check", "configuration", "manifest", "provenance"}
-OF_REPORT = {"report"}
 
 
 def showing(quantity):
@@ -77,14 +78,9 @@ def test_every_subset_of_what_is_watched(unbuilt, tmp_path, effects):
     """One thing at a time, and all but one."""
     names = list(WATCHED)
     subsets = [{name} for name in names] + [{*names} - {name} for name in names]
+    given = BOX | {"radii": [0.1, 0.2], "effects": effects}
     scenes = [
-        {
-            "name": f"s{i}",
-            "box": {"width": 1.5, "height": 1},
-            "radii": [0.1, 0.2],
-            "effects": effects,
-            "watch": {name: WATCHED[name][0] for name in subset},
-        }
+        given | {"name": f"s{i}", "watch": {name: WATCHED[name][0] for name in subset}}
         for i, subset in enumerate(subsets)
     ]
     found = jobs(unbuilt, tmp_path / "subsets.yaml", scenes)
@@ -101,8 +97,9 @@ def test_every_subset_of_what_is_watched(unbuilt, tmp_path, effects):
 
 
 def test_scenes_with_effects_call_for_what_has_a_place(unbuilt, tmp_path):
-    scenes = [block["scenes"][0] for block in BLOCKS.values()]
+    scenes = [scene for block in BLOCKS.values() for scene in block["scenes"]]
     assert [scene["name"] for scene in scenes] == list(BLOCKS)
+    assert all(block["results"] == f"results/scenes/{name}" for name, block in BLOCKS.items())
     assert {*CALLED} <= {*BLOCKS}
     found = jobs(unbuilt, tmp_path / "all.yaml", scenes)
     shared = {rule for rule, wildcards in found if "scene" not in repr(wildcards)}
@@ -119,67 +116,46 @@ def test_scenes_with_effects_call_for_what_has_a_place(unbuilt, tmp_path):
         assert tables == {*request.tables} - {"trajectory"}
         for stage in STAGES:
             points = [w for r, w in found if r == stage and f"scene={request.name}" in w]
-            expected = {
-                (f"scene={request.name}", f"stage={stage}", f"radius={key}")
-                for key in request.keys[stage]
-            }
-            assert {*points} == expected
-
-
-@pytest.mark.parametrize("name", BLOCKS)
-def test_a_file_is_a_quick_look_at_one_scene(name):
-    block = BLOCKS[name]
-    (request,) = load(block).scenes
-    assert request.name == name
-    assert request.effects
-    assert block["results"] == f"results/scenes/{name}"
-    assert load(block).shared == ("report",)
-    assert 6 <= len(request.radii) <= 8
-    sides = (4.8, 0.6) if name == "channel-of-eight" else (1.5, 1.0)
-    assert (request.box.width, request.box.height) == sides
-    assert set(request.dynamics["accuracy"].values()) == {1e-2}
+            start = f"scene={request.name}", f"stage={stage}"
+            assert {*points} == {(*start, f"radius={key}") for key in request.keys[stage]}
 
 
 def test_a_file_builds_its_scene_alone(unbuilt):
-    found = unbuilt.jobs("--configfile", "config/scenes/torus.yaml")
-    assert {w for _, wildcards in found for w in wildcards if w.startswith("scene=")} == {
-        "scene=torus"
-    }
+    torus = "--configfile", "config/scenes/torus.yaml"
+    found = unbuilt.jobs(*torus)
+    named = {w for _, wildcards in found for w in wildcards if w.startswith("scene=")}
+    assert named == {"scene=torus"}
     assert not [rule for rule, _ in found if rule.startswith("effects")]
     # What is about a box without effects is no target there.
-    run = unbuilt.snakemake(
-        "--dry-run", "--configfile", "config/scenes/torus.yaml", "--", "paper", passes=False
-    )
+    run = unbuilt.snakemake("--dry-run", *torus, "--", "paper", passes=False)
     assert run.returncode != 0
     assert "No rule to produce paper" in run.stdout + run.stderr
 
 
-def test_what_is_built_once_is_what_is_asked_for(unbuilt, tmp_path):
-    scene = {"name": "a", "box": {"width": 1.5, "height": 1}, "watch": {"volume": True}}
+@pytest.mark.parametrize(
+    ("given", "studies", "more"),
+    [
+        ({"shared": ["errata", "report"]}, {"errata"}, {"report"}),
+        ({"shared": ["paper"]}, None, {"paper"}),
+        ({}, set(), {"report"}),  # nothing is inherited from the default configuration
+    ],
+)
+def test_what_is_built_once_is_what_is_asked_for(unbuilt, tmp_path, given, studies, more):
     path = tmp_path / "shared.yaml"
-    shared = {table.name() for study in STUDIES.values() for table in study.tables}
-    for names, studies in ((["errata", "report"], {"errata"}), (["paper"], shared)):
-        path.write_text(yaml.safe_dump({"shared": names, "scenes": [scene]}))
-        found = [
-            (r, w) for r, w in unbuilt.jobs("--configfile", str(path)) if "scene" not in repr(w)
-        ]
-        made = {w[0].removeprefix("table=") for rule, w in found if rule == "study_table"}
-        assert made == studies
-        once = {rule for rule, _ in found} - {"study_table", "study_part", "shared_figure"}
-        more = {"paper"} if "paper" in names else OF_REPORT
-        assert once == ALWAYS | more
+    scene = BOX | {"watch": {"volume": True}}
+    path.write_text(yaml.safe_dump(given | {"scenes": [scene]}))
+    found = [(r, w) for r, w in unbuilt.jobs("--configfile", str(path)) if "scene" not in repr(w)]
+    made = {w[0].removeprefix("table=") for rule, w in found if rule == "study_table"}
+    every = {table.name() for study in STUDIES.values() for table in study.tables}
+    assert made == (every if studies is None else studies)
+    once = {rule for rule, _ in found} - {"study_table", "study_part", "shared_figure"}
+    assert once == ALWAYS | more
 
 
-def test_scenes_of_another_file_do_not_inherit_what_is_built_once(unbuilt, tmp_path):
-    """A box of one's own over the default configuration: its jobs and the report on it."""
-    scene = {"name": "mine", "box": {"width": 2, "height": 1}, "watch": {"volume": True}}
-    path = tmp_path / "mine.yaml"
-    path.write_text(yaml.safe_dump({"scenes": [scene]}))
-    found = {rule for rule, w in unbuilt.jobs("--configfile", str(path)) if "scene" not in repr(w)}
-    assert found == ALWAYS | OF_REPORT
-    # A file without scenes is laid over config.yaml, which asks for studies.
-    path.write_text("seed: 5\n")
-    assert "study_table" in {rule for rule, _ in unbuilt.jobs("--configfile", str(path))}
+def test_a_file_without_scenes_is_laid_over_the_default_configuration(unbuilt, tmp_path):
+    (tmp_path / "seed.yaml").write_text("seed: 5\n")
+    jobs = unbuilt.jobs("--configfile", str(tmp_path / "seed.yaml"))
+    assert "study_table" in {rule for rule, _ in jobs}
 
 
 def test_the_explorer_needs_no_points(unbuilt):

@@ -1,4 +1,4 @@
-"""``make`` on a machine whose Python is too old: one sentence, and the old environment stays."""
+"""Without it ``make`` could remove an environment on a machine whose Python is too old."""
 
 import shutil
 import subprocess
@@ -15,17 +15,11 @@ def test_old_python_is_refused(tmp_path):
         (tools / name).write_text("#!/bin/sh\nexit 1\n")
         (tools / name).chmod(0o755)
     checkout = tmp_path / "checkout"
-    (checkout / ".venv").mkdir(parents=True)
-    (checkout / ".venv" / "old").touch()
+    (checkout / ".venv" / "old").mkdir(parents=True)
     for name in ("Makefile", "requirements.lock", "pyproject.toml"):
         shutil.copy(REPOSITORY / name, checkout)
-    run = subprocess.run(
-        [tools / "make", ".venv/ready"],
-        cwd=checkout,
-        env={"PATH": str(tools)},
-        capture_output=True,
-        text=True,
-    )
+    words, given = [tools / "make", ".venv/ready"], {"cwd": checkout, "env": {"PATH": str(tools)}}
+    run = subprocess.run(words, **given, capture_output=True, text=True)
     assert run.returncode != 0
     assert "This needs Python 3.11 or newer" in run.stderr
     assert (checkout / ".venv" / "old").exists()

@@ -1,4 +1,4 @@
-"""Points in shards: jobs that are known beforehand, and none is done twice."""
+"""Without these tests shards could be done twice, be lost, or have the numbers of others."""
 
 import shutil
 
@@ -26,10 +26,17 @@ TINY = {
 TABLE = "results/tiny/mean_times.csv"
 
 
+def place_at(path, home, **keys):
+    """Return a folder with a configuration in which ``keys`` differ."""
+    place = Checkout(path, home)
+    change(place, **keys)
+    return place
+
+
 def change(place, **keys):
     """Write a configuration with other ``keys`` at its top, or of its scene."""
     top = {name: keys.pop(name) for name in TINY.keys() & keys.keys()}
-    place.configuration.parent.mkdir(exist_ok=True)
+    place.configuration.parent.mkdir(parents=True, exist_ok=True)
     content = TINY | top | {"scenes": [TINY["scenes"][0] | keys]}
     place.configuration.write_text(yaml.safe_dump(content))
 
@@ -46,32 +53,22 @@ def shards(place):
     return {path: path.stat().st_mtime_ns for path in folder.rglob("*.json")}
 
 
-def test_shards_are_jobs_that_a_dry_run_shows(unbuilt, tmp_path):
-    place = Checkout(tmp_path, unbuilt)
-    change(place)
-    found = {}
-    for rule, wildcards in place.jobs(TABLE):
-        found.setdefault(rule, []).append(dict(word.split("=") for word in wildcards))
-    assert len(found["dynamics"]) == 1
-    assert {one["part"] for one in found["shard"]} == {"all", "horizontal_hop"}
-    assert len(found["shard"]) > 3
-
-
-def test_shards_do_not_depend_on_the_accuracy(unbuilt, tmp_path):
+def test_shards_are_jobs_that_a_dry_run_shows_and_do_not_depend_on_the_accuracy(unbuilt, tmp_path):
     """Those that Snakemake takes for made, here by ``--touch``, are not planned again."""
-    place = Checkout(tmp_path, unbuilt)
-    change(place)
+    place = place_at(tmp_path, unbuilt)
 
     def planned():
-        return {wildcards for rule, wildcards in place.jobs(TABLE) if rule == "shard"}
+        return {words for rule, words in place.jobs(TABLE) if rule == "shard"}
 
     first, files = planned(), []
-    for wildcards in first:
-        one = dict(word.split("=") for word in wildcards)
+    for words in first:
+        one = dict(word.split("=") for word in words)
         name = "results/{scene}/shards/{stage}/{radius}/{part}-{first}-{stop}.json".format(**one)
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("{}")
         files.append(name)
+    assert len(files) > 3
+    assert all(any(f"/{part}-" in name for name in files) for part in ("all", "horizontal_hop"))
     place.snakemake("--cores", "1", "results/code/physics.sha256")
     place.snakemake("--cores", "1", "--touch", "--", *files)
     change(place, accuracy=5e-4)
@@ -90,8 +87,7 @@ def test_shards_have_the_random_numbers_of_their_point():
 
 @pytest.mark.slow
 def test_no_shard_is_done_twice(unbuilt, tmp_path):
-    place = Checkout(tmp_path, unbuilt)
-    change(place)
+    place = place_at(tmp_path, unbuilt)
     table = build(place)
     assert table.count(b",0.001,reached,") == 2
     first = shards(place)
@@ -111,8 +107,7 @@ def test_no_shard_is_done_twice(unbuilt, tmp_path):
 
 @pytest.mark.slow
 def test_a_damaged_shard_is_named_and_made_again_once_it_is_deleted(unbuilt, tmp_path):
-    place = Checkout(tmp_path, unbuilt)
-    change(place)
+    place = place_at(tmp_path, unbuilt)
     table = build(place)
     point = place.path / "results/tiny/points/dynamics/0.24.json"
     log = place.path / "results/logs/tiny/dynamics/0.24.log"
@@ -134,48 +129,25 @@ def test_a_damaged_shard_is_named_and_made_again_once_it_is_deleted(unbuilt, tmp
 
 
 @pytest.mark.slow
-def test_the_size_of_shards_is_of_no_consequence(unbuilt, tmp_path):
-    tables = []
-    for size in (1e7, 2e7, 3e7):
-        place = Checkout(tmp_path / f"{size:g}", unbuilt)
-        place.path.mkdir()
-        change(place, shard_events=size)
-        tables.append(build(place))
-        assert shards(place)
-    assert tables[0] == tables[1] == tables[2]
-
-
-@pytest.mark.slow
-def test_shards_of_two_sites_are_joined_by_copying(unbuilt, tmp_path):
+def test_neither_the_size_nor_the_site_of_shards_is_of_consequence(unbuilt, tmp_path):
     """One site does the first shards, another one the rest; a third one joins them."""
-    whole = Checkout(tmp_path / "whole", unbuilt)
-    whole.path.mkdir()
-    change(whole)
+    whole, small = (place_at(tmp_path / f"{n}", unbuilt, shard_events=n) for n in (1e7, 3e7))
     table = build(whole)
+    assert build(small) == table
+    assert len(shards(whole)) > len(shards(small)) > 0
     files = [path.relative_to(whole.path) for path in sorted(shards(whole))]
-    sites = [files[: len(files) // 2], files[len(files) // 2 :]]
-    joined = Checkout(tmp_path / "joined", unbuilt)
-    joined.path.mkdir()
-    change(joined)
-    for i, some in enumerate(sites):
-        site = Checkout(tmp_path / f"site-{i}", unbuilt)
-        site.path.mkdir()
-        change(site)
-        site.snakemake("--cores", "2", "--", *map(str, some))
+    joined = place_at(tmp_path / "joined", unbuilt)
+    for i in (0, 1):
+        site = place_at(tmp_path / f"site-{i}", unbuilt)
+        site.snakemake("--cores", "2", "--", *map(str, files[i::2]))
         shutil.copytree(site.path / "results", joined.path / "results", dirs_exist_ok=True)
     # The copies of the second site may be newer than the shards of the first.
     joined.snakemake("--cores", "1", "--touch", "--", *map(str, files))
     assert "shard" not in {rule for rule, _ in joined.jobs(TABLE)}
     assert build(joined) == table
-
-
-@pytest.mark.slow
-def test_as_a_module_shards_are_found_below_a_prefix(unbuilt, tmp_path):
-    alone = Checkout(tmp_path / "alone", unbuilt)
-    alone.path.mkdir()
-    change(alone)
+    # As a module, below a prefix.
     place = Checkout(tmp_path / "other", unbuilt)
     place.path.mkdir()
     use(place, TINY, "discs_", BELOW)
     place.snakemake("--cores", "2", "--", f"below/{TABLE}")
-    assert (place.path / "below" / TABLE).read_bytes() == build(alone)
+    assert (place.path / "below" / TABLE).read_bytes() == table
