@@ -11,8 +11,9 @@ from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.dynamics.runs import wide_edges
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.draw import draw as draw_figure
-from twodiscs.model.box import Box, radii
+from twodiscs.model.box import Box
 from twodiscs.theory import exact
+from twodiscs_paper.configuration.radii import radii
 
 BOXES = {
     "paper": Box(1.5, 1.0),

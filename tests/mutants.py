@@ -77,7 +77,6 @@ MUTANTS = [
     ("constant of a tail", "6 * (along_x + along_y)", "3 * (along_x + along_y)"),
     ("swapped axis of a tail", "arc.range_y**2 * arc.beyond_x**4", "arc.range_x**2 * arc.beyond_x**4"),
     ("density at zero", "math.sqrt(2) / (16 * side)", "math.sqrt(2) / (8 * side)"),
-    ("power of a drift's chance", "volume(scene) * time**2)", "volume(scene) * time)"),
     ("sign for small discs", "(4 * along / across - 2) * r", "(4 * along / across + 2) * r"),
     ("factor near jamming", "root * left / (4 * (last_x + last_y))", "root * left / (2 * (last_x + last_y))"),
     ("sign of the virial", "-scene.contact_distance / pairs", "scene.contact_distance / pairs"),

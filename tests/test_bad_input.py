@@ -21,7 +21,7 @@ import twodiscs as td
 from twodiscs import arguments, cli
 from twodiscs.dynamics import runs
 from twodiscs.model import checks, effects
-from twodiscs.model.box import Box, even_radii, radii, stream_seed
+from twodiscs.model.box import Box, stream_seed
 from twodiscs.model.checks import InputError
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
@@ -32,6 +32,8 @@ from twodiscs.theory import exact, laws, virial
 from twodiscs_paper.configuration import schema
 from twodiscs_paper.configuration.load import ConfigError, load, read
 from twodiscs_paper.configuration.model import Model
+from twodiscs_paper.configuration.radii import even_radii, radii
+from twodiscs_paper.studies.stability.closed_form import closed_form
 
 BOX = Box(1.5, 1.0)
 PAPER = BOX.scene(0.2)
@@ -387,7 +389,7 @@ RIGHT = [
     (even_radii, {"smallest": 0.1, "largest": 0.2, "count": 8}),
     (stream_seed, {"seed": 1, "scene": "paper", "method": "dynamics", "key": "0.2"}),
     *((f, {"scene": PAPER}) for f in (td.volume, td.areas, td.mean_times, td.exact)),
-    *((f, {"scene": PAPER}) for f in (laws.closed_form, virial.weights, runs.replica_duration)),
+    *((f, {"scene": PAPER}) for f in (closed_form, virial.weights, runs.replica_duration)),
     *((f, {"scene": PAPER, "event": "any_wall"}) for f in (td.rate, laws.threshold_time)),
     (exact.shell_expectation, {"scene": PAPER, "event": "top_wall", "epsilon": 0.01}),
     (laws.small_radius_time, {"box": BOX, "event": "any_wall", "radius": 0.1}),

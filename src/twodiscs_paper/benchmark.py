@@ -22,7 +22,6 @@ from twodiscs.dynamics.many import engine
 from twodiscs.dynamics.runs import hop_intervals
 from twodiscs.model.events import EVENTS, SHELLS
 from twodiscs.model.scene import Scene
-from twodiscs.points.estimates import mean_of
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.separations import separation_sampler
 from twodiscs.sampling.starts import states
@@ -39,6 +38,7 @@ from twodiscs_paper.studies.effects.cost import (
     timed,
 )
 from twodiscs_paper.studies.effects.cost import rows as cost_rows
+from twodiscs_paper.studies.estimates import mean_of
 
 
 def lockstep_of_many(discs, blocks=BLOCKS // 8):

@@ -13,6 +13,7 @@ from twodiscs.dynamics.runs import DAY, CountingRun, replica_duration
 from twodiscs.model.checks import format_seconds
 from twodiscs.sampling.rounds import MARGIN
 from twodiscs.theory import exact
+from twodiscs_paper.pipeline.forecast import of_dynamics
 
 SCENE = td.Scene(1.5, 1.0, 0.2)
 
@@ -39,7 +40,7 @@ def run_of(scene, error, budget=None):
 @pytest.mark.parametrize("scene", [SCENE, NEAR])
 def test_a_pilot_has_the_errors_of_a_run_of_the_same_blocks(blocks, scene):
     run, measured = run_of(scene, 1.0), td.simulate(scene, 1.0)
-    found = cost.forecast(run, cost.pilots(run))
+    found = of_dynamics(run, cost.pilots(run))
     assert found.seconds == pytest.approx(len(run.parts) * 32e-3)
     for event, error in found.reached.items():
         assert error == pytest.approx(measured[f"{event}_time"].relative_stderr, rel=1e-3)
@@ -96,7 +97,7 @@ def test_a_budget_ends_a_run_at_the_error_that_the_forecast_says(blocks):
         run = run_of(scene, 1e-5, 10**7)
         with pytest.warns(td.AccuracyWarning):
             measured = td.simulate(scene, 1e-5, budget=1e7)
-        found = cost.forecast(run, cost.pilots(run))
+        found = of_dynamics(run, cost.pilots(run))
         for event, error in found.reached.items():
             one = measured[f"{event}_time"]
             # Half a block more or less, and the noise of two errors from 32 blocks.
@@ -108,9 +109,9 @@ def test_a_budget_ends_a_run_at_the_error_that_the_forecast_says(blocks):
 def test_a_forecast_of_shards_has_all_planned_blocks(blocks):
     run = run_of(SCENE, 1e-4)
     pilots, part = cost.pilots(run), run.parts["all"]
-    planned = cost.forecast(run, pilots, planned=True)
+    planned = of_dynamics(run, pilots, planned=True)
     assert planned.seconds == pytest.approx(part.planned * 1e-3)
-    assert cost.forecast(run, pilots).seconds < planned.seconds
+    assert of_dynamics(run, pilots).seconds < planned.seconds
     assert planned.shortfall(run) is None
 
 
@@ -248,7 +249,7 @@ def test_an_event_that_no_pilot_counted_has_no_price_and_no_forecast():
     (price,) = cost._prices_of_times(SCENE, {"all": pilot})
     assert price.quantity == "disc_collision_time"
     run = CountingRun(SCENE, dict.fromkeys(errors, 1e-3), 10**7, 1)
-    found = cost.forecast(run, {"all": pilot})
+    found = of_dynamics(run, {"all": pilot})
     assert found.events == pytest.approx(run.parts["all"].budget)
     assert found.shortfall(run).endswith(
         "before there are enough events horizontal_hop for an error"

@@ -18,6 +18,7 @@ from twodiscs.dynamics.two.passages import (
 )
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling import rounds
+from twodiscs_paper.studies.passages.measure import by_time, of_order
 
 
 def test_clusters_are_weighed_by_their_sizes():
@@ -35,14 +36,14 @@ def test_clusters_are_weighed_by_their_sizes():
 def test_errors_of_a_correlation_between_walls_are_binomial():
     sums = np.zeros((2, SUMS, 1), np.int64)
     sums[:, 0, 0], sums[:, 1, 0] = -10, 10  # 20 of the replicas have changed sides
-    (found,) = transmission.by_time(sums)
+    (found,) = by_time(sums)
     n = 2 * HOPS_OF_BLOCK
     assert found.value == 1 - 2 * 20 / n
     assert found.stderr == pytest.approx(math.sqrt((1 - found.value**2) / n), rel=1e-14)
 
 
 LAWS = {
-    "order": transmission.of_order,
+    "order": of_order,
     "clusters": transmission.of_clusters,
     "clusters of a pair of many": partial(transmission.of_clusters, others=4 / 3),
 }

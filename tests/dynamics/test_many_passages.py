@@ -11,11 +11,12 @@ import pytest
 from scalar_bonds import clusters, orders
 from scipy.stats import f
 
-from twodiscs.comparison.transmission import by_clusters, by_time, of_clusters, plateau
+from twodiscs.comparison.transmission import by_clusters, of_clusters, plateau
 from twodiscs.dynamics.many import passages
 from twodiscs.dynamics.two import passages as of_two
 from twodiscs.model.scene import Scene
 from twodiscs.theory import n_discs
+from twodiscs_paper.studies.passages.measure import by_time
 
 HOP = "horizontal_hop"
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scalar_passages import clusters, replicas
 
-from twodiscs.comparison.transmission import by_clusters, by_time, of_clusters, of_order, plateau
+from twodiscs.comparison.transmission import by_clusters, of_clusters, plateau
 from twodiscs.dynamics.ensemble import LANES
 from twodiscs.dynamics.law import WRAP_X
 from twodiscs.dynamics.two import passages
@@ -24,6 +24,7 @@ from twodiscs.sampling.starts import COMPONENTS, StartSampler, draw_states
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 from twodiscs.theory.virial import flux_constant
+from twodiscs_paper.studies.passages.measure import by_time, of_order
 
 HOP = "horizontal_hop"
 TIMES = [0.2, 1.0, 5.0, 10.0]

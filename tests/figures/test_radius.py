@@ -9,7 +9,8 @@ from twodiscs.figures import curves, radius, style
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.box import Box
 from twodiscs.theory.exact import mean_times
-from twodiscs.theory.laws import leading_law, small_radius_time
+from twodiscs.theory.laws import small_radius_time
+from twodiscs_paper.studies.thresholds.measure import leading_law
 
 OVER_RADIUS = [name for name in radius.OVER_RADIUS if name in FIGURES]
 

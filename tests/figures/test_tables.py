@@ -16,7 +16,7 @@ from twodiscs.figures import curves, style
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.style import LOOKS
 from twodiscs.model.events import HOPS, SHELLS
-from twodiscs.theory import exact, laws, virial
+from twodiscs.theory import exact, virial
 from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES, read_table
 from twodiscs_paper.drawings import DRAW
 from twodiscs_paper.studies.effects import figure as effects
@@ -27,7 +27,7 @@ from twodiscs_paper.studies.passages import figure_files as files
 from twodiscs_paper.studies.passages import figure_friction as friction
 from twodiscs_paper.studies.passages import figure_transmission as transmission
 from twodiscs_paper.studies.tails import figure as tails
-from twodiscs_paper.studies.thresholds.measure import near
+from twodiscs_paper.studies.thresholds.measure import leading_law, near
 
 EXPECTED = Path(__file__).parents[2] / "paper" / "expected"
 TABLES = SCENE_TABLES | STUDY_TABLES
@@ -243,7 +243,7 @@ def _pressure():
 
 def _thresholds():
     for event, look in LOOKS.items():
-        law = laws.leading_law(PAPER, event) if event in SHELLS else None
+        law = leading_law(PAPER, event) if event in SHELLS else None
         if law:
             rows = near(PAPER, law, of(table("mean_times"), event=event))
             own = [(1 - r["radius"] / law.limit, r["estimate"], r["stderr"]) for r in rows]
@@ -444,7 +444,7 @@ def test_tails_are_those_of_the_table_with_their_laws():
 def test_curves_of_thresholds_are_exact_and_crosses_are_first_passages():
     hops, ratios = drawn("thresholds").values()
     for event, (colour, _) in LOOKS.items():
-        law = laws.leading_law(PAPER, event) if event in SHELLS else None
+        law = leading_law(PAPER, event) if event in SHELLS else None
         if law is None:
             continue
         for axes in (hops, ratios)[event not in HOPS :]:

@@ -8,10 +8,11 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from twodiscs.model.box import METHODS, Box, even_radii, key, radii, stream_seed
+from twodiscs.model.box import METHODS, Box, key, stream_seed
 from twodiscs.model.effects import ABSENT
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.scene import Scene
+from twodiscs_paper.configuration.radii import even_radii, radii
 
 PAPER = Box(1.5, 1.0)
 EFFECTS = [

@@ -118,9 +118,10 @@ def test_the_limit_of_a_study_grows_with_what_is_asked_of_it():
 @pytest.fixture
 def blocks(monkeypatch):
     """Let a pilot have 32 blocks, each of a millisecond."""
-    monkeypatch.setattr(
-        "twodiscs.comparison.cost.timed", lambda work, seconds, fewest=1: (work(0, 32), 32, 1e-3)
-    )
+    for module in ("twodiscs.comparison.cost", "twodiscs_paper.pipeline.forecast"):
+        monkeypatch.setattr(
+            f"{module}.timed", lambda work, seconds, fewest=1: (work(0, 32), 32, 1e-3)
+        )
 
 
 @pytest.mark.parametrize("radius", [0.01, 0.2, 0.24, 0.3, 0.38])

@@ -15,9 +15,10 @@ from twodiscs.comparison.check import sum_rule
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
-from twodiscs.points.estimates import Estimate, LinearFit, mean_of
+from twodiscs.points.estimates import Estimate
 from twodiscs_paper.reference import exact_numbers
 from twodiscs_paper.studies.distributions.measure import density_at_zero
+from twodiscs_paper.studies.estimates import LinearFit, mean_of
 
 # Estimates ------------------------------------------------------------------------------------
 

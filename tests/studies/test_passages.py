@@ -15,8 +15,9 @@ from twodiscs.dynamics.two.passages import cluster_sizes
 from twodiscs.figures import style
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
-from twodiscs.points.estimates import Estimate, LinearFit, mean_of
+from twodiscs.points.estimates import Estimate
 from twodiscs.theory import exact
+from twodiscs_paper.studies.estimates import LinearFit, mean_of
 from twodiscs_paper.studies.passages import (
     figure,
     figure_diffusion,

@@ -9,7 +9,7 @@ from factory import written
 from twodiscs.comparison.scene_tables import MeanTimes
 from twodiscs.figures import style
 from twodiscs.model.box import Box
-from twodiscs.theory import exact, laws
+from twodiscs.theory import exact
 from twodiscs_paper.studies.distributions.study import Distributions
 from twodiscs_paper.studies.thresholds import figure
 from twodiscs_paper.studies.thresholds import measure as thresholds
@@ -82,7 +82,7 @@ def test_exact_times_have_the_exact_power():
 
 def test_noise_is_in_the_errors():
     """200 fits: scores of exponent and coefficient have mean 0 and variance 1, χ² its degrees."""
-    rng, law = np.random.default_rng(2), laws.leading_law(PAPER, "horizontal_hop")
+    rng, law = np.random.default_rng(2), thresholds.leading_law(PAPER, "horizontal_hop")
     due = np.array([row["exact"] for row in times_of("horizontal_hop", RADII)])
     found = {"exponent": [], "coefficient": []}
     for noise in rng.standard_normal((200, len(RADII))):

@@ -10,7 +10,9 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.theory import exact, laws
-from twodiscs.theory.laws import closed_form, leading_law, small_radius_time, threshold_time
+from twodiscs.theory.laws import small_radius_time, threshold_time
+from twodiscs_paper.studies.stability.closed_form import closed_form
+from twodiscs_paper.studies.thresholds.measure import leading_law
 
 PAPER = (1.5, 1.0)
 BOXES = [PAPER, (1.0, 1.0), (2.0, 1.0), (1.0, 2.0), (3.0, 1.0), (1.0, 1.7)]

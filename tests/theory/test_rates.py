@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from twodiscs.model.checks import InputError
 from twodiscs.model.scene import Scene
 from twodiscs.theory import n_discs, virial
 from twodiscs.theory.virial import flux_constant, weights
@@ -32,8 +31,6 @@ def test_two_discs_have_the_weights_of_a_scene():
         # Four pairs of a disc and a wall are counted together here.
         each = weight * (4 if event.endswith("wall") else 1)
         assert each == pytest.approx(known[event], rel=1e-14)
-    with pytest.raises(InputError, match="x is periodic"):
-        virial.virial_weights(Scene(1.5, 1.0, 0.1, discs=3, periodic="x"))
 
 
 def rates_of_small_discs(scene):

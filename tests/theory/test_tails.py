@@ -8,7 +8,7 @@ from theory.antiderivatives import TURNED
 
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
-from twodiscs.theory import exact, laws
+from twodiscs.theory import exact
 from twodiscs.theory.laws import density_at_zero, tail_constant
 
 BOUND = 1e-13
@@ -82,42 +82,42 @@ def rows_apart(rng, height, sigma, time, n):
     return int(np.sum(np.all(apart >= sigma, axis=0) | np.all(apart <= -sigma, axis=0)))
 
 
-@pytest.mark.parametrize(("axis", "radius"), [("x", 0.05), ("x", 0.15), ("y", 0.1), ("y", 0.3)])
-def test_drifts_last_with_the_exact_probability(axis, radius):
-    """One standard error is some half a per cent; four tests at five of them."""
+def chance(scene, hop, time):
+    """Return the probability of drifts in separate rows that avoid a ``hop``, from its tail C/t³.
+
+    By Palm's relation P(none within t) = C/(2 τ t²), where τ is 3πV/(4A) for a hop of the area A.
+    """
+    area, volume = exact.areas(scene)[hop], exact.volume(scene)
+    return 2 * tail_constant(scene, hop) * area / (3 * math.pi * volume * time**2)
+
+
+@pytest.mark.parametrize(
+    ("hop", "radius", "factor"),
+    [
+        ("vertical_hop", 0.05, 1.05), ("vertical_hop", 0.15, 1.05), ("horizontal_hop", 0.1, 1.05),
+        ("horizontal_hop", 0.2, 1.05), ("vertical_hop", 0.1, 1.0),
+    ],
+)  # fmt: skip
+def test_drifts_last_with_the_probability_of_the_tail(hop, radius, factor):
+    """From the time on at which a drift in its square ends, the law is exact.
+
+    One standard error is some half a per cent; five tests at five of them.
+    """
     scene, n = Scene(1.5, 1.0, radius), 2 * 10**5
     ranges = scene.range_x, scene.range_y
-    along, height = ranges if axis == "x" else ranges[::-1]
-    time = 2.1 * (height - scene.contact_distance)
+    along, height = ranges if hop == "vertical_hop" else ranges[::-1]
+    time = factor * 2 * (height - scene.contact_distance)
     found = rows_apart(np.random.default_rng(3), height, scene.contact_distance, time, n)
     # Free along the axis, and none of these starts overlaps.
     share = (along * height) ** 2 / exact.volume(scene)
-    due = laws.drift_probability(scene, time, axis) / share
+    due = chance(scene, hop, time) / share
     assert abs(found / n - due) < 5 * math.sqrt(due * (1 - due) / n)
-
-
-def test_the_law_of_drifts_begins_where_they_stay_in_their_square():
-    """At the least time it is exact; a little earlier it is refused, for it would be too large."""
-    scene, n = Scene(1.5, 1.0, 0.1), 2 * 10**5
-    height, sigma = scene.range_y, scene.contact_distance
-    least = 2 * (scene.height - 4 * scene.radius)
-    share = (scene.range_x * height) ** 2 / exact.volume(scene)
-    due = laws.drift_probability(scene, least) / share
-    assert laws.drift_probability(scene, 1.01 * least) < due * share
-    with pytest.raises(ValueError, match="time must be at least"):
-        laws.drift_probability(scene, 0.999 * least)
-    found = rows_apart(np.random.default_rng(4), height, sigma, least, n) / n
-    assert abs(found - due) < 5 * math.sqrt(due * (1 - due) / n)
-    early = rows_apart(np.random.default_rng(5), height, sigma, least / 2, n) / n
-    assert early < 0.99 * 4 * due
 
 
 def test_drifts_make_the_bound_of_the_tail():
     scene, time = Scene(1.5, 1.0, 0.1), 50.0
-    both = sum(laws.drift_probability(scene, time, axis) for axis in "xy")
+    both = sum(chance(scene, hop, time) for hop in HOPS)
     tau = exact.mean_times(scene)["disc_collision"]
     assert 2 * tau * both / time == pytest.approx(
-        laws.tail_constant(scene, "disc_collision") / time**3, rel=1e-13
+        tail_constant(scene, "disc_collision") / time**3, rel=1e-13
     )
-    with pytest.raises(ValueError, match="time must be at least"):
-        laws.drift_probability(scene, 0.1)

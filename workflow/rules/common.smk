@@ -87,7 +87,12 @@ CODE = {
 # Tables of studies have exact curves, too, which figures draw.
 CURVES = "twodiscs/figures/curves.py"
 for name, study in STUDIES.items():
-    shared = "twodiscs_paper/study.py", "twodiscs_paper/reference.py", CURVES
+    shared = (
+        "twodiscs_paper/study.py",
+        "twodiscs_paper/studies/estimates.py",
+        "twodiscs_paper/reference.py",
+        CURVES,
+    )
     own = modules(*shared, f"{study_folder(study)}/**/*.py")
     CODE[name] = [path for path in own if path not in study_figures(study)]
 

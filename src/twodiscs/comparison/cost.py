@@ -17,7 +17,6 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from twodiscs.comparison.scene_tables import shortfall
 from twodiscs.model.checks import (
     MOST_WITH_VOLUME,
     answering,
@@ -140,43 +139,6 @@ def blocks_wanted(scene, pilots, target):
     return found
 
 
-class Forecast(NamedTuple):
-    """The time and events of a run within its budget; ``reached`` are relative errors by event."""
-
-    seconds: float
-    events: float
-    reached: dict
-
-    def shortfall(self, run):
-        """Return a sentence on the accuracy that a ``CountingRun`` will not reach, or None."""
-        rows = [
-            {
-                "event": event,
-                "target": run.target[event],
-                "relative_stderr": error,
-                "status": "budget" if error > run.target[event] else "reached",
-            }
-            for event, error in self.reached.items()
-        ]
-        return shortfall(rows, run.budget, self.events, self.seconds, "ends")
-
-
-def forecast(run, pilots, planned=False):
-    """Return the ``Forecast`` of a ``CountingRun`` from the ``pilots`` of its parts.
-
-    If its blocks are ``planned``, it does all of these: its jobs are shards.
-    """
-    seconds, events, reached = 0.0, 0.0, {}
-    for name, wanted in blocks_wanted(run.scene, pilots, run.target).items():
-        part, pilot = run.parts[name], pilots[name]
-        affordable = max(1.0, part.budget / max(pilot.events, 1.0))
-        blocks = part.planned if planned else min(wanted, affordable)
-        seconds, events = seconds + blocks * pilot.seconds, events + blocks * pilot.events
-        own = (e for e in pilot.errors if name != "all" or e not in pilots)
-        reached |= {event: pilot.errors[event] / math.sqrt(blocks) for event in own}
-    return Forecast(seconds, events, reached)
-
-
 # Prices -------------------------------------------------------------------------------------------
 
 
@@ -264,7 +226,7 @@ def _prices_of_samples(scene, shell, seconds=OF_SPEED):
     for method, make in _samplers(scene).items():
         sampler = make(scene, wanted, shell, 0)
         sums, blocks, each = timed(sampler.count, seconds)
-        found = _variances(scene, sampler, sums, blocks)
+        found = variances(scene, sampler, sums, blocks)
         for quantity in wanted:
             name = method if quantity == "volume" or scene.discs > 2 else f"shells, {method}"
             if quantity in found:
@@ -272,20 +234,7 @@ def _prices_of_samples(scene, shell, seconds=OF_SPEED):
                 yield Price(quantity, name, variance * each, each, floor)
 
 
-def forecast_of_samples(run, seconds):
-    """Return the ``Forecast`` of a ``SamplingRun`` from a pilot of some ``seconds``."""
-    part = run.parts["all"]
-    sums, blocks, each = timed(run.sampler.count, seconds)
-    found = _variances(run.scene, run.sampler, sums, blocks)
-    errors = {
-        quantity: math.sqrt(found[quantity][0] / part.planned)
-        for quantity in run.quantities
-        if quantity in found
-    }
-    return Forecast(each * part.planned, part.planned * part.block_events, errors)
-
-
-def _variances(scene, sampler, sums, blocks):
+def variances(scene, sampler, sums, blocks):
     """Return {quantity: (squared relative error of a block, floor)}, without those not known."""
     if scene.discs > 2:
         return _variances_of_weights(scene, sampler, sums, blocks)

@@ -89,16 +89,12 @@ def times_with_errors(sums, replicas):
     return [with_error(*of) for of in zip(estimates, undone, stayed, strict=True)]
 
 
-def by_time(sums):
-    """Return an ``Estimate`` of C = 1 + 2 ⟨Σ s_0 s_k⟩ at each time, from ``hop_sums``.
-
-    Between walls C is ±1 in every replica, so the error is binomial.
-    """
-    return by_total(sums.sum(axis=0), sums.shape[0] * HOPS_OF_BLOCK)
-
-
 def by_total(sums, replicas):
-    """Return the estimates of ``by_time`` from the ``sums`` over all blocks and ``replicas``."""
+    """Return an ``Estimate`` of C = 1 + 2 ⟨Σ s_0 s_k⟩ at each time.
+
+    ``sums`` are those of ``hop_sums`` over all blocks, with a number of ``replicas``. Between walls
+    C is ±1 in every replica, so the error is binomial.
+    """
     net, square = sums[:2] / replicas
     errors = 2 * np.sqrt((square - net**2) / replicas)
     return [
@@ -112,12 +108,6 @@ def are_rare(scene, hop, mean):
     The ``mean`` time is that between hops of two neighbours.
     """
     return quiet_time(scene, hop) <= MOST_IN_GAP * mean
-
-
-def of_order(x):
-    """Return (κ(t)/κ, its derivative), e^(−2x), for x passages in the time on average."""
-    left = math.exp(-2 * x)
-    return left, -2 * left
 
 
 def of_clusters(x, others=0):
@@ -136,8 +126,8 @@ def plateau(estimate, time, mean, law):
     """Return κ, corrected for the passages in a ``time``, from an ``Estimate`` of κ(``time``).
 
     Passages come independently, at the rate κ/τ for the ``mean`` time τ between hops. The ``law``
-    gives the factor by which they reduce the estimate, such as ``of_order``. The result is None if
-    the time has more than ``MOST_MERGED`` passages.
+    gives the factor by which they reduce the estimate, and its derivative, like ``of_clusters``.
+    The result is None if the time has more than ``MOST_MERGED`` passages.
     """
     value, x = estimate.value, estimate.value * time / mean
     if value <= 0 or x > MOST_MERGED:

@@ -1,1 +1,1 @@
-"""Events, effects, the scene, its box and its radii; imports only the standard library."""
+"""Events, effects, the scene and its box; imports only the standard library."""

@@ -17,7 +17,7 @@ from itertools import chain, combinations, combinations_with_replacement
 
 import numpy as np
 
-from twodiscs.model.checks import InputError, check_fraction
+from twodiscs.model.checks import check_fraction
 from twodiscs.model.events import EVENTS
 from twodiscs.theory.plain import RULE
 
@@ -71,44 +71,6 @@ def normal_quantile(confidence):
     from scipy.special import ndtri  # a slow import, and few jobs need it
 
     return float(-ndtri((1 - check_fraction("confidence", confidence)) / 2))
-
-
-def mean_of(values):
-    """Return the mean of independent ``values`` along their first axis, as an ``Estimate``.
-
-    The error comes from their spread. For values in two dimensions the result is a list of
-    estimates, one for each column. Raises ``InputError`` for fewer than two values, which have no
-    spread.
-    """
-    values = np.asarray(values, float)
-    n = len(values)
-    if n < 2:
-        raise InputError(f"values must be at least two, not {n}")
-    means, errors = values.mean(axis=0), np.std(values, axis=0, ddof=1) / math.sqrt(n)
-    if values.ndim == 1:
-        return Estimate(float(means), float(errors), n)
-    return [Estimate(float(m), float(e), n) for m, e in zip(means, errors, strict=True)]
-
-
-class LinearFit:
-    """The straight line through values ``y`` over ``x``, by least squares.
-
-    ``errors`` are the standard errors of ``y``, one for all or one for each. Without them the
-    scatter about the line gives one error for all. ``slope`` is an ``Estimate``, ``constant`` the
-    value at x = 0, ``chi2`` the sum of squared residuals in units of the errors (None without
-    them). If the error of the slope is not known, for two points without errors, it is 0.0.
-    """
-
-    def __init__(self, x, y, errors=None):
-        x, y = np.asarray(x, float), np.asarray(y, float)
-        weights = np.broadcast_to(1.0 if errors is None else 1 / np.asarray(errors, float), x.shape)
-        (slope, self.constant), covariance = np.polyfit(x, y, 1, w=weights, cov="unscaled")
-        residuals = weights * (y - self.constant - slope * x)
-        self.chi2 = None if errors is None else float(residuals @ residuals)
-        scatter = 1.0
-        if errors is None:
-            scatter = float(residuals @ residuals) / (x.size - 2) if x.size > 2 else 0.0
-        self.slope = Estimate(float(slope), math.sqrt(covariance[0, 0] * scatter), x.size)
 
 
 def combination(weights, totals, products, n):

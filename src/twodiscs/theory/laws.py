@@ -1,10 +1,9 @@
-"""Laws of plain scenes in closed form: areas, mean times near the limits, long intervals."""
+"""Laws of plain scenes in closed form: mean times near the limits, short and long intervals."""
 
 import math
-from typing import NamedTuple
 
 from twodiscs.model.checks import InputError, check_choice
-from twodiscs.model.events import DECLARED, EVENTS, HOPS, by_kind
+from twodiscs.model.events import DECLARED, EVENTS, HOPS
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.theory.exact import areas, volume
 from twodiscs.theory.plain import Arc
@@ -18,53 +17,6 @@ def check_plain_scene(scene):
             f"{', '.join(scene.calls_for)}"
         )
     return scene
-
-
-def closed_form(scene):
-    """Return {"volume": V, "areas": {event: area}} from closed forms, in plain doubles.
-
-    These are for reading and for comparisons, and show how closed forms fail. Just above a
-    threshold they can lose half of the digits or more. Near the largest radius, at r = (1 − δ)
-    r_max, they lose all of them (the volume like 1e-16/δ⁴). Use ``volume`` and ``areas`` for
-    numbers.
-    """
-    r = check_plain_scene(scene).radius
-    a, b = scene.range_x / 2, scene.range_y / 2
-    # The angle of the quarter circle within [0, a] × [0, b].
-    angle = math.asin(min(b / r, 1.0)) - math.acos(min(a / r, 1.0))
-
-    def side(a, b):
-        """Return the terms of V, A_coll and two wall areas that appear if discs can pass."""
-        if a >= r:
-            return 64 / 3 * a * r**3 - 8 * r**4, r * r - 2 * a * r, 16 / 3 * r**3, 0.0
-        k = math.sqrt(r * r - a * a)
-        cubic = 8 / 3 * k * (2 * r * r + a * a)
-        return (
-            16 * (a * r) ** 2 - 8 / 3 * a**4 - 4 * b * cubic,
-            2 * b * k - a * a,
-            8 * a * r * r - 8 / 3 * a**3 - 8 * a * b * k,
-            -cubic,
-        )
-
-    (v_x, c_x, own_x, other_x), (v_y, c_y, own_y, other_y) = side(a, b), side(b, a)
-    right = 8 * a * b * b - 8 * b * r * r * angle + own_x + other_y
-    top = 8 * a * a * b - 8 * a * r * r * angle + own_y + other_x
-    sides = {"x": (a, b), "y": (b, a)}
-
-    def hop(event):
-        across, along = sides[event.axis]
-        return 8 * math.sqrt(2) * across * max(along - r, 0.0) ** 2
-
-    areas = {
-        "hop": hop,
-        "collision": lambda event: 16 * math.sqrt(2) * r * (2 * a * b * angle - r * r + c_x + c_y),
-        "wall": lambda event: right if event.axis == "x" else top,
-        "walls": lambda event: 4 * (right + top),
-    }
-    return {
-        "volume": 16 * (a * b) ** 2 - 32 * a * b * r * r * angle + 8 * r**4 + v_x + v_y,
-        "areas": by_kind("theory/laws.py", areas),
-    }
 
 
 def small_radius_time(box, event, radius=0.0):
@@ -135,28 +87,6 @@ def threshold_time(scene, event):
     return one_sided * times[declared.kind]
 
 
-class Law(NamedTuple):
-    """C δ^p with δ the distance below a limiting radius: the leading law of a mean time."""
-
-    limit: float
-    power: int
-    coefficient: float
-
-    def __call__(self, radius):
-        return self.coefficient * (self.limit - radius) ** self.power
-
-
-def leading_law(box, event):
-    """Return the ``Law`` of a mean time in a plain ``Box``, or None if it stays finite."""
-    limit = box.threshold(check_choice("event", event, EVENTS))
-    near, far = (box.scene(limit * (1 - 2.0**-k)) for k in (21, 20))
-    times = [threshold_time(scene, event) for scene in (near, far)]
-    power = round(math.log2(times[1] / times[0]))
-    if not power:
-        return None
-    return Law(limit, power, times[0] / (limit - near.radius) ** power)
-
-
 # Intervals ----------------------------------------------------------------------------------------
 
 
@@ -184,25 +114,6 @@ def density_at_zero(scene, hop):
     return 3 * math.sqrt(2) / (16 * side)
 
 
-def drift_probability(scene, time, axis="x"):
-    """Return the exact probability that discs drift along an ``axis`` in separate rows for a time.
-
-    For "x" it is P(|y1 − y2| ≥ σ throughout ``time``) = 2 A² (B − σ)₊⁴/(π V time²) from the
-    invariant measure, for "y" the same with A ↔ B. It holds for time ≥ 2 (B − σ)₊, the diameter of
-    the square in which the distances between discs and walls move. All drifts that stay in it have
-    |(v1, v2)| ≤ 1, and the density of two components of a unit vector in four dimensions is 1/π
-    there.
-    """
-    check_choice("axis", axis, ("x", "y"))
-    arc = Arc.of(check_plain_scene(scene))
-    along, beyond = arc.range_x, arc.beyond_y
-    if axis == "y":
-        along, beyond = arc.range_y, arc.beyond_x
-    if not time >= 2 * beyond:
-        raise InputError(f"time must be at least {2 * beyond!r}, not {time!r}")
-    return 2 * along**2 * beyond**4 / (math.pi * volume(scene) * time**2)
-
-
 def tail_constant(scene, event):
     """Return C of the tail P(T > t) → C/t³ of the time between events, in time³.
 
@@ -224,7 +135,7 @@ def tail_constant(scene, event):
     and A ↔ B for horizontal hops: a vertical hop is avoided by drifting motions along x only.
 
     Two statements are proved. First, P(none within t) is at least this for t ≥ 2√((A − σ)₊² + (B −
-    σ)₊²), for which the drifts of both axes have exactly this probability (``drift_probability``);
+    σ)₊²), for which the drifts of both axes have exactly this probability;
     for hops it is at least the hop's term. Second, no other family of directions of two or more
     dimensions avoids collisions. Unfolded flights are straight lines on a torus of four dimensions,
     on which the centres coincide on the four planes x1 = ±x2, y1 = ±y2. A plane of directions that

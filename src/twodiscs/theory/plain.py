@@ -8,8 +8,8 @@ volume of configuration space and the areas of the surfaces of events are
     A_coll  = −√2 ∂V/∂σ         A_right = ½ ∂V/∂A           A_top = ½ ∂V/∂B
     A_hop,v = √2 B (A − σ)₊²    A_hop,h = √2 A (B − σ)₊²    A_walls = 4 (A_right + A_top)
 
-Powers and inverse sines (``laws.closed_form``) cancel near the largest radius, and no digit is
-left. Here volume and areas are integrals over the arc of products of A − σ cos θ and B − σ sin θ.
+The powers and inverse sines of closed forms cancel near the largest radius, and no digit is left.
+Here volume and areas are integrals over the arc of products of A − σ cos θ and B − σ sin θ.
 Both factors, and therefore volume and areas, are sums of positive terms. Every length, angle and
 difference that cancels is computed from exact fractions of the given doubles and rounded once.
 """

@@ -37,6 +37,7 @@ from typing import NamedTuple
 
 from twodiscs.model.checks import InputError, check_choice
 from twodiscs.model.events import DECLARED, WALLS
+from twodiscs.model.many import copies
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.theory import plain
 
@@ -140,19 +141,8 @@ def rates(scene, known):
 
 
 def virial_weights(scene):
-    """Return {class of events: weight} with which the rates of a ``Scene`` add up to 1.
-
-    This holds between walls only. On a ring no rate of events gives the force across a line; there
-    ``InputError`` is raised.
-    """
-    if scene.periodic:
-        raise InputError("scene must have walls along x for the virial theorem, but x is periodic")
-    c = 2 * scene.discs * flux_constant(scene.velocity_components)
-    return {
-        "disc_collision": -math.sqrt(2) * scene.contact_distance / c,
-        "right_wall": scene.range_x / c,
-        "top_wall": scene.range_y / c,
-    }
+    """Return ``weights`` of the rates of all events of a class together, as in ``rates``."""
+    return {e: weight / copies(scene, DECLARED[e]) for e, weight in weights(scene).items()}
 
 
 def virial_sum(scene, rates):

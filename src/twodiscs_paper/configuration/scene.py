@@ -3,11 +3,12 @@
 A mistake raises ``InputError`` with the key in the block of the scene.
 """
 
-from twodiscs.model.box import Box, even_radii, radii
+from twodiscs.model.box import Box
 from twodiscs.model.checks import MOST_WITH_VOLUME, PRESETS, InputError, format_number
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.theory.exact import events_per_interval, free_fraction, least_free_fraction
 from twodiscs_paper.configuration.model import Accuracy, Histogram, Watch
+from twodiscs_paper.configuration.radii import even_radii, radii
 from twodiscs_paper.configuration.request import Quantities, SceneRequest
 
 #: Radii of the default hop histograms, over the radius at which the hop becomes blocked.

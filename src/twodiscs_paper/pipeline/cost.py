@@ -166,16 +166,17 @@ def _per_shard(scene, part):
 def forecast(scene, stage, radius):
     """Return the ``Forecast`` of a job from a pilot, and its run."""
     from twodiscs.comparison import cost
+    from twodiscs_paper.pipeline.forecast import Forecast, of_dynamics, of_samples
 
     run = run_at(scene, stage, radius)
     in_shards = bool(shards(scene, stage, radius))
     if stage == "dynamics":
-        return cost.forecast(run, cost.pilots(run, PILOT), in_shards), run
+        return of_dynamics(run, cost.pilots(run, PILOT), in_shards), run
     if stage == "monte_carlo":
-        return cost.forecast_of_samples(run, PILOT), run
+        return of_samples(run, PILOT), run
     part = run.parts["all"]
     each = cost.timed(part.work, PILOT)[-1]
-    return cost.Forecast(each * part.planned, part.planned * part.block_events, {}), run
+    return Forecast(each * part.planned, part.planned * part.block_events, {}), run
 
 
 def _is_short(scene, radius):

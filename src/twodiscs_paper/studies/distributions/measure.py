@@ -23,7 +23,7 @@ from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.two.path import time_to_next
 from twodiscs.model.box import Box, key, stream_seed
 from twodiscs.model.events import HOPS
-from twodiscs.points.estimates import Estimate, mean_of
+from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import (
     draw_configuration,
@@ -33,6 +33,7 @@ from twodiscs.sampling.separations import (
 )
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact, laws
+from twodiscs_paper.studies.estimates import mean_of
 from twodiscs_paper.study import row
 
 #: Independent blocks behind an error bar, and the bins of a histogram of intervals.

@@ -21,7 +21,8 @@ from scipy.integrate import quad
 
 from twodiscs.comparison.transmission import by_clusters
 from twodiscs.model.box import stream_seed
-from twodiscs.points.estimates import Estimate, LinearFit
+from twodiscs.points.estimates import Estimate
+from twodiscs_paper.studies.estimates import LinearFit
 from twodiscs_paper.studies.passages.models import brownian
 from twodiscs_paper.study import row
 

@@ -20,10 +20,9 @@ from twodiscs.comparison.transmission import (
     are_rare,
     box_time,
     by_clusters,
-    by_time,
+    by_total,
     hop_seed,
     of_clusters,
-    of_order,
     plateau,
     quiet_time,
 )
@@ -34,8 +33,9 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
-from twodiscs.points.estimates import Estimate, LinearFit, mean_of
+from twodiscs.points.estimates import Estimate
 from twodiscs.theory import exact, laws
+from twodiscs_paper.studies.estimates import LinearFit, mean_of
 from twodiscs_paper.studies.passages.models import file, limit
 from twodiscs_paper.study import row
 
@@ -99,6 +99,17 @@ LAST = 5
 
 #: The columns that identify one hop, near one threshold, of discs with one moment of inertia.
 HOP = ("scene", "width", "height", "event", "discs", "moment_of_inertia")
+
+
+def by_time(sums):
+    """Return the estimates of ``by_total`` from ``sums``, a row for each block of hops."""
+    return by_total(sums.sum(axis=0), sums.shape[0] * HOPS_OF_BLOCK)
+
+
+def of_order(x):
+    """Return (κ(t)/κ, its derivative), e^(−2x), for x passages in the time on average."""
+    left = math.exp(-2 * x)
+    return left, -2 * left
 
 
 def thresholds(box):

@@ -27,13 +27,14 @@ from twodiscs.model.checks import LARGEST_INTEGER
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
-from twodiscs.points.estimates import LinearFit, mean_of
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import separation_sampler
 from twodiscs.sampling.starts import state_in, states
-from twodiscs.theory import exact, laws
+from twodiscs.theory import exact
 from twodiscs_paper.reference import DIGITS, exact_numbers
+from twodiscs_paper.studies.estimates import LinearFit, mean_of
+from twodiscs_paper.studies.stability.closed_form import closed_form
 from twodiscs_paper.study import row
 
 #: Spacing of doubles at 1.
@@ -201,7 +202,7 @@ def theory_rows(box):
         scene = box.scene(radius)
         true = exact_numbers(scene)
         stable = {"volume": exact.volume(scene)}, exact.areas(scene), exact.mean_times(scene)
-        closed = laws.closed_form(scene)
+        closed = closed_form(scene)
         plain = {"volume": closed["volume"]}, closed["areas"]
         start = start_of("theory", case, radius, distance)
         for quantity, values, due in zip(QUANTITIES, stable, true, strict=True):

@@ -26,12 +26,13 @@ from twodiscs.dynamics.two.follow import across
 from twodiscs.dynamics.two.path import advance, time_to_next
 from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
-from twodiscs.points.estimates import Estimate, mean_of
+from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import draw_configuration, draw_in_disc, separation_sampler
 from twodiscs.sampling.starts import draw_starts, state_in
 from twodiscs.sampling.streams import next_bits, open_stream, uniform
 from twodiscs.theory import exact, laws
+from twodiscs_paper.studies.estimates import mean_of
 from twodiscs_paper.study import row
 
 #: Independent blocks behind an error bar, which then has a relative error of about 7 %.

@@ -6,8 +6,7 @@ from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import BLACK, GREY, LOOKS, name_of
 from twodiscs.model.events import HOPS, SHELLS
 from twodiscs.theory.exact import mean_times
-from twodiscs.theory.laws import leading_law
-from twodiscs_paper.studies.thresholds.measure import near, passages, start
+from twodiscs_paper.studies.thresholds.measure import leading_law, near, passages, start
 
 #: The least distance below the limit, relative to it, and points on a curve.
 NEAREST, POINTS = 2e-5, 80

@@ -10,14 +10,17 @@ value. A reduced exponent is p, and its coefficient C, at all radii.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from twodiscs.comparison.scores import chi2_p
 from twodiscs.model.box import Box
+from twodiscs.model.checks import check_choice
 from twodiscs.model.events import EVENTS
-from twodiscs.points.estimates import Estimate, LinearFit
-from twodiscs.theory.laws import leading_law
+from twodiscs.points.estimates import Estimate
+from twodiscs.theory.laws import threshold_time
+from twodiscs_paper.studies.estimates import LinearFit
 from twodiscs_paper.study import row
 
 #: Fits take radii within this relative distance of the limit, without another limit in between.
@@ -32,6 +35,28 @@ OF_FIT = (
     "scene", "width", "height", "event", "quantity", "form", "limit_radius", "points", "nearest",
     "farthest",
 )  # fmt: skip
+
+
+class Law(NamedTuple):
+    """C δ^p with δ the distance below a limiting radius: the leading law of a mean time."""
+
+    limit: float
+    power: int
+    coefficient: float
+
+    def __call__(self, radius):
+        return self.coefficient * (self.limit - radius) ** self.power
+
+
+def leading_law(box, event):
+    """Return the ``Law`` of a mean time in a plain ``Box``, or None if it stays finite."""
+    limit = box.threshold(check_choice("event", event, EVENTS))
+    near, far = (box.scene(limit * (1 - 2.0**-k)) for k in (21, 20))
+    times = [threshold_time(scene, event) for scene in (near, far)]
+    power = round(math.log2(times[1] / times[0]))
+    if not power:
+        return None
+    return Law(limit, power, times[0] / (limit - near.radius) ** power)
 
 
 def fits(start, law, quantity, radii, times, errors, exact):

@@ -26,10 +26,11 @@ import numpy as np
 
 from twodiscs.dynamics.many import engine
 from twodiscs.dynamics.many.lockstep import HORIZONTAL
-from twodiscs.points.estimates import Estimate, mean_of
+from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.many import initial, insertions
 from twodiscs.theory import channel
 from twodiscs.theory.virial import rates
+from twodiscs_paper.studies.estimates import mean_of
 
 
 def quotient(values, others):

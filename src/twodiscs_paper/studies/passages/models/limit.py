@@ -22,9 +22,9 @@ import math
 
 import numpy as np
 
-from twodiscs.points.estimates import mean_of
 from twodiscs.sampling.jit import compiled, inlined
 from twodiscs.sampling.streams import open_stream, uniform
+from twodiscs_paper.studies.estimates import mean_of
 
 #: The separation below which invariants are kept; for half as much c is the same within 5e-3.
 ADIABATIC = 0.3

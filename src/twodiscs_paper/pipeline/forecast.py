@@ -1,0 +1,57 @@
+"""The time of a job, and the errors that it reaches within its budget, from pilots of its parts."""
+
+import math
+from typing import NamedTuple
+
+from twodiscs.comparison.cost import blocks_wanted, timed, variances
+from twodiscs.comparison.scene_tables import shortfall
+
+
+class Forecast(NamedTuple):
+    """The time and events of a run within its budget; ``reached`` are relative errors by event."""
+
+    seconds: float
+    events: float
+    reached: dict
+
+    def shortfall(self, run):
+        """Return a sentence on the accuracy that a ``CountingRun`` will not reach, or None."""
+        rows = [
+            {
+                "event": event,
+                "target": run.target[event],
+                "relative_stderr": error,
+                "status": "budget" if error > run.target[event] else "reached",
+            }
+            for event, error in self.reached.items()
+        ]
+        return shortfall(rows, run.budget, self.events, self.seconds, "ends")
+
+
+def of_dynamics(run, pilots, planned=False):
+    """Return the ``Forecast`` of a ``CountingRun`` from the ``pilots`` of its parts.
+
+    If its blocks are ``planned``, it does all of these: its jobs are shards.
+    """
+    seconds, events, reached = 0.0, 0.0, {}
+    for name, wanted in blocks_wanted(run.scene, pilots, run.target).items():
+        part, pilot = run.parts[name], pilots[name]
+        affordable = max(1.0, part.budget / max(pilot.events, 1.0))
+        blocks = part.planned if planned else min(wanted, affordable)
+        seconds, events = seconds + blocks * pilot.seconds, events + blocks * pilot.events
+        own = (e for e in pilot.errors if name != "all" or e not in pilots)
+        reached |= {event: pilot.errors[event] / math.sqrt(blocks) for event in own}
+    return Forecast(seconds, events, reached)
+
+
+def of_samples(run, seconds):
+    """Return the ``Forecast`` of a ``SamplingRun`` from a pilot of some ``seconds``."""
+    part = run.parts["all"]
+    sums, blocks, each = timed(run.sampler.count, seconds)
+    found = variances(run.scene, run.sampler, sums, blocks)
+    errors = {
+        quantity: math.sqrt(found[quantity][0] / part.planned)
+        for quantity in run.quantities
+        if quantity in found
+    }
+    return Forecast(each * part.planned, part.planned * part.block_events, errors)
