@@ -18,6 +18,12 @@ class Parser(argparse.ArgumentParser):
         super().__init__(allow_abbrev=False, **options)
         self.words = []
 
+    def add(self, *names, completer=None, **options):
+        """Add an argument, whose values a shell completes by ``completer``, if that is given."""
+        argument = self.add_argument(*names, **options)
+        if completer is not None:
+            argument.completer = completer
+
     def parse_known_args(self, args=None, namespace=None):
         self.words = sys.argv[1:] if args is None else [*args]
         return super().parse_known_args(args, namespace)

@@ -8,6 +8,7 @@ from io import StringIO
 from warnings import simplefilter
 
 import argcomplete
+from argcomplete.completers import ChoicesCompleter
 
 import twodiscs
 from twodiscs.arguments import (
@@ -26,6 +27,14 @@ from twodiscs.model.events import EVENTS
 
 #: The scene of the examples in ``--help``.
 EXAMPLE = "--width 1.5 --height 1 --radius 0.2"
+
+#: {option that several commands have: its settings}
+SHARED = {
+    "--seed": {"type": whole_number, "default": 1, "help": "of the random numbers (1)"},
+    "--name": {"help": "of a scene in a configuration, for its numbers"},
+    "--cores": {"type": whole_number, "default": 1, "help": "to work on (1)"},
+    "--shell": {"type": number, "default": 0.02, "help": "thickness, a fraction (0.02)"},
+}
 
 
 def main():
@@ -61,82 +70,71 @@ def _parser():
     parser.add_argument("--version", action="version", version=version)
     commands = parser.add_subparsers(dest="command", title="commands", metavar="COMMAND")
 
-    def command(name, work, text):
-        command = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
-        add_scene(command)
-        form = command.add_mutually_exclusive_group()
-        form.add_argument("--json", action="store_true", help="print JSON")
-        form.add_argument("--csv", action="store_true", help="print CSV, as the tables of results")
+    def command(name, work, text, **options):
+        description = f"{text[0].upper()}{text[1:]}."
+        command = commands.add_parser(name, help=text, description=description, **options)
         command.set_defaults(work=work)
         return command
 
-    command("exact", _exact, "exact volume, areas and mean times of one scene")
-    simulate = command(
-        "simulate", _simulate, "mean times by molecular dynamics, beside the exact ones"
-    )
-    relative = simulate.add_argument(
-        "--error", type=error, help=f"relative, or {', '.join(PRESETS)} (1e-3)"
-    )
-    relative.completer = argcomplete.ChoicesCompleter(PRESETS)
-    simulate.add_argument(
-        "--duration", type=number, help="the time to simulate, instead of an error"
-    )
-    most = "events at most (those of a day)"
-    simulate.add_argument("--budget", type=whole_number, help=most)
-    events = simulate.add_argument(
-        "--events", nargs="+", metavar="EVENT", help=f"of {', '.join(EVENTS)} (all)"
-    )
-    events.completer = argcomplete.ChoicesCompleter(EVENTS)
-    _seed(simulate)
-    _cores(simulate)
-    sample = command("sample", _sample, "volume and areas by Monte Carlo, beside the exact ones")
-    sample.add_argument(
-        "--samples", type=whole_number, default=10**7, help="at least this number (1e7)"
-    )
-    wanted = sample.add_argument(
-        "--quantities", nargs="+", metavar="QUANTITY", help="volume, <event>_area"
-    )
-    wanted.completer = argcomplete.ChoicesCompleter(("volume", *(f"{e}_area" for e in EVENTS)))
-    sample.add_argument("--shell", type=number, default=0.02, help="thickness, a fraction (0.02)")
-    _seed(sample)
-    _cores(sample)
-    cost = command("cost", _cost, "the processor time of relative errors, by each method")
-    cost.add_argument("--errors", type=error, nargs="+", help="relative (1e-2 1e-3 1e-4 1e-5 1e-6)")
-    cost.add_argument("--shell", type=number, default=0.02, help="thickness, a fraction (0.02)")
-    trajectory = command("trajectory", _trajectory, "one trajectory, event by event")
-    trajectory.add_argument("--duration", type=number, help="a time (some hops of the rarer kind)")
-    trajectory.add_argument(
-        "--start", type=number, nargs="+", metavar="X", help="x1 y1 x2 y2 u1 v1 …"
-    )
-    _seed(trajectory)
+    def of_scene(name, work, text):
+        command_of_scene = command(name, work, text)
+        add_scene(command_of_scene)
+        form = command_of_scene.add_mutually_exclusive_group()
+        form.add_argument("--json", action="store_true", help="print JSON")
+        form.add_argument("--csv", action="store_true", help="print CSV, as the tables of results")
+        return command_of_scene.add
 
-    text = "build a configuration with Snakemake, or some of it"
-    build = commands.add_parser("run", help=text, description=f"{text[0].upper()}{text[1:]}.")
+    of_scene("exact", _exact, "exact volume, areas and mean times of one scene")
+    text = "mean times by molecular dynamics, beside the exact ones"
+    add = of_scene("simulate", _simulate, text)
+    text = f"relative, or {', '.join(PRESETS)} (1e-3)"
+    add("--error", type=error, help=text, completer=ChoicesCompleter(PRESETS))
+    add("--duration", type=number, help="the time to simulate, instead of an error")
+    add("--budget", type=whole_number, help="events at most (those of a day)")
+    text = f"of {', '.join(EVENTS)} (all)"
+    add("--events", nargs="+", metavar="EVENT", help=text, completer=ChoicesCompleter(EVENTS))
+    _add_shared(add, "--seed", "--name", "--cores")
+    text = "volume and areas by Monte Carlo, beside the exact ones"
+    add = of_scene("sample", _sample, text)
+    add("--samples", type=whole_number, default=10**7, help="at least this number (1e7)")
+    known = ChoicesCompleter(("volume", *(f"{event}_area" for event in EVENTS)))
+    text = "volume, <event>_area"
+    add("--quantities", nargs="+", metavar="QUANTITY", help=text, completer=known)
+    _add_shared(add, "--shell", "--seed", "--name", "--cores")
+    text = "the processor time of relative errors, by each method"
+    add = of_scene("cost", _cost, text)
+    add("--errors", type=error, nargs="+", help="relative (1e-2 1e-3 1e-4 1e-5 1e-6)")
+    _add_shared(add, "--shell")
+    add = of_scene("trajectory", _trajectory, "one trajectory, event by event")
+    add("--duration", type=number, help="a time (some hops of the rarer kind)")
+    add("--start", type=number, nargs="+", metavar="X", help="x1 y1 x2 y2 u1 v1 …")
+    _add_shared(add, "--seed", "--name")
+
+    epilog = None
     if sys.argv[1:2] == ["run"]:
         try:
-            build.epilog = f"Targets: {', '.join(_targets())}."
+            epilog = f"Targets: {', '.join(_targets())}."
         except InputError as missing:  # the workflow is not installed
-            build.epilog = f"{missing}."
-    file = build.add_argument("configuration", help="a YAML file; twodiscs new writes one")
-    file.completer = argcomplete.FilesCompleter(("yaml", "yml"))
-    targets = build.add_argument(
-        "targets",
-        nargs="*",
-        default=[],
-        metavar="TARGET",
-        help="a name or a file of results (report)",
-    )
-    targets.completer = _targets
-    cores = "to work on (all, or those of SNAKEMAKE_PROFILE)"
-    build.add_argument("--cores", type=whole_number, help=cores)
+            epilog = f"{missing}."
+    text = "build a configuration with Snakemake, or some of it"
+    add = command("run", _run, text, epilog=epilog).add
+    yaml = argcomplete.FilesCompleter(("yaml", "yml"))
+    add("configuration", help="a YAML file; twodiscs new writes one", completer=yaml)
+    text = "a name or a file of results (report)"
+    add("targets", nargs="*", default=[], metavar="TARGET", help=text, completer=_targets)
+    text = "to work on (all, or those of SNAKEMAKE_PROFILE)"
+    add("--cores", type=whole_number, help=text)
     text = "print a table of the jobs, but run nothing"
-    build.add_argument("-n", "--dry-run", action="store_true", help=text)
-    build.set_defaults(work=_run)
-    text = "write a commented configuration"
-    new = commands.add_parser("new", help=text, description=f"{text[0].upper()}{text[1:]}.")
-    new.add_argument("configuration", help="a new file")
-    new.set_defaults(work=_new)
+    add("-n", "--dry-run", action="store_true", help=text)
+    new = command("new", _new, "write a commented configuration")
+    new.add("configuration", help="a new file")
     return parser
+
+
+def _add_shared(add, *options):
+    """Add options that several commands have."""
+    for option in options:
+        add(option, **SHARED[option])
 
 
 def error(text):
@@ -147,15 +145,6 @@ def error(text):
         allowed = ", ".join(PRESETS)
         message = f"must be a number or one of {allowed}, not {text!r}{decimal_hint(text)}"
         raise argparse.ArgumentTypeError(message) from None
-
-
-def _cores(command):
-    command.add_argument("--cores", type=whole_number, default=1, help="to work on (1)")
-
-
-def _seed(command):
-    command.add_argument("--seed", type=whole_number, default=1, help="of the random numbers (1)")
-    command.add_argument("--name", help="of a scene in a configuration, for its numbers")
 
 
 def _targets(**_):

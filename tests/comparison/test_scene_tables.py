@@ -27,7 +27,6 @@ from twodiscs.comparison.scene_tables import (
     Theory,
     Volume,
     _sampled_row,
-    rows_without_strips,
 )
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
@@ -232,7 +231,7 @@ def test_a_rare_hop_has_the_row_of_its_strip(theory, laws):
     mean = [0.499, 0.501] @ rates
     assert row["relative_stderr"] == pytest.approx(error / mean, rel=1e-9)
     assert row["z"] == pytest.approx((mean / 1.001 - mean) / error, abs=1e-3)
-    (other,) = rows_without_strips(BOX, theory, {"dynamics": [point]})
+    (other,) = MeanTimes.rows(BOX, theory, {"dynamics": [point]}, without_strips=True)
     assert (other["starts"], other["event"]) == ("invariant", "horizontal_hop")
     assert other["count"] == point.counts["horizontal_hop"]
     assert other["replicas"] == point.replicas

@@ -242,7 +242,7 @@ def test_only_rare_hops_of_a_neck_have_strips():
 def test_the_target_is_reached_at_any_distance_from_a_threshold(hop, distance):
     scene = PAPER.with_radius((0.375 if hop == "vertical_hop" else 0.25) * (1 - distance))
     point = runs.count_events(scene, {hop: 0.01}, 10**8, 1)
-    found = point.in_strip(hop)
+    found = point.strips[hop]
     assert all_reached(point)
     assert found.events < 100 * found.replicas
     time = point.estimate(hop)
@@ -274,7 +274,7 @@ def test_a_budget_is_shared_and_spent():
     assert not all_reached(point)
     parts = runs.CountingRun(scene, point.target, 10**7, 1).parts
     planned = {name: part.planned * part.block_events for name, part in parts.items()}
-    of_strip = point.in_strip(hop).events / point.events
+    of_strip = point.strips[hop].events / point.events
     assert of_strip == pytest.approx(planned[hop] / sum(planned.values()), rel=0.2)
     assert 8e6 < point.events < 1.02e7
 

@@ -6,7 +6,7 @@ from figure_cases import BOXES, PAPER, bars, covered, draw, points, simulated, t
 
 from twodiscs.comparison.table import quantity_of
 from twodiscs.figures import curves, radius, style
-from twodiscs.figures.catalogue import FIGURES
+from twodiscs.figures.catalogue import FIGURES, WALL_NAMES
 from twodiscs.model.box import Box
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import small_radius_time
@@ -102,7 +102,7 @@ def test_the_legend_leaves_out_what_is_never_seen():
     with style.context():
         main = draw("mean_wall_time", box, {"mean_times": rows}).axes[0]
     legend = main.get_legend()
-    names = radius.WALL_NAMES["right_wall"], radius.WALL_NAMES["any_wall"]
+    names = WALL_NAMES["right_wall"], WALL_NAMES["any_wall"]
     assert tuple(text.get_text() for text in legend.get_texts()) == names
     shown = [(handle.get_color(), handle.get_marker()) for handle in legend.legend_handles]
     assert shown == [style.SERIES[0], style.SERIES[2]]

@@ -61,15 +61,12 @@ def _comparison(name, quantity, method, values, derived=False):
 def _normal_values(radius, exact, estimate, stderr, z):
     """Return the values of a comparison by a normal law; ``z`` is None without an error bar."""
     status, test = ("too-few", None) if z is None else ("counted", "normal")
-    return {
-        "radius": radius,
-        "exact": exact,
-        "estimate": estimate,
-        "stderr": stderr,
-        "z": z,
-        "status": status,
-        "test": test,
-    }
+    return _values(radius, exact, estimate, stderr, z, status, test)
+
+
+def _values(*values):
+    """Return the ``values`` of a comparison by the names ``TAKEN``."""
+    return dict(zip(TAKEN, values, strict=True))
 
 
 def sum_rule(scene, point):
@@ -186,22 +183,10 @@ def distributions(rows):
     for (quantity, method), z in groups.items():
         n = len(z)
         if n > 1:
-            mean = {
-                "exact": 0.0,
-                "estimate": math.fsum(z) / n,
-                "stderr": 1 / math.sqrt(n),
-                "z": scores.z_mean(z),
-                "test": "normal",
-            }
-            spread = {
-                "exact": 1.0,
-                "estimate": math.sqrt(math.fsum(x * x for x in z) / n),
-                "stderr": None,
-                "z": scores.z_spread(z),
-                "test": "chi-square",
-            }
-            for name, values in (("z_mean", mean), ("z_spread", spread)):
-                values |= {"radius": None, "status": None}
+            mean, size = math.fsum(z) / n, math.sqrt(math.fsum(x * x for x in z) / n)
+            mean = _values(None, 0.0, mean, 1 / math.sqrt(n), scores.z_mean(z), None, "normal")
+            size = _values(None, 1.0, size, None, scores.z_spread(z), None, "chi-square")
+            for name, values in (("z_mean", mean), ("z_spread", size)):
                 tests.append(_comparison(name, quantity, method, values, derived=True))
     return tests
 

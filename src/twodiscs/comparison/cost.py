@@ -13,10 +13,10 @@ import platform
 import time
 from collections.abc import Iterable
 from dataclasses import dataclass
-from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from twodiscs.comparison.result import Printed
 from twodiscs.model.checks import (
     MOST_WITH_VOLUME,
     answering,
@@ -295,7 +295,7 @@ def _price_of_exact(scene):
     yield Price("all of these", "exact", floor**2 * seconds, seconds, floor)
 
 
-class Cost:
+class Cost(Printed):
     """What each quantity of a scene costs by each method; ``cost`` returns one.
 
     It prints as a table: processor times for relative errors, the error of the smallest run, and
@@ -413,20 +413,12 @@ class Cost:
         return pd.DataFrame([[*every, "", ""], *rows], columns=columns)
 
     @property
-    def _note(self):
+    def note(self) -> str:
+        """What the columns of the printed table mean, and where it was measured."""
         return (
             f"Processor time of a relative error, on one core of {self.machine}. Least is the "
             "error of the smallest run; no work removes the floor."
         )
-
-    def __str__(self) -> str:
-        return f"{self.scene}\n\n{self._texts().to_string(index=False)}\n\n{self._note}"
-
-    __repr__ = __str__
-
-    def _repr_html_(self) -> str:
-        table = self._texts().to_html(index=False)
-        return f"<p>{escape(str(self.scene))}</p>{table}<p>{escape(self._note)}</p>"
 
 
 @answering

@@ -9,7 +9,7 @@ from twodiscs.comparison.result import Result, note_of_number, progress_bar, see
 from twodiscs.comparison.scene_tables import HopHistogram
 from twodiscs.model.checks import InputError, answering, check_choice, check_count
 from twodiscs.model.events import HOPS
-from twodiscs.model.scene import check_scene
+from twodiscs.model.scene import Scene, check_scene
 from twodiscs.points.estimates import MIN_EVENTS
 from twodiscs.theory import laws
 
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from twodiscs import Hop
-    from twodiscs.model.scene import Scene
 
 #: Bins resolve how the density of intervals begins if a pair of discs has at most this mean number
 #: of wall hits and collisions in one bin. At .23 to .39 events, extrapolations deviate by less than

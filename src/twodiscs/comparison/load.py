@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from importlib import metadata
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import twodiscs
 from twodiscs.comparison.scene_tables import SCENE_TABLES
@@ -16,9 +16,6 @@ from twodiscs.model.checks import InputError, answering, quote
 from twodiscs.points.base import digest, read_json, with_arrays
 
 if TYPE_CHECKING:
-    from os import PathLike
-    from typing import Any
-
     import pandas as pd
 
     from twodiscs.comparison.measurements import Measurements

@@ -10,7 +10,7 @@ import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -36,8 +36,6 @@ from twodiscs.points.estimates import normal_quantile
 from twodiscs.points.monte_carlo import WALL_AREAS
 
 if TYPE_CHECKING:
-    from typing import Any
-
     import pandas as pd
     from uncertainties import UFloat
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING
@@ -13,17 +14,14 @@ from twodiscs.dynamics.runs import engine_of
 from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, kicks_of, new_wraps, unwrap
 from twodiscs.model.checks import InputError, answering, as_list, check_count, format_number, quote
 from twodiscs.model.many import LARGE
-from twodiscs.model.scene import check_scene
+from twodiscs.model.scene import Scene, check_scene
 from twodiscs.sampling.rounds import in_threads
 from twodiscs.sampling.starts import as_records, components, states
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-
     import pandas as pd
 
     from twodiscs import Axis
-    from twodiscs.model.scene import Scene
 
 #: Replicas with one random stream. ``LARGE`` numbers of discs have the blocks of ``simulate``.
 BLOCK = 4096

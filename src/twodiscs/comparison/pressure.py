@@ -13,17 +13,14 @@ with the rate ν_coll of all collisions: a pressure without wall hits. For two d
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, overload
+from collections.abc import Mapping
+from typing import Any, overload
 
 from twodiscs.comparison.measurements import Measurement, Measurements, derived, table_of
 from twodiscs.model.checks import InputError, quote
 from twodiscs.model.events import AXIS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.theory import exact, virial
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from typing import Any
 
 
 class Pressures(dict):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Unpack
 
 from twodiscs.comparison.scene_tables import Theory
 from twodiscs.model.box import Box
@@ -19,8 +19,6 @@ from twodiscs.model.events import EVENTS
 from twodiscs.theory import exact as theory
 
 if TYPE_CHECKING:
-    from typing import Any, Unpack
-
     import pandas as pd
 
     from twodiscs import Effects

@@ -5,23 +5,42 @@ from __future__ import annotations
 import sys
 from contextlib import contextmanager
 from html import escape
+from os import PathLike
 from typing import TYPE_CHECKING, ClassVar, Self
 
 import twodiscs
 from twodiscs.model.box import Box, key, parameters_of, stream_seed
 from twodiscs.model.checks import InputError, quote, writing_to
-from twodiscs.model.scene import check_scene
+from twodiscs.model.scene import Scene, check_scene
 from twodiscs.points.base import content_of, write_json
 
 if TYPE_CHECKING:
-    from os import PathLike
-
     import pandas as pd
 
-    from twodiscs.model.scene import Scene
+
+class Printed:
+    """The base of objects that print as their ``scene``, a table and maybe a ``note``."""
+
+    scene: Scene
+    note: str | None = None
+
+    def _texts(self) -> pd.DataFrame:
+        """Return the texts of the printed table."""
+        raise NotImplementedError
+
+    def __str__(self) -> str:
+        parts = self.scene, self._texts().to_string(index=False), self.note
+        return "\n\n".join(str(part) for part in parts if part)
+
+    def __repr__(self) -> str:
+        return str(self)
+
+    def _repr_html_(self) -> str:
+        note = f"<p>{escape(self.note)}</p>" if self.note else ""
+        return f"<p>{escape(str(self.scene))}</p>{self._texts().to_html(index=False)}{note}"
 
 
-class Result:
+class Result(Printed):
     """A result and how it was made: ``kind`` is the function of the face that made it.
 
     ``settings`` are its arguments beside the scene, {name: value}, with the seed and the error that
@@ -30,7 +49,6 @@ class Result:
     """
 
     kind: ClassVar[str]
-    scene: Scene
     settings: dict[str, object]
     parts: dict[str, dict]
     version: str = twodiscs.__version__
@@ -134,21 +152,6 @@ class Result:
         """
         with writing_to(path):
             write_json(path, self.to_dict())
-
-    def _texts(self) -> pd.DataFrame:
-        """Return the texts of the printed table."""
-        raise NotImplementedError
-
-    def __str__(self) -> str:
-        parts = self.scene, self._texts().to_string(index=False), self.note
-        return "\n\n".join(str(part) for part in parts if part)
-
-    def __repr__(self) -> str:
-        return str(self)
-
-    def _repr_html_(self) -> str:
-        note = f"<p>{escape(self.note)}</p>" if self.note else ""
-        return f"<p>{escape(str(self.scene))}</p>{self._texts().to_html(index=False)}{note}"
 
 
 def note_of_number(what, asked, done):

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, overload
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Unpack, overload
 
 from twodiscs.comparison.measurements import Measurements, rows_by_quantity, run_simulation
 from twodiscs.comparison.quantities import box_with, scenes_of
@@ -12,9 +12,6 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, answering, quote
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-    from typing import Unpack
-
     import pandas as pd
 
     from twodiscs import Effects, Event
@@ -67,9 +64,6 @@ class Scan(Result, Sequence[Measurements]):
 
     def __len__(self) -> int:
         return len(self.results)
-
-    def __iter__(self) -> Iterator[Measurements]:
-        return iter(self.results)
 
     def __eq__(self, other):
         return self.results == other.results if isinstance(other, Scan) else NotImplemented

@@ -182,14 +182,16 @@ class Areas(Table):
         exact, rows = ExactValues(theory), []
         for point in by_radius(points.get("monte_carlo", ())):
             scene = box.scene(point.radius)
-            for event in EVENTS:
-                if event in areas:
-                    rows += _area_rows(scene, point, event, exact)
+            rows += [
+                row
+                for event in EVENTS
+                if event in areas and (row := _area_row(scene, point, event, exact))
+            ]
         return rows
 
 
-def _area_rows(scene, point, event, exact):
-    """Return a list with the row of an ``event``, empty if the point does not have its area."""
+def _area_row(scene, point, event, exact):
+    """Return the row of an ``event``, None if the point does not have its area."""
     from twodiscs.comparison import scores  # which needs numpy and scipy
 
     quantity = f"{event}_area"
@@ -197,20 +199,20 @@ def _area_rows(scene, point, event, exact):
     if sampled is None and event == "any_wall":
         sampled = point.all_walls(scene)
     if sampled is None:
-        return []
+        return None
     value = exact[scene.radius, quantity]
     if point.method == "insertion":
-        return [_sampled_row(point, quantity, sampled, value, value)]
+        return _sampled_row(point, quantity, sampled, value, value)
     if sampled.epsilon is not None:
         expectation = shell_expectation(scene, event, sampled.epsilon)
-        return [_sampled_row(point, quantity, sampled, value, expectation)]
+        return _sampled_row(point, quantity, sampled, value, expectation)
     # By symmetry, 4 times the sum over two shells, which overlap.
     walls = {wall: point.quantities[f"{wall}_area"] for wall in ("right_wall", "top_wall")}
     hits, measures = zip(*((part.hits, 4 * part.measure) for part in walls.values()), strict=True)
     expectations = [4 * shell_expectation(scene, wall, walls[wall].epsilon) for wall in walls]
     probabilities = [min(e / m, 1.0) for e, m in zip(expectations, measures, strict=True)]
     score = scores.shells_z(hits, point.right_and_top, point.samples, measures, probabilities)
-    return [_sampled_row(point, quantity, sampled, value, sum(expectations), score)]
+    return _sampled_row(point, quantity, sampled, value, sum(expectations), score)
 
 
 def _sampled_score(point, quantity, sampled, expectation):
@@ -322,34 +324,22 @@ class MeanTimes(Table):
     }
 
     @staticmethod
-    def rows(box, theory, points):
+    def rows(box, theory, points, without_strips=False):
         """Return the rows of dynamics points, for the events that they counted.
 
         ``theory`` are the rows of theory.csv, ``points`` is {"dynamics": [point, …]}. A rare hop
-        has the row of its strip; ``rows_without_strips`` has its counts from all initial states.
+        has the row of its strip. The rows ``without_strips`` are those of rare hops alone, with
+        their counts from all initial states.
         """
-        return [
-            _mean_time_row(scene, event, point, exact, point.count(event))
-            for scene, event, point, exact in _counted(box, theory, points)
-        ]
-
-
-def rows_without_strips(box, theory, points):
-    """Return the rows that hops with a strip would have without it, as ``MeanTimes.rows`` does."""
-    return [
-        _mean_time_row(scene, event, point, exact, point.everywhere(event))
-        for scene, event, point, exact in _counted(box, theory, points)
-        if point.in_strip(event)
-    ]
-
-
-def _counted(box, theory, points):
-    """Yield (scene, event, point, exact mean time) for the events that dynamics points counted."""
-    exact = ExactValues(theory)
-    for point in by_radius(points.get("dynamics", ())):
-        scene = box.scene(point.radius)
-        for event in point.counted:
-            yield scene, event, point, exact[point.radius, f"{event}_time"]
+        exact, rows = ExactValues(theory), []
+        for point in by_radius(points.get("dynamics", ())):
+            scene = box.scene(point.radius)
+            for event in point.counted:
+                if event in point.strips or not without_strips:
+                    count = point.everywhere(event) if without_strips else point.count(event)
+                    time = exact[point.radius, f"{event}_time"]
+                    rows.append(_mean_time_row(scene, event, point, time, count))
+        return rows
 
 
 def _mean_time_row(scene, event, point, exact, count):
@@ -360,7 +350,7 @@ def _mean_time_row(scene, event, point, exact, count):
 
     target, copies = point.target[event], scene.copies(event)
     estimate, bound = count.estimate(copies), None
-    if target is None or (count.share == 1 and point.in_strip(event)):
+    if target is None or (count.share == 1 and event in point.strips):
         status = "counted"
     else:
         status = "reached" if estimate and estimate.relative_stderr <= target else "budget"
@@ -594,7 +584,8 @@ class Check(Table):
             box,
             Volume.rows(theory, points),
             Areas.rows(box, theory, points, areas),
-            MeanTimes.rows(box, theory, points) + rows_without_strips(box, theory, points),
+            MeanTimes.rows(box, theory, points)
+            + MeanTimes.rows(box, theory, points, without_strips=True),
             HopHistogram.rows(theory, points),
             points.get("dynamics", ()),
             points.get("monte_carlo", ()),

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from twodiscs.comparison.result import progress_bar, seed_of
 from twodiscs.model.checks import answering, check_count
-from twodiscs.model.scene import check_scene
-
-if TYPE_CHECKING:
-    from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Scene, check_scene
 
 #: The velocity along each axis.
 VELOCITIES = {"x": "u", "y": "v", "z": "w"}

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Sequence
+from os import PathLike
 
 import numpy as np
 import pandas as pd
@@ -13,13 +13,8 @@ from twodiscs.comparison.states import VELOCITIES
 from twodiscs.dynamics.trajectory import DISCS, columns, followed
 from twodiscs.model.box import parameters_of, scene_of
 from twodiscs.model.checks import InputError, answering, as_list, quote, writing_to
+from twodiscs.model.scene import Scene
 from twodiscs.sampling.starts import components
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from os import PathLike
-
-    from twodiscs.model.scene import Scene
 
 
 class Trajectory(pd.DataFrame):
@@ -243,12 +238,16 @@ ROUNDING = 1e-10
 
 def _fly(scene, states, since):
     """Let the discs in ``states``, arrays by component, move freely for the times ``since``."""
-    for axis in scene.axes:
+    for axis, place, velocity in _coordinates(scene):
         falling = scene.field if axis == "y" else 0.0
-        for disc in range(1, scene.discs + 1):
-            place, velocity = f"{axis}{disc}", f"{VELOCITIES[axis]}{disc}"
-            states[place] = states[place] + (states[velocity] - falling * since / 2) * since
-            states[velocity] = states[velocity] - falling * since
+        states[place] = states[place] + (states[velocity] - falling * since / 2) * since
+        states[velocity] = states[velocity] - falling * since
+
+
+def _coordinates(scene):
+    """Return (axis, name of the coordinate, name of its velocity) of all axes and discs."""
+    discs = range(1, scene.discs + 1)
+    return [(axis, f"{axis}{n}", f"{VELOCITIES[axis]}{n}") for axis in scene.axes for n in discs]
 
 
 def require_all_rows(trajectory, scene):
@@ -268,12 +267,10 @@ def require_all_rows(trajectory, scene):
     time, flown = rows["time"], {name: values[:-1] for name, values in rows.items()}
     free = np.diff(time) >= 0
     _fly(scene, flown, np.diff(time))
-    for axis in scene.axes:
-        for disc in range(1, scene.discs + 1):
-            place, velocity = f"{axis}{disc}", f"{VELOCITIES[axis]}{disc}"
-            speeds = np.abs(rows[velocity][:-1]) + np.abs(flown[velocity])
-            scale = scene.side(axis) + np.abs(rows[place][1:]) + speeds * time[1:]
-            free &= np.abs(flown[place] - rows[place][1:]) <= ROUNDING * scale
+    for axis, place, velocity in _coordinates(scene):
+        speeds = np.abs(rows[velocity][:-1]) + np.abs(flown[velocity])
+        scale = scene.side(axis) + np.abs(rows[place][1:]) + speeds * time[1:]
+        free &= np.abs(flown[place] - rows[place][1:]) <= ROUNDING * scale
     if not free.all():
         first = int(free.argmin())
         raise InputError(
@@ -340,18 +337,8 @@ def trajectory(
     known = dict(zip(components(scene), np.array(states).T, strict=True))
     known |= {"time": times, "event": events}
     known |= {name: pd.array(of, "Int64") for name, of in zip(DISCS, discs, strict=True)}
-    names = [name for name in columns(scene.discs) if name in known]
-    frame = Trajectory(
-        {
-            name: known[name]
-            for name in [*names, *(n for n in _by_disc(scene, known) if n not in names)]
-        }
-    )
+    by_disc = sorted(components(scene), key=lambda name: int(name[1:]))
+    names = dict.fromkeys(name for name in (*columns(scene.discs), *by_disc) if name in known)
+    frame = Trajectory({name: known[name] for name in names})
     frame.attrs["scene"] = parameters_of(scene)
     return frame
-
-
-def _by_disc(scene, names):
-    """Return ``names`` of components disc by disc: u1, v1, u2, v2, not u1, u2, v1, v2."""
-    numbers = {str(disc): disc for disc in range(1, scene.discs + 1)}
-    return sorted((n for n in names if n[1:] in numbers), key=lambda name: numbers[name[1:]])

@@ -15,7 +15,7 @@ from twodiscs.dynamics.runs import chains_of, engine_of
 from twodiscs.model.box import Box, key, stream_seed
 from twodiscs.model.checks import InputError, answering, check_count, quote
 from twodiscs.model.events import AXIS
-from twodiscs.model.scene import check_scene
+from twodiscs.model.scene import Scene, check_scene
 from twodiscs.points.base import reached
 from twodiscs.points.estimates import MIN_EVENTS, Estimate
 from twodiscs.sampling.rounds import all_in_rounds, fixed
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from twodiscs import Hop
-    from twodiscs.model.scene import Scene
 
 #: A cluster ends if no hop comes for this number of ``box_time``. Hops that follow each other after
 #: a tenth of that are still correlated. Hops that come later make κ too large, by about 1e-3 at a

@@ -38,17 +38,39 @@ class Caption:
 
 
 @dataclass(frozen=True)
+class Curves:
+    """A figure of quantities over the radius.
+
+    ``names`` maps the quantities, as theory.csv names them, to their names in the legend; the ones
+    in the table are drawn. ``label`` is that of the ordinate. It is logarithmic; if ``rooted``,
+    square roots are drawn instead, from zero on. ``single`` is the name of the method if there is
+    only one series. ``laws`` are limiting laws of plain scenes, "small" and "last". With
+    ``approach`` a panel beneath shows times over the distance from the radius where they end.
+    ``looks`` maps quantities to (colour, marker).
+    """
+
+    names: dict
+    label: str
+    single: str | None = None
+    rooted: bool = False
+    laws: tuple = ()
+    approach: bool = False
+    looks: dict | None = None
+
+
+@dataclass(frozen=True)
 class Entry:
     """A figure: its ``title`` and ``category`` in a report, and its ``own`` ``Caption``.
 
     ``note`` is a caption that several figures have in common. ``tables`` are the names of the
     tables that the figure reads. A figure of no scene also reads the ``main_tables`` of the first
-    scene without effects, if there are any. ``kept`` are the long runs that it reads, {name:
-    path of a table from the root of the sources}. ``needs`` are quantities, named as in theory.csv,
-    or ``hop_histogram`` or ``trajectory``. The figure shows those that the scene computes, and is
-    made if there is at least one. A drawing needs nothing: it takes only the sides of the box, and
-    shows equal discs between walls. The figure is not made for scenes with an effect in
-    ``without``; ``discs`` counts as an effect if there are more than two.
+    scene without effects, if there are any. ``kept`` are the long runs that it reads, {name: path
+    of a table from the root of the sources}. ``needs`` are quantities, named as in theory.csv, or
+    ``hop_histogram`` or ``trajectory``. A figure over the radius has ``curves``. The figure shows
+    those needs that the scene computes, and is made if there is at least one. A drawing needs
+    nothing: it takes only the sides of the box, and shows equal discs between walls. The figure is
+    not made for scenes with an effect in ``without``; ``discs`` counts as an effect if there are
+    more than two.
     """
 
     title: str
@@ -59,6 +81,7 @@ class Entry:
     main_tables: tuple = ()
     kept: dict = field(default_factory=dict)
     needs: frozenset = field(default_factory=frozenset)
+    curves: Curves | None = None
     without: frozenset = field(default_factory=frozenset)
 
     def is_called(self, quantities, effects=()):
@@ -126,15 +149,30 @@ SIMULATED = Caption(
 # The figures --------------------------------------------------------------------------------------
 
 
-def _sampled(title, table, *quantities, own, note=SHELLS, **more):
-    """Return the entry of a figure of ``quantities`` of a ``table`` over the radius."""
-    return Entry(title, SPACE, own, note, tables=(table,), needs=frozenset(quantities), **more)
+def _over_radius(category, table, title, curves, own, note):
+    """Return the entry of a figure of the quantities of ``curves``, which are in a ``table``."""
+    needs = frozenset(curves.names)
+    return Entry(title, category, own, note, tables=(table,), needs=needs, curves=curves)
 
 
-def _mean_times(title, *quantities, own, **more):
+def _sampled(table, title, names, label, own, note=SHELLS, rooted=False):
+    """Return the entry of a figure of volume or areas over the radius."""
+    single = "Monte Carlo" if len(names) == 1 else None
+    return _over_radius(SPACE, table, title, Curves(names, label, single, rooted), own, note)
+
+
+def _mean_times(title, names, label, own, **more):
     """Return the entry of a figure of mean times over the radius."""
-    needs = frozenset(quantities)
-    return Entry(title, DYNAMICS, own, SIMULATED, ("mean_times",), needs=needs, **more)
+    curves = Curves(names, label, **more)
+    return _over_radius(DYNAMICS, "mean_times", title, curves, own, SIMULATED)
+
+
+#: {wall: the name of its hits in a legend}
+WALL_NAMES = {
+    "right_wall": "disc 1, right wall",
+    "top_wall": "disc 1, top wall",
+    "any_wall": "any disc, any wall",
+}
 
 
 def _hop_area(hop, q):
@@ -148,7 +186,11 @@ def _hop_area(hop, q):
         """,
         many="It is the sum over all pairs of discs.",
     )
-    return _sampled(f"Area of {hop} hops", "areas", f"{hop}_hop_area", own=own)
+    title, label = (
+        f"Area of {hop} hops",
+        rf"root of the {hop}-hop area, $\sqrt{{S_{{\mathrm{{{hop[0]}}}}}}}$",
+    )
+    return _sampled("areas", title, {f"{hop}_hop_area": f"{hop} hops"}, label, own, rooted=True)
 
 
 FIGURES = {
@@ -202,10 +244,11 @@ FIGURES = {
         ),
     ),
     "volume": _sampled(
+        "volume",
         "Volume of configuration space",
-        "volume",
-        "volume",
-        own=Caption(
+        {"volume": "volume"},
+        "volume $V$",
+        Caption(
             """
             Volume of configuration space against the radius of the discs: exact (line) and by Monte
             Carlo sampling (symbols).
@@ -216,10 +259,11 @@ FIGURES = {
     "vertical_hop_area": _hop_area("vertical", "y"),
     "horizontal_hop_area": _hop_area("horizontal", "x"),
     "collision_area": _sampled(
-        "Area of disc collisions",
         "areas",
-        "disc_collision_area",
-        own=Caption(
+        "Area of disc collisions",
+        {"disc_collision_area": "disc collisions"},
+        r"collision area $S_{\mathrm{coll}}$",
+        Caption(
             """
             Area of the surface on which the discs touch: exact (line) and from a thin shell outside
             it (symbols).
@@ -228,12 +272,11 @@ FIGURES = {
         ),
     ),
     "wall_area": _sampled(
-        "Areas of wall hits",
         "areas",
-        "right_wall_area",
-        "top_wall_area",
-        "any_wall_area",
-        own=Caption(
+        "Areas of wall hits",
+        {f"{event}_area": name for event, name in WALL_NAMES.items()},
+        "wall area $S$",
+        Caption(
             """
             Areas of the surfaces on which discs touch walls: exact (lines) and from thin shells
             (symbols).
@@ -244,11 +287,10 @@ FIGURES = {
             """,
         ),
     ),
-    "all_areas": _sampled(
+    "all_areas": Entry(
         "Areas of all events",
-        "areas",
-        *(f"{event}_area" for event in (*HOPS, "disc_collision", "right_wall", "top_wall")),
-        own=Caption(
+        SPACE,
+        Caption(
             """
             Areas of surfaces in configuration space: exact (lines) and from thin shells (symbols).
             (a) Collisions of the discs. (b) Hits of walls. (c), (d) Square roots of the areas of
@@ -256,13 +298,18 @@ FIGURES = {
             means that no sample was in the shell of a blocked hop.
             """
         ),
+        SHELLS,
+        tables=("areas",),
+        needs=frozenset(
+            f"{event}_area" for event in (*HOPS, "disc_collision", "right_wall", "top_wall")
+        ),
         without=frozenset({*EFFECTS, "discs"}),
     ),
     "mean_hop_time": _mean_times(
         "Mean times between hops",
-        "vertical_hop_time",
-        "horizontal_hop_time",
-        own=Caption(
+        {"vertical_hop_time": "vertical hops", "horizontal_hop_time": "horizontal hops"},
+        r"mean time between hops $\tau$",
+        Caption(
             """
             Mean times between successive hops: exact (lines) and by event-driven molecular dynamics
             (symbols). Full symbols come from initial states in a strip around the surface of the
@@ -276,11 +323,14 @@ FIGURES = {
             """,
             many="Hops are those of any pair of discs. There is no (b) if no exact value is known.",
         ),
+        laws=("small",),
+        approach=True,
     ),
     "mean_collision_time": _mean_times(
         "Mean time between disc collisions",
-        "disc_collision_time",
-        own=Caption(
+        {"disc_collision_time": "disc collisions"},
+        r"mean time between collisions $\tau_{\mathrm{coll}}$",
+        Caption(
             """
             Mean time between collisions of the discs: exact (line) and by event-driven molecular
             dynamics (symbols).
@@ -291,13 +341,14 @@ FIGURES = {
             """,
             many="Collisions are those of any pair.",
         ),
+        single="MD",
+        laws=("small", "last"),
     ),
     "mean_wall_time": _mean_times(
         "Mean times between wall hits",
-        "right_wall_time",
-        "top_wall_time",
-        "any_wall_time",
-        own=Caption(
+        {f"{event}_time": name for event, name in WALL_NAMES.items()},
+        r"mean time between wall hits $\tau$",
+        Caption(
             """
             Mean times between hits of walls: exact (lines) and by event-driven molecular dynamics
             (symbols).
@@ -314,12 +365,12 @@ FIGURES = {
             side.
             """,
         ),
+        laws=("small", "last"),
     ),
-    "pressure": _mean_times(
+    "pressure": Entry(
         "Pressures and virials",
-        "right_wall_time",
-        "top_wall_time",
-        own=Caption(
+        DYNAMICS,
+        Caption(
             """
             Force of disc 1 on a wall, divided by the force in an ideal gas of one particle
             (dotted): exact (lines) and from the hits that dynamics counted (symbols). Hits transfer
@@ -330,6 +381,9 @@ FIGURES = {
             """,
             plain="Dashed lines in (a) are the limiting laws below the largest radius.",
         ),
+        SIMULATED,
+        tables=("mean_times",),
+        needs=frozenset({"right_wall_time", "top_wall_time"}),
         without=frozenset({"field"}),
     ),
     "hop_histogram": Entry(

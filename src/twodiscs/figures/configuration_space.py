@@ -155,21 +155,13 @@ def _turned(across, along):
     return (along + across) / sqrt(2), (along - across) / sqrt(2)
 
 
-def _strip(axes, half, depth, **options):
-    """Fill the part of the square with |x1 − x2|/√2 < ``depth``."""
-    d = sqrt(2) * depth
-    corners = [(-half, -half), (d - half, -half), (half, half - d)]
-    corners += [(-x, -y) for x, y in corners]
-    axes.add_patch(Polygon(corners, clip_on=False, **options))
-
-
 def _square(axes, half, band, widest, names, letter):
     name, other = names
     quarter = [(0, 0), (half, half), (half, -half)]
     axes.add_patch(Polygon(quarter, facecolor="none", edgecolor="#B8B8B8", hatch="////", lw=0))
-    _strip(axes, half, band, facecolor="#F3E3B5", edgecolor="none")
-    _strip(axes, half, band, facecolor="none", edgecolor="#8C6A00", hatch="....", lw=0)
-    _strip(axes, half, widest, facecolor="none", edgecolor=GREY, lw=0.5, ls=(0, (3, 2)))
+    drawing.band(axes, half, band, facecolor="#F3E3B5", edgecolor="none")
+    drawing.band(axes, half, band, facecolor="none", edgecolor="#8C6A00", hatch="....", lw=0)
+    drawing.band(axes, half, widest, facecolor="none", edgecolor=GREY, lw=0.5, ls=(0, (3, 2)))
     drawing.rectangle(axes, -half, half, -half, half, width=0.9)
 
     tip = sqrt(2) * half
@@ -180,11 +172,7 @@ def _square(axes, half, band, widest, names, letter):
     drawing.label(axes, f"${capital}$", _turned(0, 0.66 * tip), (6, -4), bbox=white)
     drawing.label(axes, f"${name}$", _turned(0.8 * tip, 0), (3, 6), bbox=white)
 
-    drawing.label(axes, f"${name}_1$", (0, -half), (0, -9))
-    drawing.label(axes, f"${name}_2$", (-half, 0), (-10, 0))
-    for end, text in ((-half, f"$-{letter}$"), (half, f"${letter}$")):
-        drawing.label(axes, text, (end, -half), (0, -8))
-        drawing.label(axes, text, (-half, end), (-9, 0))
+    drawing.name_sides(axes, half, name, letter, -10)
     inside = rf"$|{name}|<\sqrt{{2r^2-{other}^2}}$"
     drawing.label(axes, inside, (0.3 * half, half), (0, 10))
     at = _turned(-0.5 * band, 0.8 * tip)

@@ -4,7 +4,10 @@ A panel's coordinates are lengths of the box. Positions on the page are in inche
 label from its object is in points.
 """
 
-from matplotlib.patches import Circle, Rectangle
+from itertools import pairwise
+from math import sqrt
+
+from matplotlib.patches import Circle, Polygon, Rectangle
 
 from twodiscs.figures.style import BLACK, BLUE, COLUMN, GREY, VERMILLION, new_figure
 
@@ -84,6 +87,40 @@ def rectangle(axes, x0, x1, y0, y1, edge=BLACK, face="none", width=0.8, **option
     """Draw the rectangle [x0, x1] × [y0, y1]."""
     settings = {"edgecolor": edge, "facecolor": face, "linewidth": width, "clip_on": False}
     axes.add_patch(Rectangle((x0, y0), x1 - x0, y1 - y0, **settings | options))
+
+
+def band(axes, half, depth, **options):
+    """Fill the part of a square of ±``half`` within a distance ``depth`` of its diagonal."""
+    d = sqrt(2) * depth
+    corners = [(-half, -half), (d - half, -half), (half, half - d)]
+    corners += [(-x, -y) for x, y in corners]
+    axes.add_patch(Polygon(corners, clip_on=False, **options))
+
+
+def name_sides(axes, half, name, end, left):
+    """Name the coordinates of disc 1 and 2 along a square, and its ends, ±``end``.
+
+    The name on the left is ``left`` points from the square.
+    """
+    label(axes, f"${name}_1$", (0, -half), (0, -9))
+    label(axes, f"${name}_2$", (-half, 0), (left, 0))
+    for at, text in ((-half, f"$-{end}$"), (half, f"${end}$")):
+        label(axes, text, (at, -half), (0, -8))
+        label(axes, text, (-half, at), (-9, 0))
+
+
+def dimensions(axes, at, stops, texts, offset, marked=True, beyond=0, **options):
+    """Draw dimension lines between successive ``stops`` along a side, with their ``texts``.
+
+    ``at(along, away)`` is the point at this distance along the side and away from it. If stops are
+    ``marked``, they have thin lines, which go on ``beyond`` the dimension by some points.
+    """
+    point = points(axes)
+    near, far = 4 * point, 11 * point
+    for stop in stops if marked else ():
+        line(axes, [at(stop, near), at(stop, far + beyond * point)], BLACK, 0.4)
+    for (start, stop), text in zip(pairwise(stops), texts, strict=True):
+        dimension(axes, at(start, far), at(stop, far), f"${text}$", offset, **options)
 
 
 def disc(axes, number, centre, radius):

@@ -38,22 +38,14 @@ def draw_model(box):
         centre = (position[0] * a, position[1] * b)
         _disc(axes, number, centre, radius, (radius * speed[0], radius * speed[1]))
 
-    point = drawing.points(axes)
-    near, far = 4 * point, 11 * point
-    for x, y, across, up in (
-        *((x, -top, 0, -1) for x in (-right, right)),
-        *((-right, y, -1, 0) for y in (-top, top)),
-        *((x, top, 0, 1) for x in (0, a)),
-        *((right, y, 1, 0) for y in (0, b)),
+    tall = height > width / 2
+    for at, stops, text, offset, turn in (
+        (lambda x, away: (x, -top - away), (-right, right), "w", (0, -6), 0),
+        (lambda y, away: (-right - away, y), (-top, top), "h", (-6, 0), 0),
+        (lambda x, away: (x, top + away), (0, a), "a=w/2-r", (0, 6), 0),
+        (lambda y, away: (right + away, y), (0, b), "b=h/2-r" if tall else "b", (7, 0), 90 * tall),
     ):
-        ends = [(x + across * d, y + up * d) for d in (near, far + near)]
-        drawing.line(axes, ends, colour="black", width=0.4)
-    drawing.dimension(axes, (-right, -top - far), (right, -top - far), "$w$", (0, -6))
-    drawing.dimension(axes, (-right - far, -top), (-right - far, top), "$h$", (-6, 0))
-    drawing.dimension(axes, (0, top + far), (a, top + far), "$a=w/2-r$", (0, 6))
-    turned = {"rotation": 90 if height > width / 2 else 0}
-    text = "$b=h/2-r$" if height > width / 2 else "$b$"
-    drawing.dimension(axes, (right + far, 0), (right + far, b), text, (7, 0), **turned)
+        drawing.dimensions(axes, at, stops, [text], offset, beyond=4, rotation=turn)
     return figure
 
 
@@ -136,15 +128,10 @@ def _side(axes, name, end, centre, at, offset, **align):
 
     ``at(along, away)`` returns the point at this distance along the side and away from it.
     """
-    point = drawing.points(axes)
-    near, far = 4 * point, 11 * point
     stops, names = (-end, end), (f"{name}=2r",)
     if centre > 0:
         stops, names = (-end, -centre, centre, end), ("r", f"{name}-2r", "r")
-        for stop in stops:
-            drawing.line(axes, [at(stop, near), at(stop, far)], BLACK, 0.4)
-    for (start, stop), text in zip(pairwise(stops), names, strict=True):
-        drawing.dimension(axes, at(start, far), at(stop, far), f"${text}$", offset, **align)
+    drawing.dimensions(axes, at, stops, names, offset, marked=centre > 0, **align)
 
 
 def _map(axes, box):
@@ -332,9 +319,7 @@ def draw_shells(box):
 def _hop(axes, b, epsilon):
     """Draw the square of y1, y2 with the surface y1 = y2 and its shell, which has two sides."""
     d = sqrt(2) * epsilon
-    corners = [(-b, -b), (d - b, -b), (b, b - d)]
-    corners += [(-x, -y) for x, y in corners]
-    axes.add_patch(Polygon(corners, facecolor="#DCEBF5", edgecolor="none"))
+    drawing.band(axes, b, epsilon, facecolor="#DCEBF5", edgecolor="none")
     for shift in (-d, d):
         ends = [(max(-b, shift - b), max(-b, -shift - b)), (min(b, b + shift), min(b, b - shift))]
         drawing.line(axes, ends, width=0.5, style=(0, (3, 2)))
@@ -342,11 +327,7 @@ def _hop(axes, b, epsilon):
     drawing.rectangle(axes, -b, b, -b, b, width=0.9)
     drawing.label(axes, "(a)", (-b, b), (0, 9), ha="left")
     drawing.label(axes, "$y_1=y_2$", (-b, b), (18, 9), ha="left", color=BLUE)
-    drawing.label(axes, "$y_1$", (0, -b), (0, -9))
-    drawing.label(axes, "$y_2$", (-b, 0), (-9, 0))
-    for end, name in ((-b, "$-b$"), (b, "$b$")):
-        drawing.label(axes, name, (end, -b), (0, -8))
-        drawing.label(axes, name, (-b, end), (-9, 0))
+    drawing.name_sides(axes, b, "y", "b", -9)
 
     # ε is a distance in configuration space; along an axis the shell is √2 times wider.
     c, h = -0.3 * b, epsilon / sqrt(2)

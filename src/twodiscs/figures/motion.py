@@ -168,8 +168,7 @@ def world_lines(box, rows, radius=None):
     axis, side = along(box), max(box.width, box.height)
     rows = [row for row in rows if row["event"] not in HOPS][: BENDS * box.discs + 1]
     times = np.array([row["time"] for row in rows])
-    figure = new_figure(2 * LINES_PANEL, layout="constrained")
-    whole, close = figure.subplots(2)
+    figure, (whole, close) = panels.stacked(whole=LINES_PANEL, close=LINES_PANEL)
     shades = colours(box, rows[0])
     whole.set_xlim(times[0], times[-1])
     # A short trajectory has fewer rows than either panel could show.
@@ -192,7 +191,6 @@ def world_lines(box, rows, radius=None):
             close.get_lines(), names, loc="outside lower center", ncols=box.discs, handlelength=1
         )
     panels.title(whole, "a", box, panels.of_radius(radius))
-    panels.title(close, "b")
     if box.discs > LINES:
         close.set_title(f"{LINES} of the discs", loc="right", pad=3)
     return figure
@@ -222,8 +220,7 @@ SYMBOLS, SYMBOLS_SHORT = 1.2, 0.4
 
 def draw_hop_histogram(box, rows):
     """Draw the densities of hop_histogram.csv, in units of the mean interval (``unit_of``)."""
-    figure = new_figure(ALL + SHORT, layout="constrained")
-    whole, short = figure.subplots(2, height_ratios=[ALL, SHORT])
+    figure, (whole, short) = panels.stacked(whole=ALL, short=SHORT)
     groups = [list(group) for _, group in groupby(rows, key=lambda row: row["radius"])]
     radii = panels.numbers([group[0]["radius"] for group in groups])
     low, last = 0.1, 1.0
@@ -254,7 +251,6 @@ def draw_hop_histogram(box, rows):
     short.set_ylim(0, None)
     whole.legend(loc="upper right")
     panels.title(whole, "a", box, f",  {name_of(rows[0]['event'])}")
-    panels.title(short, "b")
     return figure
 
 

@@ -1,12 +1,13 @@
 """Figures over the radius: volume, areas, mean times and pressures against exact curves."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.lines import Line2D
 
 from twodiscs.comparison.table import quantity_of
 from twodiscs.figures import curves, panels
+from twodiscs.figures.catalogue import FIGURES, Curves
 from twodiscs.figures.curves import hop_ends, limits
 from twodiscs.figures.style import BLACK, LOOKS, SERIES, name_of, new_figure
 from twodiscs.model.checks import InputError
@@ -20,38 +21,6 @@ SMALL, LAST = 0.4, 0.1
 #: The panel of an approach begins this close to the end, relatively; its law is drawn from LAW on.
 CLOSEST, LAW = 1e-5, 0.3
 
-WALL_NAMES = {
-    "right_wall": "disc 1, right wall",
-    "top_wall": "disc 1, top wall",
-    "any_wall": "any disc, any wall",
-}
-
-
-@dataclass(frozen=True)
-class Curves:
-    """A figure of quantities over the radius.
-
-    ``names`` maps the quantities, as theory.csv names them, to their names in the legend; the ones
-    in the table are drawn. ``label`` is that of the ordinate. It is logarithmic; if ``rooted``,
-    square roots are drawn instead, from zero on. ``single`` is the name of the method if there is
-    only one series. ``laws`` are limiting laws of plain scenes, "small" and "last". With
-    ``approach`` a panel beneath shows times over the distance from the radius where they end.
-    ``looks`` maps quantities to (colour, marker).
-    """
-
-    names: dict
-    label: str
-    single: str | None = None
-    rooted: bool = False
-    laws: tuple = ()
-    approach: bool = False
-    looks: dict | None = None
-
-
-def _one(quantity, name, label, **options):
-    """Return the ``Curves`` of one sampled quantity."""
-    return Curves({quantity: name}, label, single="Monte Carlo", **options)
-
 
 def _every(kind, label):
     """Return the ``Curves`` of one kind of quantity, "time" or "area", for all events."""
@@ -60,43 +29,7 @@ def _every(kind, label):
 
 
 #: The figures by their names. ``mean_times`` and ``areas`` show all events in one panel.
-OVER_RADIUS = {
-    "volume": _one("volume", "volume", "volume $V$"),
-    "vertical_hop_area": _one(
-        "vertical_hop_area",
-        "vertical hops",
-        r"root of the vertical-hop area, $\sqrt{S_{\mathrm{v}}}$",
-        rooted=True,
-    ),
-    "horizontal_hop_area": _one(
-        "horizontal_hop_area",
-        "horizontal hops",
-        r"root of the horizontal-hop area, $\sqrt{S_{\mathrm{h}}}$",
-        rooted=True,
-    ),
-    "collision_area": _one(
-        "disc_collision_area", "disc collisions", r"collision area $S_{\mathrm{coll}}$"
-    ),
-    "wall_area": Curves(
-        {f"{event}_area": name for event, name in WALL_NAMES.items()}, "wall area $S$"
-    ),
-    "mean_hop_time": Curves(
-        {"vertical_hop_time": "vertical hops", "horizontal_hop_time": "horizontal hops"},
-        r"mean time between hops $\tau$",
-        laws=("small",),
-        approach=True,
-    ),
-    "mean_collision_time": Curves(
-        {"disc_collision_time": "disc collisions"},
-        r"mean time between collisions $\tau_{\mathrm{coll}}$",
-        single="MD",
-        laws=("small", "last"),
-    ),
-    "mean_wall_time": Curves(
-        {f"{event}_time": name for event, name in WALL_NAMES.items()},
-        r"mean time between wall hits $\tau$",
-        laws=("small", "last"),
-    ),
+OVER_RADIUS = {name: entry.curves for name, entry in FIGURES.items() if entry.curves} | {
     "mean_times": _every("time", r"mean time $\tau$"),
     "areas": _every("area", "area $S$"),
 }
@@ -112,26 +45,32 @@ def draw(name, box, rows):
     radii, by_quantity = series_of(box, rows, shown.names, shown.looks or {})
     if not by_quantity:
         raise InputError(f"the table of {name} has no row of {', '.join(shown.names)}")
-    if shown.rooted:
-        by_quantity = {quantity: _rooted(part) for quantity, part in by_quantity.items()}
-    series = list(by_quantity.values())
-    drawn = [row for part in series for row in part.rows]
+    drawn = [row for part in by_quantity.values() for row in part.rows]
     beneath = shown.approach and not _is_unknown(drawn)
     figure, main, residuals, approach = panels.over_radius(
         box, shown.label, any(map(panels.is_judged, drawn)), beneath
     )
-    panels.draw_series(main, residuals, radii, series, bool(shown.single))
     for quantity in by_quantity:
         _laws(main, box, quantity.removesuffix("_time"), shown.laws)
-    if shown.rooted:
-        main.set_ylim(0, None)
-    else:
-        panels.logarithmic(main, radii, series)
+    series = _draw_series(main, residuals, radii, shown, by_quantity)
     laws = [(panels.LAW_NAME, panels.LAW)] if shown.laws and box.is_plain else []
     panels.legend(main, series, shown.single, laws)
     if beneath:
         _approach(approach, box, by_quantity)
     return figure
+
+
+def _draw_series(main, lower, radii, shown, by_quantity):
+    """Draw the ``Series`` {quantity: series} that the ``Curves`` ``shown`` name; return them."""
+    series = [part for quantity, part in by_quantity.items() if quantity in shown.names]
+    if shown.rooted:
+        series = [_rooted(part) for part in series]
+    panels.draw_series(main, lower, radii, series, bool(shown.single))
+    if shown.rooted:
+        main.set_ylim(0, None)
+    elif series:
+        panels.logarithmic(main, radii, series)
+    return series
 
 
 #: The figures that ``draw_areas`` shows beside and beneath each other, and inches.
@@ -158,16 +97,9 @@ def draw_areas(box, rows):
     for i, name in enumerate(AREAS):
         main, lower = axes[2 * (i // 2) : 2 * (i // 2) + 2, i % 2]
         shown = OVER_RADIUS[name]
-        series = [part for quantity, part in found.items() if quantity in shown.names]
-        if shown.rooted:
-            series = [_rooted(part) for part in series]
         main.set_label(name)
         lower.set_label(f"residuals of {name}")
-        panels.draw_series(main, lower, radii, series, bool(shown.single))
-        if shown.rooted:
-            main.set_ylim(0, None)
-        elif series:
-            panels.logarithmic(main, radii, series)
+        series = _draw_series(main, lower, radii, shown, found)
         panels.scale_residuals(lower)
         panels.mark([main, lower], limits(box))
         panels.legend(main, series, shown.single)

@@ -173,16 +173,7 @@ def save(figure, path, origin=None):
 
 
 #: (colour, marker) of the events in their order; all colours differ, and all markers.
-_LOOKS = (
-    (BLUE, "o"),
-    (VERMILLION, "s"),
-    (GREEN, "^"),
-    (PURPLE, "D"),
-    (ORANGE, "v"),
-    (SKY, "P"),
-    (PURPLE, "v"),
-    (GREEN, "D"),
-)
+_LOOKS = (*SERIES, (ORANGE, "v"), (SKY, "P"), (PURPLE, "v"), (GREEN, "D"))
 if len(EVENTS) > len(_LOOKS):
     raise TypeError(f"figures/style.py has {len(_LOOKS)} looks, too few for {len(EVENTS)} events")
 

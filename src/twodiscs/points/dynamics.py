@@ -152,13 +152,9 @@ class DynamicsPoint(Point):
             squares=self.products[f"{event}*{event}"],
         )
 
-    def in_strip(self, event):
-        """Return the ``StripCount`` of a rare hop, None of any other event."""
-        return self.strips.get(event)
-
     def count(self, event):
         """Return the best ``Count`` of an event, from its strip if there is one."""
-        return self.in_strip(event) or self.everywhere(event)
+        return self.strips.get(event) or self.everywhere(event)
 
     def estimate(self, event, copies=1):
         """Return the mean time of ``event`` as an ``Estimate`` (see ``Count.estimate``)."""

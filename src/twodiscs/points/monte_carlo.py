@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
-from itertools import combinations
+from itertools import permutations
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -163,27 +163,22 @@ class InsertionPoint(SampledPoint):
         """Return the point of the ``parts`` of a run: Σ w, then the rows of Σ w_a w_b."""
         part = parts["all"]
         ((sums, *products),), blocks = reached(part["sums"])
-        # A file has its keys sorted; only products of the order of places were summed.
-        places = {
-            name: one["place"]
-            for name, one in sorted(part["quantities"].items(), key=lambda item: item[1]["place"])
-        }
+        sampled = part["quantities"]
+        places = {name: one["place"] for name, one in sampled.items()}
         return cls(
             radius=radius,
             method=part["method"],
             samples=blocks * part["samples"],
             unit=part["unit"],
             quantities={
-                name: Weights(
-                    int(sums[one["place"]]),
-                    int(products[one["place"]][one["place"]]),
-                    one["measure"],
-                )
-                for name, one in part["quantities"].items()
+                name: Weights(int(sums[k]), int(products[k][k]), sampled[name]["measure"])
+                for name, k in places.items()
             },
+            # A file has its keys sorted; only products in the order of places were summed.
             products={
                 f"{a}*{b}": int(products[i][k])
-                for (a, i), (b, k) in combinations(places.items(), 2)
+                for (a, i), (b, k) in permutations(places.items(), 2)
+                if i < k
             },
             parts=parts,
         )

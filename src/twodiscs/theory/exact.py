@@ -88,13 +88,10 @@ def volume(scene: Scene) -> float:
 
 
 def areas(scene: Scene) -> dict[str, float]:
-    """Return {event: area of its surface in configuration space} of a ``Scene``, in length³.
+    """Return {event: area of its surface in configuration space} of a ``Scene``.
 
-    Keys are ``EVENTS`` in their order. An area is exactly 0.0 if the event is impossible or does
-    not exist in the scene. The area of all walls is 4 (right + top) in a plain scene. Areas are in
-    length⁵ for balls; they have a factor 1/√mass (1 for disc 1), and the weight
-    (1 − U/E)₊^((D − 1)/2) in a field (see ``volume``). For more than two discs an area is None if
-    no exact value is known. Accuracy and exceptions are those of ``volume``."""
+    ``td.areas`` says what the areas are.
+    """
     return dict(theory_of(scene).areas(scene))
 
 
@@ -165,15 +162,10 @@ def events_per_interval(scene, hop):
 
 
 def mean_times(scene: Scene) -> dict[str, float | None]:
-    """Return {event: mean time between two of them}, for disc 1 of mass 1 and total energy 1/2.
+    """Return {event: mean time between two of them} of a ``Scene``.
 
-    Keys are ``EVENTS`` in their order, values lengths over unit speed, or None if the event is
-    impossible. Wall times are times of disc 1 on the trajectories that can reach the wall. If a
-    blocked hop keeps disc 1 from it in one half of configuration space, they fill the other half.
-    If a larger disc 1 stays on its side and still reaches both walls, the time is one over the mean
-    of its two rates. For more than two discs a time is also None if no exact value is known, and
-    wall times are averages over all initial conditions. Accuracy and exceptions are those of
-    ``volume``."""
+    ``td.mean_times`` says what the times are.
+    """
     rates = {event: rate(scene, event) for event in EVENTS}
     return {
         event: scene.accessible_fraction(event) / value if value else None
@@ -182,11 +174,7 @@ def mean_times(scene: Scene) -> dict[str, float | None]:
 
 
 def exact(scene: Scene) -> Exact:
-    """Return all exact numbers of a ``Scene`` as one dict, ready for JSON.
-
-    Keys: regime, ergodic_components, largest_radius, volume, areas, mean_times. Values that are not
-    known for more than two discs are None.
-    """
+    """Return all exact numbers of a ``Scene``, as ``td.exact`` does, but by events."""
     return {
         "regime": check_scene(scene).regime,
         "ergodic_components": scene.ergodic_components,
