@@ -187,8 +187,8 @@ def test_kicks_have_other_random_numbers_than_initial_states():
 @pytest.mark.parametrize("discs", [2, 3])
 def test_states_of_two_blocks_are_kicked_as_those_of_one_that_is_twice_as_large(discs):
     scene = Scene(1.5, 1.0, 0.1, discs=discs, friction=2.0)
-    whole = trajectory.kicks_of(scene, 8, 3).waits
-    assert np.array_equal(trajectory.kicks_of(scene, 4, 3, block=1).waits, whole[4:])
+    whole = trajectory.path_of(scene).kicks_of(scene, 8, 3).waits
+    assert np.array_equal(trajectory.path_of(scene).kicks_of(scene, 4, 3, block=1).waits, whole[4:])
     assert len({*whole}) == 8
 
 

@@ -393,24 +393,16 @@ class Cost(Printed):
         """Return the texts of the printed table."""
         import pandas as pd
 
+        def times(seconds):
+            return [format_seconds(seconds(error)) for error in self.errors]
+
+        rows = [["all mean times", "simulate", *times(self.seconds), "", ""]]
+        for price in self.prices:
+            least = format_number(price.least_error, ".1e") if price.least_error < 1 else "–"
+            floor = format_number(price.floor, ".1e") if price.floor else ""
+            rows.append([price.quantity, price.method, *times(price.seconds), least, floor])
         names = [format_number(error, "g") for error in self.errors]
-        rows = [
-            [
-                price.quantity,
-                price.method,
-                *(format_seconds(price.seconds(error)) for error in self.errors),
-                format_number(price.least_error, ".1e") if price.least_error < 1 else "–",
-                format_number(price.floor, ".1e") if price.floor else "",
-            ]
-            for price in self.prices
-        ]
-        every = [
-            "all mean times",
-            "simulate",
-            *(format_seconds(self.seconds(e)) for e in self.errors),
-        ]
-        columns = ["quantity", "method", *names, "least", "floor"]
-        return pd.DataFrame([[*every, "", ""], *rows], columns=columns)
+        return pd.DataFrame(rows, columns=["quantity", "method", *names, "least", "floor"])
 
     @property
     def note(self) -> str:

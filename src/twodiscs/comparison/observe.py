@@ -11,7 +11,7 @@ import numpy as np
 
 from twodiscs.comparison.result import note_of_number, progress_bar, seed_of
 from twodiscs.dynamics.runs import engine_of
-from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, kicks_of, new_wraps, unwrap
+from twodiscs.dynamics.trajectory import MOST_EVENTS, path_of
 from twodiscs.model.checks import InputError, answering, as_list, check_count, format_number, quote
 from twodiscs.model.many import LARGE
 from twodiscs.model.scene import Scene, check_scene
@@ -245,18 +245,18 @@ def averages(
             f"{format_number(MOST_EVENTS, 'g')} events are due, not {format_number(times[-1], 'g')}"
         )
 
-    steps = np.diff(times, prepend=0.0)
+    steps, path = np.diff(times, prepend=0.0), path_of(scene)
 
     def snapshots(block):
         """Yield (states at time 0, states at a time) of a block, for all ``times``."""
-        filled, wraps = states(scene, each, stream, block), new_wraps(scene, each)
-        kicks = kicks_of(scene, each, stream, block)
+        filled, wraps = states(scene, each, stream, block), path.new_wraps(scene, each)
+        kicks = path.kicks_of(scene, each, stream, block)
         start = as_records(scene, filled)
         for step in steps:
             if step:
-                advance_all(scene, filled, wraps, step, kicks)
+                path.advance_all(scene, filled, wraps, step, kicks)
             now = as_records(scene, filled)
-            unwrap(scene, now, wraps)
+            path.unwrap(scene, now, wraps)
             yield start, now
 
     def moments(block, first, found, before):
@@ -274,11 +274,11 @@ def averages(
     with progress_bar(progress, f"observe r = {scene.radius:g}") as progress:
         for low in range(0, blocks, abreast):
             numbers = range(low, min(low + abreast, blocks))
-            paths = [*map(snapshots, numbers)] if in_pieces else map(snapshots, numbers)
+            series = [*map(snapshots, numbers)] if in_pieces else map(snapshots, numbers)
             parts = {}
             for first in range(0, times.size, together):
-                calls = ((path,) for path in paths)
-                every = in_threads(lambda path: [*islice(path, together)], calls, cores)
+                calls = ((of_block,) for of_block in series)
+                every = in_threads(lambda of_block: [*islice(of_block, together)], calls, cores)
                 for block, found in zip(numbers, every, strict=True):
                     before = parts[block][-1][0] if first else None
                     part = moments(block, first, found, before)

@@ -72,10 +72,8 @@ def terms(scene):
     found["wall_pressure"] = 0.0, mean
     if (weights := virial.weights(scene)) is not None:
         kinetic = 2 * n * kt / norm
-        found["virial_pressure"] = (
-            kinetic,
-            {"disc_collision": -kinetic * weights["disc_collision"]},
-        )
+        collisions = {"disc_collision": -kinetic * weights["disc_collision"]}
+        found["virial_pressure"] = kinetic, collisions
     ideal = n * kt / volume
     found["ideal_pressure"] = ideal, {}
     ratio = {wall: factor / ideal for wall, factor in mean.items()}

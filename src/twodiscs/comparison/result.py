@@ -209,11 +209,13 @@ def progress_bar(progress, what):
 
 
 def seed_of(scene, method, seed, name):
-    """Return the seed of the random streams of one job, as the pipeline derives it.
+    """Return the seed of the random streams of one job, as the pipeline derives it."""
+    return stream_seed(seed, stream_name(scene, name), method, key(scene.radius))
 
-    ``name`` is the name of the scene in a configuration; None means the parameters of the box.
-    """
+
+def stream_name(scene, name):
+    """Return the name of a scene in its seeds: the parameters of its box if ``name`` is None."""
     box = Box.of(check_scene(scene)).parameters()
     if name is not None and not isinstance(name, str):
-        raise InputError(f"name must be the name of a scene, not {name!r}")
-    return stream_seed(seed, repr(box) if name is None else name, method, key(scene.radius))
+        raise InputError(f"name must be the name of a scene, not {quote(name)}")
+    return repr(box) if name is None else name

@@ -491,7 +491,7 @@ def _mean_interval(point, exact):
     }
 
 
-def _trajectory_columns(discs):
+def trajectory_columns(discs):
     """Return the columns for a number of ``discs``."""
     numbers = range(1, discs + 1)
     return {
@@ -516,20 +516,27 @@ class Trajectory(Table):
     periodic axes centres go on beyond the cell.
     """
 
-    columns = _trajectory_columns(2)
+    columns = trajectory_columns(2)
 
     @classmethod
     def columns_of(cls, names):
         """Return the columns; their ``names`` say how many discs there are."""
         discs = sum(name[0] == "x" and name[1:].isdigit() for name in names)
-        return _trajectory_columns(max(discs, 2))
+        return trajectory_columns(max(discs, 2))
 
     @staticmethod
     def rows(box, radius, seed):
         """Return the events of one trajectory in a ``Box``, in order."""
-        from twodiscs.dynamics.trajectory import trajectory_rows  # which compiles
+        from twodiscs.dynamics.trajectory import followed  # which compiles
+        from twodiscs.sampling.starts import components
 
-        return trajectory_rows(box.scene(radius), seed)
+        scene, rows = box.scene(radius), []
+        parts, columns = components(scene), trajectory_columns(scene.discs)
+        for time, event, first, second, state in followed(scene, seed):
+            known = dict(zip(parts, map(float, state), strict=True))
+            known |= {"time": time, "event": event, "first": first, "second": second}
+            rows.append({name: known.get(name) for name in columns})
+        return rows
 
 
 # Checks and cost ----------------------------------------------------------------------------------

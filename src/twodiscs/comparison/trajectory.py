@@ -9,8 +9,9 @@ import numpy as np
 import pandas as pd
 
 from twodiscs.comparison.result import progress_bar, seed_of
+from twodiscs.comparison.scene_tables import trajectory_columns
 from twodiscs.comparison.states import VELOCITIES
-from twodiscs.dynamics.trajectory import DISCS, columns, followed
+from twodiscs.dynamics.trajectory import followed
 from twodiscs.model.box import parameters_of, scene_of
 from twodiscs.model.checks import InputError, answering, as_list, quote, writing_to
 from twodiscs.model.scene import Scene
@@ -336,9 +337,13 @@ def trajectory(
     times, events, *discs, states = zip(*rows, strict=True)
     known = dict(zip(components(scene), np.array(states).T, strict=True))
     known |= {"time": times, "event": events}
-    known |= {name: pd.array(of, "Int64") for name, of in zip(DISCS, discs, strict=True)}
+    known |= {
+        name: pd.array(of, "Int64") for name, of in zip(("first", "second"), discs, strict=True)
+    }
     by_disc = sorted(components(scene), key=lambda name: int(name[1:]))
-    names = dict.fromkeys(name for name in (*columns(scene.discs), *by_disc) if name in known)
+    names = dict.fromkeys(
+        name for name in (*trajectory_columns(scene.discs), *by_disc) if name in known
+    )
     frame = Trajectory({name: known[name] for name in names})
     frame.attrs["scene"] = parameters_of(scene)
     return frame

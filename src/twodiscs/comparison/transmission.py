@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from twodiscs.comparison.result import Result, note_of_number, progress_bar
+from twodiscs.comparison.result import Result, note_of_number, progress_bar, stream_name
 from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK
 from twodiscs.dynamics.runs import chains_of, engine_of
-from twodiscs.model.box import Box, key, stream_seed
-from twodiscs.model.checks import InputError, answering, check_count, quote
+from twodiscs.model.box import key, stream_seed
+from twodiscs.model.checks import answering, check_count
 from twodiscs.model.events import AXIS
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.points.base import reached
@@ -350,13 +350,10 @@ def run_transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=
     """Return the ``Transmission`` of ``transmission``; the parts ``kept`` are not done again."""
     passages_of(check_scene(scene)).require_coefficient(scene, hop)
     blocks = -(-check_count("hops", hops, most=10**9) // HOPS_OF_BLOCK)
-    if name is not None and not isinstance(name, str):
-        raise InputError(f"name must be the name of a scene, not {quote(name)}")
-    named = repr(Box.of(scene).parameters()) if name is None else name
     mean, gap = exact.mean_times(scene)[hop], quiet_time(scene, hop)
     neighbour_mean, others = passages_of(scene).neighbours(scene, hop)
     times = tuple(box_time(scene, hop) * time for time in TIMES)
-    runs = parts_of(scene, hop, neighbour_mean, gap, times, blocks, named, seed)
+    runs = parts_of(scene, hop, neighbour_mean, gap, times, blocks, stream_name(scene, name), seed)
     settings = {"hop": hop, "hops": int(hops), "seed": int(seed), "name": name}
     with progress_bar(progress, f"transmission r = {scene.radius:g}") as progress:
         found = all_in_rounds(runs, progress, cores, kept or {})

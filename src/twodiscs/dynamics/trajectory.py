@@ -1,9 +1,4 @@
-"""One trajectory, event by event.
-
-Every scene has the same columns: time, the centres of all discs, the event, the centres along z,
-and the discs of the event. Along periodic axes centres go on beyond the box. ``two.path`` follows
-two discs, ``many.path`` more.
-"""
+"""One trajectory, event by event: ``two.path`` follows two discs, ``many.path`` more."""
 
 from itertools import islice, repeat
 
@@ -24,51 +19,22 @@ MOST_EVENTS = 1e7
 #: Rows that are made at a time: some hundredths of a second.
 ROWS = 1000
 
-#: The columns of the discs of an event: first < second, None without a disc.
-DISCS = ("first", "second")
-
-
-def columns(discs=2):
-    """Return the names of the columns of a trajectory of a number of ``discs``."""
-    numbers = range(1, discs + 1)
-    centres = (f"{axis}{disc}" for disc in numbers for axis in "xy")
-    return ("time", *centres, "event", *(f"z{disc}" for disc in numbers), *DISCS)
-
 
 def path_of(scene):
-    """Return the module that follows one path of a ``Scene``: of two discs, or of many."""
+    """Return the module that follows one path of a ``Scene``: of two discs, or of many.
+
+    Its ``advance_all(scene, states, wraps, time, kicks)`` advances the columns of ``states`` by a
+    ``time`` > 0; each centre stays in its cell. ``wraps``, from ``new_wraps(scene, number)``, count
+    how often a centre was moved back along a periodic axis. ``unwrap(scene, columns, wraps)`` adds
+    these moves to the centres in ``columns``, arrays by name. ``kicks_of(scene, number, seed,
+    block)`` returns the kicks of the states of a block, from the streams of ``seed``; they go on
+    from one call to the next, and are None without friction.
+    """
     if check_scene(scene).discs > 2:
         from twodiscs.dynamics.many import path
     else:
         from twodiscs.dynamics.two import path
     return path
-
-
-def new_wraps(scene, number):
-    """Return an array in which ``advance_all`` counts, for ``number`` states of a ``Scene``."""
-    return path_of(scene).new_wraps(scene, number)
-
-
-def kicks_of(scene, number, seed, block=0):
-    """Return the kicks of ``number`` states for ``advance_all``; None without friction.
-
-    They come from the streams of ``seed`` for the states of a ``block`` of this ``number``.
-    """
-    return path_of(scene).kicks_of(scene, number, seed, block)
-
-
-def advance_all(scene, states, wraps, time, kicks=None):
-    """Advance the columns of ``states`` by a ``time`` > 0; each centre stays in its cell.
-
-    ``wraps`` (``new_wraps``) counts how often a centre was moved back along a periodic axis.
-    ``kicks`` (``kicks_of``) go on from one call to the next.
-    """
-    path_of(scene).advance_all(scene, states, wraps, time, kicks)
-
-
-def unwrap(scene, columns, wraps):
-    """Add to the centres in ``columns``, arrays by name, what ``advance_all`` took from them."""
-    path_of(scene).unwrap(scene, columns, wraps)
 
 
 def events_of(scene, state, duration, seed=0):
@@ -89,16 +55,6 @@ def state_of(scene, start):
     another energy than 1/2.
     """
     return path_of(scene).state_of(scene, start)
-
-
-def trajectory_rows(scene, seed):
-    """Return the rows of ``followed`` as {column: value}, None for what an event has not."""
-    rows, names, parts = [], columns(scene.discs), components(scene)
-    for time, event, first, second, state in followed(scene, seed):
-        known = dict(zip(parts, map(float, state), strict=True))
-        known |= {"time": time, "event": event, "first": first, "second": second}
-        rows.append({name: known.get(name) for name in names})
-    return rows
 
 
 def followed(scene, seed, start=None, duration=None, progress=None):

@@ -79,24 +79,20 @@ def _disc(axes, number, centre, radius, velocity):
 
 
 #: Inches: the tallest drawing of the box, the space around it, the map beneath and its margins.
-JAMMED_TALLEST, JAMMED_LEFT, JAMMED_RIGHT, JAMMED_ABOVE, JAMMED_BENEATH = (
-    1.75,
-    0.34,
-    0.58,
-    0.08,
-    0.42,
-)
+JAMMED_TALLEST, JAMMED_ABOVE, JAMMED_BENEATH = 1.75, 0.08, 0.42
+JAMMED_LEFT, JAMMED_RIGHT = 0.34, 0.58
 MAP_LEFT, MAP_RIGHT, MAP_BOTTOM, MAP_HEIGHT = 0.48, 0.1, 0.36, 1.5
 
 
 def draw_largest_radius(box):
     """Draw the ``Box`` with discs that just fit, and the map."""
     width, height = drawing.outline(box)
-    inches = drawing.scale(width, height, COLUMN - JAMMED_LEFT - JAMMED_RIGHT, JAMMED_TALLEST)
+    across = COLUMN - JAMMED_LEFT - JAMMED_RIGHT
+    inches = drawing.scale(width, height, across, JAMMED_TALLEST)
     floor = MAP_BOTTOM + MAP_HEIGHT + JAMMED_BENEATH
     figure = new_figure(floor + inches * height + JAMMED_ABOVE)
     extent = (-width / 2, width / 2, -height / 2, height / 2)
-    left = JAMMED_LEFT + (COLUMN - JAMMED_LEFT - JAMMED_RIGHT - inches * width) / 2
+    left = JAMMED_LEFT + (across - inches * width) / 2
     _jammed(drawing.add_axes(figure, left, floor, inches, extent), width, height)
     across = COLUMN - MAP_LEFT - MAP_RIGHT
     _map(panels.add_panel(figure, MAP_BOTTOM, MAP_HEIGHT, MAP_LEFT, across), box)

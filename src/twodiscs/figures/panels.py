@@ -303,24 +303,18 @@ def legend(axes, series, single=None, more=()):
     ``more`` are (name, style) of other lines. Series without a visible value, of impossible events,
     are left out.
     """
-    handles, names = [], []
+    entries = []
     for (colour, marker), part in with_looks(series):
         style = look_of(part, colour, marker)
-        if single and not part.rows:
-            handles += axes.plot([], [], color=BLACK)
-            names.append("exact")
-        elif single and not np.any(np.isfinite(part.exact)):
-            handles += axes.plot([], [], ls="", **style)
-            names.append(single)
-        elif single:
-            handles += axes.plot([], [], color=BLACK) + axes.plot([], [], ls="", **style)
-            names += ["exact", single]
-        elif part.is_visible():
-            handles += axes.plot([], [], ls="-" if np.any(part.exact > 0) else "", **style)
-            names.append(part.name)
-    for name, style in more:
-        handles.append(Line2D([], [], **style))
-        names.append(name)
+        if single and (not part.rows or np.any(np.isfinite(part.exact))):
+            entries.append(("exact", {"color": BLACK}))
+        if single and part.rows:
+            entries.append((single, style | {"ls": ""}))
+        if not single and part.is_visible():
+            line = "-" if np.any(part.exact > 0) else ""
+            entries.append((part.name, style | {"ls": line}))
+    names = [name for name, _ in (*entries, *more)]
+    handles = [Line2D([], [], **style) for _, style in (*entries, *more)]
     if len(names) > 4:  # no place without a curve is large enough
         axes.figure.legend(handles, names, loc="outside lower center", ncols=3)
     else:

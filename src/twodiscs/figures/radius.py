@@ -74,11 +74,8 @@ def _draw_series(main, lower, radii, shown, by_quantity):
 
 
 #: The figures that ``draw_areas`` shows beside and beneath each other, and inches.
-AREAS, WIDE, TALL = (
-    ("collision_area", "wall_area", "vertical_hop_area", "horizontal_hop_area"),
-    7.0,
-    5.4,
-)
+AREAS = ("collision_area", "wall_area", "vertical_hop_area", "horizontal_hop_area")
+WIDE, TALL = 7.0, 5.4
 
 
 def draw_areas(box, rows):

@@ -244,7 +244,7 @@ def interval_cost(scene):
 
 
 def advance_all(scene, states, laps, time, kicks, hops=None):
-    """Advance the columns of ``states`` (rows, replicas), see ``trajectory.advance_all``.
+    """Advance the columns of ``states`` (rows, replicas), see ``trajectory.path_of``.
 
     The hops in x are added to ``hops`` (replicas,) unless it is None.
     """
@@ -255,7 +255,7 @@ def advance_all(scene, states, laps, time, kicks, hops=None):
 
 
 def kicks_of(scene, number, seed, block=0):
-    """Return the ``Kicks`` of ``number`` states, see ``trajectory.kicks_of``."""
+    """Return the ``Kicks`` of ``number`` states, see ``trajectory.path_of``."""
     return opened(new_kicks(scene, number), seed, block)
 
 

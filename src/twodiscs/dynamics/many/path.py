@@ -39,7 +39,7 @@ def new_wraps(scene, number):
 
 
 def unwrap(scene, columns, wraps):
-    """Add the rounds that discs have made on a ring, see ``trajectory.unwrap``."""
+    """Add the rounds that discs have made on a ring, see ``trajectory.path_of``."""
     for disc, laps in enumerate(wraps, 1):
         columns[f"x{disc}"] += scene.width * laps
 

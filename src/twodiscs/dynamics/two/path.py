@@ -115,7 +115,7 @@ def advance_states(states, wraps, time, law, kicks):
 
 
 def advance_all(scene, states, wraps, time, kicks):
-    """Advance the columns of ``states``, see ``trajectory.advance_all``."""
+    """Advance the columns of ``states``, see ``trajectory.path_of``."""
     advance_states(states, wraps, time, law_of(scene), kicks)
 
 
@@ -125,12 +125,12 @@ def new_wraps(scene, number):
 
 
 def kicks_of(scene, number, seed, block=0):
-    """Return the ``Kicks`` of ``number`` states, see ``trajectory.kicks_of``."""
+    """Return the ``Kicks`` of ``number`` states, see ``trajectory.path_of``."""
     return opened(new_kicks(scene, number), seed, block)
 
 
 def unwrap(scene, columns, wraps):
-    """Undo the jumps of a periodic separation, see ``trajectory.unwrap``."""
+    """Undo the jumps of a periodic separation, see ``trajectory.path_of``."""
     law = law_of(scene)
     for k, axis in enumerate("xyz"):
         if axis in scene.periodic:
