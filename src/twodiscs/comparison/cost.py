@@ -128,15 +128,15 @@ def blocks_wanted(scene, pilots, target):
     """Return {part: blocks} that a run to the errors ``target``, {event: error}, takes."""
     from twodiscs.sampling.rounds import MARGIN
 
-    found = {}
+    blocks = {}
     for name, pilot in pilots.items():
         own = [e for e in target if e in pilot.errors and (name != "all" or e not in pilots)]
         noise = max(((pilot.errors[e] / target[e]) ** 2 for e in own), default=0.0)
         needed = (exact.replicas_needed(scene, e, target[e]) / pilot.replicas for e in own)
         needed = max(needed, default=0.0) if name == "all" else 0.0
         wanted = max(MARGIN * noise, needed)
-        found[name] = wanted if wanted > pilot.first_round else pilot.first_round
-    return found
+        blocks[name] = wanted if wanted > pilot.first_round else pilot.first_round
+    return blocks
 
 
 # Prices -------------------------------------------------------------------------------------------
@@ -195,13 +195,13 @@ class Price:
         return None if error < self.floor else max(self.least_seconds, self.c / error**2)
 
 
-def _prices_of_times(scene, found):
-    """Yield the prices of mean times from the pilots that were ``found``.
+def _prices_of_times(scene, pilots):
+    """Yield the prices of mean times from ``pilots``.
 
     An event without a count whose rate is not known has none.
     """
     for event in scene.events:
-        for name, pilot in found.items():
+        for name, pilot in pilots.items():
             if math.isfinite(pilot.errors.get(event, math.inf)):
                 method = "dynamics" if name == "all" else "strips"
                 c, least = pilot.errors[event] ** 2 * pilot.seconds, pilot.first_round
@@ -220,17 +220,17 @@ def _samplers(scene):
     return {"rejection": montecarlo.weighted}
 
 
-def _prices_of_samples(scene, shell, seconds=OF_SPEED):
+def _prices_of_samples(scene, shell):
     """Yield the prices of the volume and of areas by each sampler."""
     wanted = ["volume", *(f"{event}_area" for event in scene.events if scene.is_possible(event))]
     for method, make in _samplers(scene).items():
         sampler = make(scene, wanted, shell, 0)
-        sums, blocks, each = timed(sampler.count, seconds)
-        found = variances(scene, sampler, sums, blocks)
+        sums, blocks, each = timed(sampler.count, OF_SPEED)
+        known = variances(scene, sampler, sums, blocks)
         for quantity in wanted:
             name = method if quantity == "volume" or scene.discs > 2 else f"shells, {method}"
-            if quantity in found:
-                variance, floor = found[quantity]
+            if quantity in known:
+                variance, floor = known[quantity]
                 yield Price(quantity, name, variance * each, each, floor)
 
 
@@ -247,26 +247,26 @@ def _variances_of_hits(scene, sampled, samples):
     ``sampled`` are the quantities of a ``Sampler``. Samples in the shells of two walls are taken as
     independent.
     """
-    means, found = {}, {}
+    means, expected = {}, {}
     for quantity, part in sampled.items():
         event, value = quantity.removesuffix("_area"), exact.volume(scene)
         if quantity != "volume":
             value = exact.shell_expectation(scene, event, part["epsilon"])
         if share := value / part["measure"]:
             means[quantity] = share
-            found[quantity] = 1 / share - 1, value
+            expected[quantity] = 1 / share - 1, value
     if "any_wall_area" not in sampled and {*WALL_AREAS} <= means.keys():
         right, top = (sampled[wall]["measure"] for wall in WALL_AREAS)
         hits = [means[wall] for wall in WALL_AREAS]
         value = right * hits[0] + top * hits[1]
         both = math.prod(hits) / means["volume"] if "volume" in means else math.prod(hits)
         square = right**2 * hits[0] + top**2 * hits[1] + 2 * right * top * both
-        found["any_wall_area"] = square / value**2 - 1, 4 * value
+        expected["any_wall_area"] = square / value**2 - 1, 4 * value
     areas = {"volume": exact.volume(scene)}
     areas |= {f"{event}_area": area for event, area in exact.areas(scene).items()}
     return {
         quantity: (variance / samples, abs(value / areas[quantity] - 1))
-        for quantity, (variance, value) in found.items()
+        for quantity, (variance, value) in expected.items()
         if areas[quantity]
     }
 
@@ -274,11 +274,11 @@ def _variances_of_hits(scene, sampled, samples):
 def _variances_of_weights(scene, sampler, sums, blocks):
     """Return {quantity: (squared relative error of a block of insertions, 0)} from their sums."""
     point = sampler.point({(0, blocks): (sums,)})
-    found = {quantity: point.sampled(quantity) for quantity in point.quantities}
-    found["any_wall_area"] = point.all_walls(scene)
+    sampled = {quantity: point.sampled(quantity) for quantity in point.quantities}
+    sampled["any_wall_area"] = point.all_walls(scene)
     return {
         quantity: (one.estimate.relative_stderr**2 * blocks, 0.0)
-        for quantity, one in found.items()
+        for quantity, one in sampled.items()
         if one is not None and one.estimate is not None
     }
 
@@ -457,10 +457,10 @@ def cost(
     errors = [check_error("errors", error) for error in errors]
     check_fraction("shell", shell)
     run = CountingRun(check_scene(scene), dict.fromkeys(scene.events, 1.0), 10**15, 0)
-    found = pilots(run)
+    measured = pilots(run)
     prices = [
-        *_prices_of_times(scene, found),
+        *_prices_of_times(scene, measured),
         *_prices_of_samples(scene, shell),
         *_price_of_exact(scene),
     ]
-    return Cost(scene, errors, prices, found)
+    return Cost(scene, errors, prices, measured)

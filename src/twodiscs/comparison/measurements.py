@@ -297,18 +297,19 @@ class Measurements(Result, Mapping[str, Measurement]):
         if not known:
             return {}
         numbers = correlated_values(means[known], covariances[np.ix_(known, known)])
-        found = {}
+        by_name = {}
         for k, number in zip(known, numbers, strict=True):
             one = self[names[k]]
             # A mean time is inversely proportional to its mean count, an area proportional to hits.
             ratio = means[k] / number if self.kind == "simulate" else number / means[k]
-            found[one.quantity] = one.value * ratio
-        if self.kind == "sample" and "any_wall_area" not in names and {*WALL_AREAS} <= found.keys():
+            by_name[one.quantity] = one.value * ratio
+        walls_known = self.kind == "sample" and {*WALL_AREAS} <= by_name.keys()
+        if walls_known and "any_wall_area" not in names:
             copies = (self.scene.copies(wall.removesuffix("_area")) for wall in WALL_AREAS)
-            found["any_wall_area"] = sum(
-                n * found[wall] for n, wall in zip(copies, WALL_AREAS, strict=True)
+            by_name["any_wall_area"] = sum(
+                n * by_name[wall] for n, wall in zip(copies, WALL_AREAS, strict=True)
             )
-        return found
+        return by_name
 
     def _again(self, settings, options):
         return MAKERS[self.kind](self.scene, **settings, **options, kept=self.parts)

@@ -144,19 +144,19 @@ def _values(function, start, now):
             f"{start.size} replicas"
         )
         if returned is None:
-            found = "None: is its return missing?"
+            what = "None: is its return missing?"
         elif values is None or not values.shape:
-            found = quote(returned)
+            what = quote(returned)
         elif values.dtype.names:
-            found = f"an array with the fields {', '.join(values.dtype.names)}: choose one of them"
+            what = f"an array with the fields {', '.join(values.dtype.names)}: choose one of them"
         elif values.dtype.kind == "c":
-            found = (
+            what = (
                 f"complex ones of shape {values.shape}: return real and imaginary part as two "
                 "columns, np.stack((z.real, z.imag), axis=1)"
             )
         else:
-            found = f"an array of shape {values.shape} and kind {values.dtype}"
-        raise InputError(f"{allowed}, not {found}")
+            what = f"an array of shape {values.shape} and kind {values.dtype}"
+        raise InputError(f"{allowed}, not {what}")
     return values.astype(float)
 
 
@@ -259,18 +259,18 @@ def averages(
             path.unwrap(scene, now, wraps)
             yield start, now
 
-    def moments(block, first, found, before):
+    def moments(block, first, pairs, before):
         """Return the last values of a block, and the means and sums of squares at some times."""
-        values = np.stack([_values(function, start, now) for start, now in found], axis=1)
+        values = np.stack([_values(function, start, now) for start, now in pairs], axis=1)
         _check_finite(values, times[first:], block * each)
-        last, values = values[:, -1], over_times(values, before, steps[first : first + len(found)])
+        last, values = values[:, -1], over_times(values, before, steps[first : first + len(pairs)])
         return last, values.mean(axis=0), ((values - values.mean(axis=0)) ** 2).sum(axis=0)
 
     # If the states of a block at all times are too many, one block a core goes on piece by piece.
     together = max(1, KEPT // (each * len(components(scene))))
     in_pieces = times.size > together
     abreast = cores if in_pieces else blocks
-    total = mean = square = None
+    total, mean, square = 0, 0.0, 0.0
     with progress_bar(progress, f"observe r = {scene.radius:g}") as progress:
         for low in range(0, blocks, abreast):
             numbers = range(low, min(low + abreast, blocks))
@@ -279,21 +279,17 @@ def averages(
             for first in range(0, times.size, together):
                 calls = ((of_block,) for of_block in series)
                 every = in_threads(lambda of_block: [*islice(of_block, together)], calls, cores)
-                for block, found in zip(numbers, every, strict=True):
+                for block, pairs in zip(numbers, every, strict=True):
                     before = parts[block][-1][0] if first else None
-                    part = moments(block, first, found, before)
+                    part = moments(block, first, pairs, before)
                     parts.setdefault(block, []).append(part)
                     if first + together < times.size:
                         continue
                     _, own, spread = map(np.concatenate, zip(*parts.pop(block), strict=True))
-                    if mean is None:
-                        total, mean, square = each, own, spread
-                    else:
-                        # The mean and the sum of squares of two samples together (Chan et al.,
-                        # 1979).
-                        n, apart = total + each, own - mean
-                        square = square + spread + apart**2 * (total * each / n)
-                        mean, total = mean + apart * (each / n), n
+                    # The mean and the sum of squares of two samples together (Chan et al., 1979).
+                    n, apart = total + each, own - mean
+                    square = square + spread + apart**2 * (total * each / n)
+                    mean, total = mean + apart * (each / n), n
                     if progress is not None:
                         progress(block + 1, blocks)
     stderr = np.sqrt(square / (total - 1) / total)

@@ -60,25 +60,25 @@ def terms(scene):
     _require_simple(scene)
     n, kt = scene.discs, 1 / scene.velocity_components
     volume = math.prod(scene.side(axis) for axis in scene.axes)
-    found, weighted, norm = {}, {}, 0.0
+    pressures, weighted, norm = {}, {}, 0.0
     for wall in WALLS:
         axis = AXIS[wall]
         if axis in scene.walled:
             force, reach = n * virial.momentum_per_hit(scene, wall), float(scene.reach(axis))
             area = volume / scene.side(axis)
-            found[f"{wall}_pressure"] = 0.0, {wall: force / area}
+            pressures[f"{wall}_pressure"] = 0.0, {wall: force / area}
             weighted[wall], norm = force * reach, norm + area * reach
     mean = {wall: weight / norm for wall, weight in weighted.items()}
-    found["wall_pressure"] = 0.0, mean
+    pressures["wall_pressure"] = 0.0, mean
     if (weights := virial.weights(scene)) is not None:
         kinetic = 2 * n * kt / norm
         collisions = {"disc_collision": -kinetic * weights["disc_collision"]}
-        found["virial_pressure"] = kinetic, collisions
+        pressures["virial_pressure"] = kinetic, collisions
     ideal = n * kt / volume
-    found["ideal_pressure"] = ideal, {}
+    pressures["ideal_pressure"] = ideal, {}
     ratio = {wall: factor / ideal for wall, factor in mean.items()}
-    found["compressibility_factor"] = 0.0, ratio
-    return found
+    pressures["compressibility_factor"] = 0.0, ratio
+    return pressures
 
 
 @overload

@@ -465,11 +465,11 @@ class HopHistogram(Table):
         for point in by_radius(points.get("intervals", ())):
             mean = _mean_interval(point, exact[point.radius, f"{point.event}_time"])
             start = {"radius": point.radius, "event": point.event}
-            for one in point.bins():
-                found = one._asdict()
-                density = found.pop("density")
-                found |= {"density": density.value, "stderr": density.stderr or None}
-                rows.append(start | found | mean)
+            for each in point.bins():
+                cells = each._asdict()
+                density = cells.pop("density")
+                cells |= {"density": density.value, "stderr": density.stderr or None}
+                rows.append(start | cells | mean)
         return rows
 
 

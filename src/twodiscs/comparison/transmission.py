@@ -356,11 +356,11 @@ def run_transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=
     runs = parts_of(scene, hop, neighbour_mean, gap, times, blocks, stream_name(scene, name), seed)
     settings = {"hop": hop, "hops": int(hops), "seed": int(seed), "name": name}
     with progress_bar(progress, f"transmission r = {scene.radius:g}") as progress:
-        found = all_in_rounds(runs, progress, cores, kept or {})
-    parts = {name: {"sums": pieces} for name, pieces in found.items()}
-    ((sums,), _), clusters, kappa = reached(found["times"]), {}, None
-    if "clusters" in found:
-        (sizes,), _ = reached(found["clusters"])
+        pieces = all_in_rounds(runs, progress, cores, kept or {})
+    parts = {name: {"sums": sums} for name, sums in pieces.items()}
+    ((sums,), _), clusters, kappa = reached(pieces["times"]), {}, None
+    if "clusters" in pieces:
+        (sizes,), _ = reached(pieces["clusters"])
         clusters = {n: int(number) for n, number in enumerate(sizes) if number}
         law = partial(of_clusters, others=others)
         kappa = plateau(clusters_with_error(sizes), gap, neighbour_mean, law)

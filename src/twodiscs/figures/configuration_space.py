@@ -116,13 +116,13 @@ def _prism(axes, halves, radius):
     drawing.label(axes, "$y$", _seen((-side * sizes[0], -sizes[1], 0)), (8, 0))
 
 
-def _cylinder(axes, reach, radius):
-    """Draw the cylinder around the diagonal, as far as the prism ``reach``es along that."""
+def _cylinder(axes, half_length, radius):
+    """Draw the cylinder around the diagonal, ``half_length`` long to either side."""
     angles = np.linspace(0, 2 * pi, STRIPS + 1)
 
     def at(angle, end):
         across = radius * cos(angle)
-        along = end * (reach - abs(across))
+        along = end * (half_length - abs(across))
         return _seen((*_turned(across, along), radius * sin(angle)))
 
     dark, light = map(np.array, SHADES)

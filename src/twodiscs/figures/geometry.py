@@ -49,9 +49,9 @@ def draw_model(box):
     return figure
 
 
-def _origin(axes, reach):
+def _origin(axes, length):
     """Draw the axes x and y at the centre of the box."""
-    for head, name, offset in (((reach, 0), "$x$", (4, -3)), ((0, reach), "$y$", (-4, 2))):
+    for head, name, offset in (((length, 0), "$x$", (4, -3)), ((0, length), "$y$", (-4, 2))):
         drawing.arrow(axes, (0, 0), head, width=0.6, size=6)
         drawing.label(axes, name, head, offset)
     drawing.label(axes, "$0$", (0, 0), (-4, -4))
@@ -249,11 +249,11 @@ def _panel(axes, scene, points):
     if scene.horizontal_hops:
         drawing.line(axes, [(0, sigma), (0, high)], colour=VERMILLION, **thick)
 
-    reach = min(sigma, 1.3 * wide)
+    size = min(sigma, 1.3 * wide)
     if alpha < pi / 2:
-        _angle(axes, r"$\alpha$", alpha, 0.5 * reach, beta)
+        _angle(axes, r"$\alpha$", alpha, 0.5 * size, beta)
     if beta > 0:
-        _angle(axes, r"$\beta$", beta, 0.75 * reach)
+        _angle(axes, r"$\beta$", beta, 0.75 * size)
     _ends(axes, "$A$", wide, sigma, points, lambda x: (x, 0), lambda d: (d, -7))
     _ends(axes, "$B$", high, sigma, points, lambda y: (0, y), lambda d: (-8, d))
     drawing.label(axes, "$0$", (0, 0), (-5, -5))
@@ -342,8 +342,9 @@ def _collision(axes, a, b, radius, epsilon):
     shell = {"width": epsilon, "facecolor": "#F8DDC8", "edgecolor": "none"}
     axes.add_patch(Wedge((0, 0), rim + epsilon, 0, 90, **shell))
     dashed = {"linewidth": 0.5, "linestyle": (0, (3, 2)), "edgecolor": GREY}
-    for reach, pen in ((rim + epsilon, dashed), (rim, {"linewidth": 1.3, "edgecolor": VERMILLION})):
-        axes.add_patch(Arc((0, 0), 2 * reach, 2 * reach, theta2=90, **pen))
+    thick = {"linewidth": 1.3, "edgecolor": VERMILLION}
+    for distance, pen in ((rim + epsilon, dashed), (rim, thick)):
+        axes.add_patch(Arc((0, 0), 2 * distance, 2 * distance, theta2=90, **pen))
     drawing.rectangle(axes, 0, wide, 0, high, width=0.9)
     drawing.label(axes, "(b)", (0, high), (0, 9), ha="left")
     drawing.label(axes, "$x^2+y^2=2r^2$", (0, high), (18, 9), ha="left", color=VERMILLION)

@@ -68,10 +68,10 @@ def draw_trajectory(box, rows, radius=None):
         axes.plot(times, apart, color=BLUE, lw=thick, zorder=2)
         axes.plot(hops, 0 * hops, "o", color=VERMILLION, markersize=size, mew=0, zorder=3)
         axes.set(xlabel="time $t$", ylabel=f"${axis}_2-{axis}_1$")
-    reach = 1.08 * np.abs(apart).max()
-    panel["a"].set(xlim=(times[0], times[-1]), ylim=(-reach, reach))
+    most = 1.08 * np.abs(apart).max()
+    panel["a"].set(xlim=(times[0], times[-1]), ylim=(-most, most))
     for name, (first, last), colour in zip(letters, stretches, (ORANGE, SKY), strict=False):
-        panel[name].set(xlim=(first, last), ylim=(-reach, reach))
+        panel[name].set(xlim=(first, last), ylim=(-most, most))
         label = f"stretch in ({name})"
         panel["a"].axvspan(first, last, color=colour, alpha=0.45, lw=0, zorder=0, label=label)
         panels.title(panel[name], name)

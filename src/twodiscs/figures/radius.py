@@ -85,8 +85,8 @@ def draw_areas(box, rows):
     areas.
     """
     names = {q: name for figure in AREAS for q, name in OVER_RADIUS[figure].names.items()}
-    radii, found = series_of(box, rows, names, {})
-    if not found:
+    radii, by_quantity = series_of(box, rows, names, {})
+    if not by_quantity:
         raise InputError("the table of all_areas has no row of an area")
     figure = new_figure(TALL, WIDE, layout="constrained")
     heights = [panels.MAIN, panels.LOWER]
@@ -96,7 +96,7 @@ def draw_areas(box, rows):
         shown = OVER_RADIUS[name]
         main.set_label(name)
         lower.set_label(f"residuals of {name}")
-        series = _draw_series(main, lower, radii, shown, found)
+        series = _draw_series(main, lower, radii, shown, by_quantity)
         panels.scale_residuals(lower)
         panels.mark([main, lower], limits(box))
         panels.legend(main, series, shown.single)
@@ -121,8 +121,8 @@ def add(axes, box, rows, names):
     texts = {q: text for one in kinds for q, text in one.names.items() if q in present}
     names = {q: ", ".join([text, *panels.heading(box)]) for q, text in texts.items()}
     looks = {q: looks[(before + i) % len(looks)] for i, q in enumerate(texts)}
-    radii, found = series_of(box, rows, names, looks)
-    series, ends = [*found.values()], axes.get_ylim()
+    radii, by_quantity = series_of(box, rows, names, looks)
+    series, ends = [*by_quantity.values()], axes.get_ylim()
     panels.draw_series(axes, None, radii, series)
     for part in series:
         axes.plot([], [], label=part.name, **panels.look_of(part, *part.look))
@@ -141,13 +141,15 @@ def series_of(box, rows, names, looks):
     Rows of exact values alone have a curve, but no symbol.
     """
     radii, exact = curves.exact_curves(box)
-    found = {}
+    by_quantity = {}
     for quantity, name in names.items():
         own = [row for row in rows if quantity_of(row) == quantity]
         if own:
             measured = [row for row in own if "estimate" in row]
-            found[quantity] = panels.Series(name, measured, exact[quantity], looks.get(quantity))
-    return radii, found
+            by_quantity[quantity] = panels.Series(
+                name, measured, exact[quantity], looks.get(quantity)
+            )
+    return radii, by_quantity
 
 
 def _is_unknown(rows):

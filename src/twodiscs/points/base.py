@@ -170,10 +170,10 @@ def pieces_of(paths):
 
     Raises ``InputError`` if a file was changed.
     """
-    found = {}
+    pieces = {}
     for path in paths:
         if "parts" not in (content := read_json(path)):
             raise InputError(f"{path} must be a shard of a point; delete it, and it is made again")
         for name, part in with_arrays(content["parts"]).items():
-            found.setdefault(name, {}).update(part["sums"])
-    return found
+            pieces.setdefault(name, {}).update(part["sums"])
+    return pieces
