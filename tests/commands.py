@@ -2,7 +2,7 @@
 
 import json
 
-from twodiscs.arguments import run
+from twodiscs.cli import run
 
 
 def command(monkeypatch, module, *arguments):

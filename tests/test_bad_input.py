@@ -18,7 +18,7 @@ import yaml
 from commands import command
 
 import twodiscs as td
-from twodiscs import arguments, cli
+from twodiscs import cli
 from twodiscs.dynamics import runs
 from twodiscs.model import checks, effects
 from twodiscs.model.box import Box, stream_seed
@@ -624,6 +624,6 @@ def test_what_the_workflow_cannot_run_with_is_one_sentence(tmp_path, wrong):
 def test_a_mistake_in_the_program_keeps_its_traceback():
     for error in (ValueError, KeyError, TypeError, ZeroDivisionError):
         with pytest.raises(error, match="colour"):
-            arguments.run(lambda error=error: (_ for _ in ()).throw(error("colour")))
+            cli.run(lambda error=error: (_ for _ in ()).throw(error("colour")))
     with pytest.raises(TypeError, match=r"^mine$"):
         observe(lambda start, now: (_ for _ in ()).throw(TypeError("mine")))

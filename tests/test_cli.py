@@ -20,7 +20,7 @@ from commands import command
 from snakemake.jobs import Reason
 
 import twodiscs
-from twodiscs import arguments, cli
+from twodiscs import cli
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.checks import InputError
 from twodiscs.model.effects import EFFECTS
@@ -187,7 +187,7 @@ def test_run_turns_an_error_into_a_sentence(capsys, error, sentence):
         raise error
 
     with pytest.raises(SystemExit) as caught:
-        arguments.run(broken)
+        cli.run(broken)
     assert caught.value.code == 2
     assert capsys.readouterr().err == sentence
 
@@ -195,7 +195,7 @@ def test_run_turns_an_error_into_a_sentence(capsys, error, sentence):
 @pytest.mark.parametrize("status", [None, 1])
 def test_run_exits_with_what_main_returns(status):
     with pytest.raises(SystemExit) as caught:
-        arguments.run(lambda: status)
+        cli.run(lambda: status)
     assert caught.value.code == status
 
 

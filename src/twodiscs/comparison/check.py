@@ -31,6 +31,7 @@ from itertools import groupby
 from twodiscs.comparison import scores
 from twodiscs.model.events import DECLARED
 from twodiscs.points.estimates import MIN_EVENTS, Estimate
+from twodiscs.points.monte_carlo import wall_weights
 from twodiscs.theory import virial
 from twodiscs.theory.exact import replicas_needed
 from twodiscs.theory.virial import flux_constant
@@ -100,11 +101,7 @@ def flux_time(scene, event, point):
     It is an ``Estimate`` from a point of insertions: the rate is c_D/2 × area/volume from each side
     of the surface, see ``theory``. It is None if the error is not known or the point lacks one.
     """
-    events = [event]
-    if event == "any_wall":
-        events = [wall for wall in ("right_wall", "top_wall") if wall in scene.events]
-    weight = float(len(events) and scene.copies(events[0])) if event == "any_wall" else 1.0
-    weights = {f"{name}_area": weight for name in events}
+    weights = wall_weights(scene) if event == "any_wall" else {f"{event}_area": 1.0}
     if not {"volume", *weights} <= point.quantities.keys():
         return None
     ratio = point.ratio(weights)

@@ -33,7 +33,7 @@ from twodiscs.model.checks import (
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene, check_scene, why_absent
 from twodiscs.points.estimates import normal_quantile
-from twodiscs.points.monte_carlo import WALL_AREAS
+from twodiscs.points.monte_carlo import WALL_AREAS, wall_weights
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -305,10 +305,8 @@ class Measurements(Result, Mapping[str, Measurement]):
             by_name[one.quantity] = one.value * ratio
         walls_known = self.kind == "sample" and {*WALL_AREAS} <= by_name.keys()
         if walls_known and "any_wall_area" not in names:
-            copies = (self.scene.copies(wall.removesuffix("_area")) for wall in WALL_AREAS)
-            by_name["any_wall_area"] = sum(
-                n * by_name[wall] for n, wall in zip(copies, WALL_AREAS, strict=True)
-            )
+            weights = wall_weights(self.scene)
+            by_name["any_wall_area"] = sum(n * by_name[wall] for wall, n in weights.items())
         return by_name
 
     def _again(self, settings, options):

@@ -208,11 +208,11 @@ class Transmission(Result):
     @property
     def passage_time(self) -> Estimate | None:
         """The mean time between passages τ/κ, an ``Estimate``; None without κ or an exact τ."""
-        if self.coefficient is None or self.exact_mean is None:
+        kappa, mean = self.coefficient, self.exact_mean
+        if kappa is None or mean is None:
             return None
-        value, error, n = (getattr(self.coefficient, k) for k in ("value", "stderr", "n"))
-        error = None if error is None else self.exact_mean * error / value**2
-        return Estimate(self.exact_mean / value, error, n)
+        error = None if kappa.stderr is None else mean * kappa.stderr / kappa.value**2
+        return Estimate(mean / kappa.value, error, kappa.n)
 
     def frame(self) -> pd.DataFrame:
         """Return κ(t) as a table.

@@ -16,6 +16,12 @@ from twodiscs.points.estimates import Estimate
 WALL_AREAS = ("right_wall_area", "top_wall_area")
 
 
+def wall_weights(scene):
+    """Return {area of one wall: weight} with which these areas add up to that of all walls."""
+    walls = (area.removesuffix("_area") for area in WALL_AREAS)
+    return {f"{wall}_area": float(scene.copies(wall)) for wall in walls if wall in scene.events}
+
+
 class Sampled(NamedTuple):
     """One quantity: its estimate or None, the hits, and the least of hits and misses.
 
@@ -200,11 +206,10 @@ class InsertionPoint(SampledPoint):
 
     def all_walls(self, scene):
         """Return the area of all walls of a ``Scene`` as ``Sampled``, or None."""
-        walls = [wall for wall in WALL_AREAS if wall.removesuffix("_area") in scene.events]
-        if not {*walls} <= self.quantities.keys():
+        weights = wall_weights(scene)
+        if not weights.keys() <= self.quantities.keys():
             return None
-        weights = {wall: scene.copies(wall.removesuffix("_area")) for wall in walls}
-        misses = min(estimates.effective_misses(*self._sums(wall)) for wall in walls)
+        misses = min(estimates.effective_misses(*self._sums(wall)) for wall in weights)
         return self._sampled(*self.total(weights), misses)
 
     def _sampled(self, estimate, effective, misses):
