@@ -73,7 +73,7 @@ def test_same_bytes_whatever_the_machine_is_set_to(name, tmp_path):
     assert width == pytest.approx(72 * style.COLUMN)
     assert png[:8] == b"\x89PNG\r\n\x1a\n"
     assert not re.search(rb"tIME|iTXt|Software|Creation|Matplotlib", png)
-    assert int.from_bytes(png[16:20], "big") == round(style.DPI * style.COLUMN)
+    assert int.from_bytes(png[16:20], "big") == round(style.SETTINGS["savefig.dpi"] * style.COLUMN)
 
 
 def test_an_svg_is_the_same_bytes_again_and_has_no_date(tmp_path):

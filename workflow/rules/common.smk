@@ -80,7 +80,10 @@ PHYSICS = ("model", "theory", "sampling", "dynamics", "points")
 CODE = {
     "physics": modules(*(f"twodiscs/{part}/**/*.py" for part in PHYSICS)),
     "tables": modules("twodiscs/comparison/**/*.py"),
-    "figures": modules("twodiscs/figures/**/*.py", "twodiscs_paper/drawings.py"),
+    "figures": modules(
+        *(f"twodiscs/figures/*.{kind}" for kind in ("py", "mplstyle", "html")),
+        "twodiscs_paper/drawings.py",
+    ),
     "documents": modules("twodiscs_paper/pipeline/**/*.py"),
     "benchmark": modules("twodiscs_paper/benchmark.py"),
 }

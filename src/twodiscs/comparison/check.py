@@ -83,12 +83,13 @@ def sum_rule(scene, point):
 def _sum_rule(scene, point):
     """Return the comparison of the sum rule for one dynamics point, at the radius of ``scene``."""
     rule, replicas = sum_rule(scene, point), point.replicas
-    enough = min(point.counts[event] for event in SUM_RULE) >= scores.NORMAL
     stderr = z = None
-    if enough and replicas >= MIN_EVENTS and rule.stderr:
+    enough = min(point.counts[event] for event in SUM_RULE) >= scores.NORMAL
+    enough = enough and replicas >= MIN_EVENTS and rule.stderr
+    if enough:
         # A run of rough discs may have missed the initial states with very many events.
         enough = all(replicas >= replicas_needed(scene, e, rule.stderr) for e in SUM_RULE)
-    if enough and replicas >= MIN_EVENTS and rule.stderr:
+    if enough:
         stderr = rule.stderr
         z = scores.student_deviate((rule.value - 1) / stderr, replicas - 1)
     values = _normal_values(scene.radius, 1.0, rule.value, stderr, z)

@@ -160,19 +160,15 @@ class Trajectory(pd.DataFrame):
         # Two events at one time are two rows with different states.
         states = self if times is None else self.states_at(times)
         scene = self.scene
-        names = [
-            [f"{letter}{disc}" for letter in letters[: len(scene.axes)]]
-            for disc in range(1, scene.discs + 1)
-        ]
-        missing = [name for disc in names for name in disc if times is None and name not in self]
+        letters, discs = letters[: len(scene.axes)], range(1, scene.discs + 1)
+        names = [f"{letter}{disc}" for disc in discs for letter in letters]
+        missing = [name for name in names if times is None and name not in self]
         if missing:
             raise InputError(
                 f"trajectory must have all of its columns, but has no {', '.join(missing)}"
             )
-        return np.stack(
-            [np.stack([np.asarray(states[n], float) for n in disc], axis=-1) for disc in names],
-            axis=1,
-        )
+        columns = np.stack([np.asarray(states[name], float) for name in names], axis=1)
+        return columns.reshape(-1, scene.discs, len(letters))
 
     def to_xyz(
         self, path: str | PathLike[str], times: float | Iterable[float] | None = None

@@ -15,6 +15,7 @@ import subprocess
 from base64 import b64encode
 from collections import Counter
 from pathlib import Path
+from string import Template
 
 import numpy as np
 from matplotlib.collections import LineCollection
@@ -105,14 +106,14 @@ class Stage:
         self.trace, self.marked = TRACE * step, MARKED * step
         self.axis = "y" if self.hop == "vertical_hop" else "x"
 
-        inches = drawing.scale(width, height, ACROSS - LEFT - RIGHT, TALLEST)
+        inches, spare = drawing.scale(width, height, ACROSS - LEFT - RIGHT, TALLEST)
         beneath = BOTTOM + STRIP + GAP
         more = panels.of_radius(radius)
         up = 0 if panels.is_short(box, radius) else self.above
         heading = LARGER * panels.heading_inches(box, more) + up / 72
         self.figure = new_figure(beneath + inches * height + TOP + heading, ACROSS)
         self.figure.set_dpi(DPI)
-        self.spare = spare = (ACROSS - LEFT - RIGHT - inches * width) / 2
+        self.spare = spare
         x, y = width / 2, height / 2
         self.box = drawing.add_axes(self.figure, LEFT + spare, beneath, inches, (-x, x, -y, y))
         if scene.periodic:
@@ -407,49 +408,7 @@ def _palette(image, kept):
 
 
 #: The page: the frames are pictures in it, so it needs no network and no other file.
-PAGE = """<!doctype html>
-<html lang="en">
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width">
-<title>{title}</title>
-<style>
-body {{ font-family: sans-serif; text-align: center; background: white; color: black }}
-img {{ max-width: 100% }}
-input {{ width: 20rem; max-width: 70%; vertical-align: middle }}
-</style>
-<img id="picture" alt="{title}">
-<div>
-<button id="play" type="button">Pause</button>
-<input id="frame" type="range" min="0" max="{last}" value="0" aria-label="Frame">
-</div>
-<script>
-const pictures = {pictures}, milliseconds = {milliseconds};
-const picture = document.getElementById("picture"), frame = document.getElementById("frame");
-const play = document.getElementById("play");
-let timer = null;
-function show(k) {{
-  frame.value = k;
-  picture.src = "data:image/png;base64," + pictures[k];
-}}
-function next() {{
-  const k = (Number(frame.value) + 1) % pictures.length;
-  show(k);
-  timer = setTimeout(next, milliseconds[k]);
-}}
-function pause() {{
-  clearTimeout(timer);
-  timer = null;
-  play.textContent = "Play";
-}}
-play.onclick = () => {{
-  if (timer === null) {{ play.textContent = "Pause"; next(); }} else pause();
-}};
-frame.oninput = () => {{ pause(); show(Number(frame.value)); }};
-show(0);
-timer = setTimeout(next, milliseconds[0]);
-</script>
-</html>
-"""
+PAGE = Path(__file__).with_name("animation.html")
 
 
 def write_page(path, images, durations, title):
@@ -459,7 +418,7 @@ def write_page(path, images, durations, title):
         stream = io.BytesIO()
         image.save(stream, format="png", optimize=True)
         pictures.append(b64encode(stream.getvalue()).decode())
-    text = PAGE.format(
+    text = Template(PAGE.read_text(encoding="utf-8")).substitute(
         title=title, last=len(pictures) - 1, pictures=json.dumps(pictures),
         milliseconds=json.dumps(durations),
     )  # fmt: skip

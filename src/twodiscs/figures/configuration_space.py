@@ -38,17 +38,14 @@ def draw(box):
     corners = [_seen(corner) for corner in product(*((-n, n) for n in _sizes(halves)))]
     x, y = zip(*corners, strict=True)
     extent = (min(x), max(x), min(y), max(y))
-    across = COLUMN - 2 * LEFT
-    inches = drawing.scale(extent[1] - extent[0], extent[3] - extent[2], across, PRISM)
+    wide, high = max(x) - min(x), max(y) - min(y)
+    inches, spare = drawing.scale(wide, high, COLUMN - 2 * LEFT, PRISM)
     squares = BOTTOM + side + TOP
-    figure = new_figure(squares + BETWEEN + inches * (extent[3] - extent[2]))
-    middle = (COLUMN - inches * (extent[1] - extent[0])) / 2
-    axes = drawing.add_axes(figure, middle, squares + BETWEEN - TOP / 2, inches, extent)
+    figure = new_figure(squares + BETWEEN + inches * high)
+    floor = squares + BETWEEN - TOP / 2
+    axes = drawing.add_axes(figure, LEFT + spare, floor, inches, extent)
     _prism(axes, halves, sqrt(2) * radius)
-    for text, at in (
-        ("(a)", squares + BETWEEN + inches * (extent[3] - extent[2]) - 0.08),
-        ("(b)", squares),
-    ):
+    for text, at in (("(a)", squares + BETWEEN + inches * high - 0.08), ("(b)", squares)):
         figure.text(0.01, (at - 0.02) / figure.get_figheight(), text, va="top")
     for i, (half, colour) in enumerate(zip(halves, (BLUE, VERMILLION), strict=True)):
         left = LEFT + i * (side + GAP)

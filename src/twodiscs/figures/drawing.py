@@ -27,8 +27,9 @@ def outline(box, longest=LONGEST):
 
 
 def scale(width, height, room_x, room_y):
-    """Return the inches per unit at which ``width`` × ``height`` fits into the given inches."""
-    return min(room_x / width, room_y / height)
+    """Return (inches per unit, inches to the left) of ``width`` × ``height`` in some inches."""
+    inches = min(room_x / width, room_y / height)
+    return inches, (room_x - inches * width) / 2
 
 
 def add_axes(figure, left, bottom, inches, extent):
@@ -51,10 +52,9 @@ def single(extent, left, right, bottom, top):
     """Return (figure, axes) of one panel as large as a column allows, with margins in inches."""
     x0, x1, y0, y1 = extent
     room_x = COLUMN - left - right
-    inches = scale(x1 - x0, y1 - y0, room_x, TALLEST - bottom - top)
+    inches, spare = scale(x1 - x0, y1 - y0, room_x, TALLEST - bottom - top)
     figure = new_figure(bottom + top + inches * (y1 - y0))
-    spare = room_x - inches * (x1 - x0)
-    return figure, add_axes(figure, left + spare / 2, bottom, inches, extent)
+    return figure, add_axes(figure, left + spare, bottom, inches, extent)
 
 
 def label(axes, text, at, offset=(0, 0), **options):

@@ -88,12 +88,12 @@ def draw_largest_radius(box):
     """Draw the ``Box`` with discs that just fit, and the map."""
     width, height = drawing.outline(box)
     across = COLUMN - JAMMED_LEFT - JAMMED_RIGHT
-    inches = drawing.scale(width, height, across, JAMMED_TALLEST)
+    inches, spare = drawing.scale(width, height, across, JAMMED_TALLEST)
     floor = MAP_BOTTOM + MAP_HEIGHT + JAMMED_BENEATH
     figure = new_figure(floor + inches * height + JAMMED_ABOVE)
     extent = (-width / 2, width / 2, -height / 2, height / 2)
-    left = JAMMED_LEFT + (across - inches * width) / 2
-    _jammed(drawing.add_axes(figure, left, floor, inches, extent), width, height)
+    axes = drawing.add_axes(figure, JAMMED_LEFT + spare, floor, inches, extent)
+    _jammed(axes, width, height)
     across = COLUMN - MAP_LEFT - MAP_RIGHT
     _map(panels.add_panel(figure, MAP_BOTTOM, MAP_HEIGHT, MAP_LEFT, across), box)
     return figure
@@ -198,18 +198,18 @@ REGIME_TALLEST = 4.5
 def draw_regimes(box):
     """Draw one panel for each regime of the ``Box``."""
     shown = Box(*drawing.outline(box, REGIME_LONGEST))
-    panels = []
+    regimes = []
     for (low, below), (high, above) in pairwise([(0, "0"), *limits(shown)]):
         regime = shown.scene((low + high) / 2).regime
         here = shown.scene(low + FRACTION[regime] * (high - low))
-        panels.append((here, f"${below}<r<{above}$"))
-    ratios = [here.range_y / here.range_x for here, _ in panels]
+        regimes.append((here, f"${below}<r<{above}$"))
+    ratios = [here.range_y / here.range_x for here, _ in regimes]
     side = min(COLUMN - REGIME_LEFT - REGIME_BESIDE, REGIME_TALLEST / sum(ratios))
     left = (COLUMN - REGIME_LEFT - REGIME_BESIDE - side) / 2 + REGIME_LEFT
     heights = [REGIME_BELOW + side * ratio + REGIME_ABOVE for ratio in ratios]
     figure = new_figure(sum(heights))
     bottom = sum(heights)
-    for i, ((here, between), height) in enumerate(zip(panels, heights, strict=True)):
+    for i, ((here, between), height) in enumerate(zip(regimes, heights, strict=True)):
         bottom -= height
         inches, extent = side / here.range_x, (0, here.range_x, 0, here.range_y)
         axes = drawing.add_axes(figure, left, bottom + REGIME_BELOW, inches, extent)

@@ -13,6 +13,7 @@ from io import BytesIO
 from pathlib import Path
 
 import matplotlib
+from matplotlib import rc_params_from_file
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.font_manager import findfont, fontManager
@@ -22,9 +23,6 @@ from twodiscs.model.events import EVENTS
 
 #: Width of one column of a two-column journal, in inches.
 COLUMN = 3.4
-
-#: Dots per inch of the PNG files.
-DPI = 300
 
 # The palette of Okabe and Ito, distinguishable with any colour vision.
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
@@ -37,53 +35,8 @@ SERIES = ((BLUE, "o"), (VERMILLION, "s"), (GREEN, "^"), (PURPLE, "D"))
 #: Sizes of the markers, in points: if two series coincide, both are visible.
 SIZES = {"o": 3.7, "s": 2.5, "^": 3.0, "D": 2.3, "v": 3.0, "P": 3.2}
 
-SETTINGS = {
-    # Computer Modern, the font of the manuscript; it has a minus sign only in formulas.
-    "font.family": ["cmr10", "STIXGeneral"],
-    "mathtext.fontset": "cm",
-    "axes.formatter.use_mathtext": True,
-    "axes.formatter.limits": [-3, 4],  # longer numbers would overlap on an abscissa
-    "font.size": 7.8,
-    "axes.labelsize": 7.8,
-    "axes.labelpad": 2,
-    "axes.linewidth": 0.6,
-    "axes.unicode_minus": True,
-    "axes.titlesize": 7.5,
-    "figure.constrained_layout.h_pad": 0.02,
-    "figure.constrained_layout.w_pad": 0.02,
-    "figure.constrained_layout.hspace": 0.0,
-    "figure.constrained_layout.wspace": 0.0,
-    "xtick.labelsize": 7.3,
-    "ytick.labelsize": 7.3,
-    "xtick.direction": "in",
-    "ytick.direction": "in",
-    "xtick.top": True,
-    "ytick.right": True,
-    "xtick.major.width": 0.5,
-    "ytick.major.width": 0.5,
-    "xtick.minor.width": 0.4,
-    "ytick.minor.width": 0.4,
-    "xtick.major.size": 3,
-    "ytick.major.size": 3,
-    "xtick.minor.size": 1.6,
-    "ytick.minor.size": 1.6,
-    "legend.fontsize": 7.3,
-    "legend.frameon": False,
-    "legend.borderpad": 0.2,
-    "legend.borderaxespad": 0.4,
-    "legend.handlelength": 1.6,
-    "legend.handletextpad": 0.5,
-    "legend.labelspacing": 0.25,
-    "lines.linewidth": 0.9,
-    "lines.markersize": 3.2,
-    "lines.markeredgewidth": 0.6,
-    "errorbar.capsize": 0,
-    "hatch.linewidth": 0.4,
-    "figure.dpi": DPI,
-    "savefig.dpi": DPI,
-    "pdf.fonttype": 42,
-    "svg.hashsalt": "twodiscs",
-}
+#: The settings of matplotlib, from the file beside this one.
+SETTINGS = rc_params_from_file(Path(__file__).with_name("figures.mplstyle"), False, False)
 
 
 def _have_fonts():
