@@ -33,9 +33,6 @@ class Pressures(dict):
     def __repr__(self):
         return f"{self.scene}\n\n{table_of(self.values()).to_string(index=False)}"
 
-    def __reduce__(self):
-        return type(self), (self.scene, [*self.values()])
-
 
 def _require_simple(scene):
     """Raise ``InputError`` for scenes that have no single pressure."""
