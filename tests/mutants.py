@@ -24,6 +24,8 @@ from functools import cache
 from pathlib import Path
 from queue import SimpleQueue
 
+from twodiscs import _HOMES
+
 REPOSITORY = Path(__file__).resolve().parents[1]
 
 #: Test files for what is no module: the beginning of a path, in the order of running.
@@ -252,16 +254,9 @@ def imported(text):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module:
             found |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
-    face = ast.parse((REPOSITORY / "src/twodiscs/__init__.py").read_text(encoding="utf-8"))
-    homes = {
-        alias.name: node.module
-        for node in ast.walk(face)
-        if isinstance(node, ast.ImportFrom) and node.module
-        for alias in node.names
-    }
     attributes = [node for node in ast.walk(tree) if isinstance(node, ast.Attribute)]
-    of_face = [one.attr for one in attributes if getattr(one.value, "id", "") in ("td", "twodiscs")]
-    return found | {homes[name] for name in of_face if name in homes}
+    of_face = {one.attr for one in attributes if getattr(one.value, "id", "") in ("td", "twodiscs")}
+    return found | {f"twodiscs.{_HOMES[name]}" for name in of_face & _HOMES.keys()}
 
 
 @cache
@@ -278,10 +273,6 @@ def users():
             for name in imported(text):
                 found.setdefault(name, set()).add(path)
     return found
-
-
-def is_test(path):
-    return Path(path).name.startswith("test_")
 
 
 def names_in(text, mutated):
@@ -321,7 +312,7 @@ def nearest(mutated):
         spoken = sum(len(re.findall(rf"\b{name}\b", text)) for name in names)
         return not named, distance[test], -spoken, len(text)
 
-    return sorted(filter(is_test, distance), key=order)
+    return sorted((p for p in distance if Path(p).name.startswith("test_")), key=order)
 
 
 # How ----------------------------------------------------------------------------------------------
@@ -354,25 +345,23 @@ def failure(folder, files):
 
 
 def main(words, most):
-    there = []
-    for mutant in MUTANTS:
+    # The plan is made before the first run, so that an edit meanwhile changes nothing.
+    plans = []
+    for what, old, new in MUTANTS:
         try:
-            file_of(mutant[1])
-            there.append(mutant)
+            file = file_of(old)
         except LookupError as error:
-            print(f"{mutant[0]}: NOT THERE: {error}", flush=True)
-    wanted = [
-        m
-        for m in there
-        if not words or any(w.removeprefix("./") in f"{file_of(m[1])} {m[0]}" for w in words)
-    ]
+            print(f"{what}: NOT THERE: {error}", flush=True)
+            continue
+        if not words or any(word.removeprefix("./") in f"{file} {what}" for word in words):
+            plans.append((what, old, new, file, nearest(old)[:most]))
     with tempfile.TemporaryDirectory() as home, ThreadPoolExecutor(2) as threads:
         copies = SimpleQueue()
         for name in ("a", "b"):
             copies.put(copied(Path(home, name)))
 
         def tried(plan):
-            (what, old, new), file, tests = plan
+            what, old, new, file, tests = plan
             folder, begun, text = copies.get(), time.monotonic(), sources()[file]
             (folder / file).write_text(text.replace(old, new), encoding="utf-8")
             try:
@@ -384,15 +373,11 @@ def main(words, most):
             print(f"{file}: {what}: {verdict} ({time.monotonic() - begun:.0f} s)", flush=True)
             return failed
 
-        # The plan is made at once, so that an edit meanwhile changes nothing.
-        plans = [(mutant, file_of(mutant[1]), nearest(mutant[1])[:most]) for mutant in wanted]
         found = [*threads.map(tried, plans)]
-        killers = sorted(
-            {failed.partition("[")[0] for failed in found if failed and "::" in failed}
-        )
+        killers = sorted({one.partition("[")[0] for one in found if one and "::" in one})
         false = failure(copies.get(), killers) if killers else None
     lived = found.count(None)
-    print(f"{len(wanted) - lived} of {len(wanted)} killed")
+    print(f"{len(plans) - lived} of {len(plans)} killed")
     sys.exit(f"{false} fails without a mutant" if false else lived)
 
 
