@@ -174,29 +174,27 @@ def test_who_reads_may_stop_reading(words):
     assert run.stderr == ""
 
 
-@pytest.mark.parametrize(
-    ("error", "sentence"),
-    [
+def test_run_turns_an_error_into_a_sentence_and_a_result_into_its_status(capsys):
+    def ends(main):
+        with pytest.raises(SystemExit) as caught:
+            cli.run(main)
+        return caught.value.code
+
+    def raising(error):
+        def main():
+            raise error
+
+        return main
+
+    for error, sentence in (
         (InputError("two\n  lines"), "error: two lines\n"),
         (FileNotFoundError(2, "No such file", "a.csv"), "error: a.csv: No such file\n"),
         (OSError("broken"), "error: broken\n"),
-    ],
-)
-def test_run_turns_an_error_into_a_sentence(capsys, error, sentence):
-    def broken():
-        raise error
-
-    with pytest.raises(SystemExit) as caught:
-        cli.run(broken)
-    assert caught.value.code == 2
-    assert capsys.readouterr().err == sentence
-
-
-@pytest.mark.parametrize("status", [None, 1])
-def test_run_exits_with_what_main_returns(status):
-    with pytest.raises(SystemExit) as caught:
-        cli.run(lambda: status)
-    assert caught.value.code == status
+    ):
+        assert ends(raising(error)) == 2
+        assert capsys.readouterr().err == sentence
+    assert ends(lambda: None) is None
+    assert ends(lambda: 1) == 1
 
 
 # Builds -----------------------------------------------------------------------------------------

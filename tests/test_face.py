@@ -56,11 +56,6 @@ def intervals():
     return td.intervals(SCENE, "vertical_hop", 1e5, seed=7, name="one")
 
 
-@pytest.fixture(scope="module")
-def trajectory():
-    return td.trajectory(SCENE, seed=7, name="one")
-
-
 # Names ------------------------------------------------------------------------------------------
 
 
@@ -108,24 +103,18 @@ def test_defaults_are_those_of_a_configuration():
 # The numbers of the pipeline ----------------------------------------------------------------------
 
 
-def point(stage):
-    """Return the point of the job of the configuration."""
-    return cost.run_at(load.load(CONFIGURATION).scenes[0], stage, 0.2).run()
-
-
-def test_results_are_those_of_the_pipeline(simulated, sampled, intervals, trajectory):
-    box = Box.of(SCENE)
+def test_results_are_those_of_the_pipeline(simulated, sampled, intervals):
+    box, scene = Box.of(SCENE), load.load(CONFIGURATION).scenes[0]
     theory = SCENE_TABLES["theory"].rows(box, [0.2])
-    points = {stage: [point(stage)] for stage in ("dynamics", "monte_carlo", "intervals")}
+    stages = ("dynamics", "monte_carlo", "intervals")
+    points = {stage: [cost.run_at(scene, stage, 0.2).run()] for stage in stages}
     assert simulated.rows == SCENE_TABLES["mean_times"].rows(box, theory, points)
     areas = SCENE_TABLES["areas"].rows(box, theory, points)
     assert sampled.rows == SCENE_TABLES["volume"].rows(theory, points) + areas
     assert intervals.rows == SCENE_TABLES["hop_histogram"].rows(theory, points)
-    seed = load.load(CONFIGURATION).scenes[0].trajectory_seed
-    followed = SCENE_TABLES["trajectory"].rows(box, 0.2, seed)
-    names = [name for name in followed[0] if name not in ("z1", "z2")]
-    rows = [{**row, "z1": None, "z2": None} for row in trajectory[names].to_dict("records")]
-    assert rows == followed
+    followed = SCENE_TABLES["trajectory"].rows(box, 0.2, scene.trajectory_seed)
+    path = td.trajectory(SCENE, seed=7, name="one").assign(z1=None, z2=None)
+    assert path[[*followed[0]]].to_dict("records") == followed
 
 
 def test_seeds_tell_methods_boxes_and_radii_apart():
@@ -331,22 +320,20 @@ def test_what_changes_with_time_is_drawn_with_its_errors(tmp_path):
 
 
 def test_tables_come_back_with_units_and_provenance(simulated, sampled, tmp_path):
-    folder = tmp_path / "one"
+    folder, provenance = tmp_path / "one", {"seed": 7, "scenes": [{"name": "one"}]}
     folder.mkdir()
     SCENE_TABLES["mean_times"].write(folder / "mean_times.csv", simulated.rows)
     SCENE_TABLES["volume"].write(folder / "volume.csv", sampled.rows[:1])
     (folder / "mine.csv").write_text("a,b\n1,2\n")
-    (tmp_path / "configuration.json").write_text(
-        json.dumps({"seed": 7, "scenes": [{"name": "one"}]})
-    )
+    (tmp_path / "configuration.json").write_text(json.dumps(provenance))
     found = td.load(folder)
     assert [*found] == ["mean_times", "volume"]
     times = found["mean_times"]
-    assert [*times["estimate"]] == [row["estimate"] for row in simulated.rows]
-    assert [*times["count"]] == [row["count"] for row in simulated.rows]
+    for column in ("estimate", "count"):
+        assert [*times[column]] == [row[column] for row in simulated.rows]
     assert times["bound"].isna().all()
     assert times.attrs["units"]["estimate"] == "time"
-    assert times.attrs["configuration"] == {"seed": 7, "scenes": [{"name": "one"}]}
+    assert times.attrs["configuration"] == provenance
     (folder / "volume.csv").write_text("radius,quantity\nx,y\n")
     with pytest.raises(td.InputError, match=r"volume\.csv "):
         td.load(folder)
