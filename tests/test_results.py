@@ -145,11 +145,10 @@ def test_notebooks_show_tables_and_complete_keys():
 
 
 def test_a_scan_is_a_sequence_a_table_and_a_figure(tmp_path):
-    effects = {"radius_ratio": 0.6, "mass_ratio": 3.0}
-    scan = td.scan(1.5, 1.0, [0.2, 0.1], 0.3, **effects)
+    scan = td.scan(1.5, 1.0, [0.2, 0.1], 0.3, field=0.3)
     assert scan.radii == [0.1, 0.2]
     assert scan[1].rows == td.simulate(scan[1].scene, 0.3).rows
-    assert scan[0].scene == td.Scene(1.5, 1.0, 0.1, **effects)
+    assert scan[0].scene == td.Scene(1.5, 1.0, 0.1, field=0.3)
     assert scan.frame().loc[(0.1, "any_wall_time"), "estimate"] == scan[0]["any_wall_time"].value
     td.plot(scan, tmp_path / "scan.png")
     assert (tmp_path / "scan.png").stat().st_size > 5000
@@ -315,7 +314,7 @@ def test_times_are_any_iterable():
     [
         SCENE,
         *(SCENES[name] for name in ("combination", "rough", "friction")),
-        td.Scene(6, 1.0, 0.2, discs=5, periodic="x"),
+        td.Scene(6, 1.0, 0.2, discs=5),
     ],
     ids=str,
 )
