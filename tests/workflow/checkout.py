@@ -210,6 +210,14 @@ def fresh(path):
     return checkout
 
 
+def folder(path, home, configuration):
+    """Return a folder at ``path`` with a ``configuration``, which the checkout ``home`` builds."""
+    place = Checkout(path, home)
+    place.configuration.parent.mkdir(parents=True, exist_ok=True)
+    place.configuration.write_text(yaml.safe_dump(configuration))
+    return place
+
+
 def use(place, configuration, prefix="", more='config:\n        config["discs"]'):
     """Write a workflow that uses the one of a checkout as a module, rules named with a prefix."""
     text = MODULE.format(

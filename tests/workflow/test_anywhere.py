@@ -11,7 +11,7 @@ from importlib.util import find_spec
 
 import pytest
 import yaml
-from checkout import BELOW, Checkout, fresh, use
+from checkout import BELOW, Checkout, folder, fresh, use
 
 TINY = {
     "shared": ["errata", "report"],
@@ -48,14 +48,6 @@ def manifest(place, results="results"):
     return (place.path / results / "manifest.sha256").read_text()
 
 
-def configured(path, home):
-    """Return a folder with the configuration, which a checkout ``home`` builds."""
-    place = Checkout(path, home)
-    place.configuration.parent.mkdir(parents=True)
-    place.configuration.write_text(yaml.safe_dump(TINY))
-    return place
-
-
 @pytest.fixture(scope="module")
 def own(tmp_path_factory):
     """A folder with a configuration of its own, in which everything is built.
@@ -63,7 +55,7 @@ def own(tmp_path_factory):
     No shell may read its name, or that of the checkout which builds it, as a command.
     """
     home = fresh(tmp_path_factory.mktemp("home") / NAME)
-    place = configured(tmp_path_factory.mktemp("place") / NAME, home)
+    place = folder(tmp_path_factory.mktemp("place") / NAME, home, TINY)
     nowhere = Checkout(tmp_path_factory.mktemp("nowhere"), place.home)
     nowhere.snakemake(*there(place), "--cores", "2")
     assert [*nowhere.path.iterdir()] == []
@@ -77,8 +69,8 @@ def test_with_a_configuration_of_its_own_everything_is_built_in_that_folder(own)
     assert "paper.pdf" not in names
     assert not (own.home.path / "results").exists()
     assert own.jobs(*there(own)) == []
-    for folder in (own.path.parent, own.home.path.parent):
-        assert not [*folder.rglob("X")]
+    for parent in (own.path.parent, own.home.path.parent):
+        assert not [*parent.rglob("X")]
 
 
 def test_every_path_in_a_shell_line_is_quoted(tmp_path):
@@ -126,7 +118,7 @@ def test_as_a_module_it_builds_in_a_folder_with_a_prefix(own, tmp_path):
 )
 def test_in_a_storage_it_makes_the_same_files(own, tmp_path):
     store = Checkout(tmp_path / "store")
-    place = configured(tmp_path / "place", own.home)
+    place = folder(tmp_path / "place", own.home, TINY)
     storage = "--default-storage-provider", "fs", "--default-storage-prefix", str(store.path)
     place.snakemake("--cores", "2", *storage)
     assert manifest(store) == manifest(own)
@@ -182,7 +174,7 @@ def test_it_is_deployed_from_a_repository_that_is_hosted(own, complete, tmp_path
     for words in ("init --quiet", "add .", "commit --quiet -m a", "tag v1"):
         subprocess.run(["git", "-C", hosted, *words.split()], check=True)
 
-    place = configured(tmp_path / "mine", complete)
+    place = folder(tmp_path / "mine", complete, TINY)
     (place.path / "Snakefile").write_text(DEPLOYED)
     place.snakemake("--cores", "2", "--", "all")
     assert manifest(place) == manifest(own)

@@ -8,7 +8,7 @@ from importlib.util import find_spec
 import psutil
 import pytest
 import yaml
-from checkout import REPOSITORY, Checkout
+from checkout import REPOSITORY, folder
 from slurm import missing, running
 
 #: Points that are small enough for one job; and one with effects, in shards.
@@ -23,51 +23,37 @@ SCENES = {
     },
 }
 BOX = {"box": {"width": 1.5, "height": 1.0}, "event_budget": 1e7}
-TABLES = [f"results/{name}/mean_times.csv" for name in SCENES]
+SCENES = [{"name": name} | BOX | scene for name, scene in SCENES.items()]
+CONFIGURATION = {"shared": [], "shard_events": 1e7, "scenes": SCENES}
+TABLES = [f"results/{scene['name']}/mean_times.csv" for scene in SCENES]
 
 
-def place_at(path, home):
-    """Return a folder with a configuration to be built by the sources of ``home``."""
-    place = Checkout(path, home)
-    place.configuration.parent.mkdir(parents=True)
-    scenes = [{"name": name} | BOX | scene for name, scene in SCENES.items()]
-    configuration = {"shared": [], "shard_events": 1e7, "scenes": scenes}
-    place.configuration.write_text(yaml.safe_dump(configuration))
-    return place
-
-
-def build(place, *arguments):
-    """Return the tables of a build."""
+def build(path, home, *arguments):
+    """Return the tables of a build at ``path`` by the sources of ``home``."""
+    place = folder(path, home, CONFIGURATION)
     place.snakemake(*arguments, "--", *TABLES)
     return [(place.path / name).read_bytes() for name in TABLES]
 
 
-def counted(home, folder):
+def counted(home, path):
     """Return how many jobs of a build take time: points and shards."""
-    jobs = place_at(folder / "planned", home).jobs(*TABLES)
+    jobs = folder(path / "planned", home, CONFIGURATION).jobs(*TABLES)
     assert {"dynamics", "shard"} <= {rule for rule, _ in jobs}
     return sum(rule in ("dynamics", "shard") for rule, _ in jobs)
 
 
-needs_queue = pytest.mark.skipif(
-    find_spec("snakemake_executor_plugin_cluster_generic") is None,
-    reason="the extra `cluster` is not installed",
-)
-
-
 @pytest.fixture(scope="module")
 def local(unbuilt, tmp_path_factory):
-    place = place_at(tmp_path_factory.mktemp("local") / "here", unbuilt)
-    return build(place, "--cores", "2")
+    return build(tmp_path_factory.mktemp("local"), unbuilt, "--cores", "2")
 
 
 def profile(home, name, **other):
     """Return the arguments for a profile with ``other`` settings, kept beside it."""
     settings = yaml.safe_load((REPOSITORY / "profiles" / name / "config.yaml").read_text())
-    folder = home / f"{name}-here"
-    folder.mkdir()
-    (folder / "config.yaml").write_text(yaml.safe_dump(settings | other))
-    return "--profile", str(folder)
+    place = home / f"{name}-here"
+    place.mkdir()
+    (place / "config.yaml").write_text(yaml.safe_dump(settings | other))
+    return "--profile", str(place)
 
 
 def queue(home):
@@ -100,8 +86,11 @@ def kill_a_job(jobs):
     raise AssertionError("no job counted events")
 
 
-@needs_queue
 @pytest.mark.slow
+@pytest.mark.skipif(
+    find_spec("snakemake_executor_plugin_cluster_generic") is None,
+    reason="the extra `cluster` is not installed",
+)
 def test_a_queue_of_scripts(local, unbuilt, tmp_path, monkeypatch):
     """A job of it that is killed is submitted once more."""
     jobs = tmp_path / "jobs"
@@ -109,14 +98,14 @@ def test_a_queue_of_scripts(local, unbuilt, tmp_path, monkeypatch):
     monkeypatch.setenv("TMPDIR", str(jobs))
     with ThreadPoolExecutor() as threads:
         killed = threads.submit(kill_a_job, jobs)
-        assert build(place_at(tmp_path / "queue", unbuilt), *queue(tmp_path)) == local
+        assert build(tmp_path / "queue", unbuilt, *queue(tmp_path)) == local
         killed.result()
     assert len([*jobs.glob("*/process")]) == counted(unbuilt, tmp_path) + 1
 
 
 @pytest.fixture
 def slurm(tmp_path, monkeypatch):
-    """A Slurm that runs, (its folder, its environment), and arguments for its profile."""
+    """A Slurm that runs: its folder, and arguments for its profile."""
     if missing() is not None:
         pytest.skip(missing())
     settings = {"slurm-status-command": "squeue", "latency-wait": 5}
@@ -125,16 +114,12 @@ def slurm(tmp_path, monkeypatch):
     with running(tmp_path / "slurm") as environment:
         for name in ("PATH", "SLURM_CONF"):
             monkeypatch.setenv(name, environment[name])
-        yield tmp_path / "slurm", environment, profile(tmp_path, "slurm", **settings)
-
-
-def submitted(folder):
-    """Return how many jobs Slurm was given."""
-    return (folder / "slurmctld.log").read_text().count("submit_batch_job: JobId=")
+        yield tmp_path / "slurm", profile(tmp_path, "slurm", **settings)
 
 
 @pytest.mark.slow
 def test_slurm(local, unbuilt, tmp_path, slurm):
-    folder, _, arguments = slurm
-    assert build(place_at(tmp_path / "jobs", unbuilt), *arguments) == local
-    assert submitted(folder) == counted(unbuilt, tmp_path)
+    place, arguments = slurm
+    assert build(tmp_path / "jobs", unbuilt, *arguments) == local
+    log = (place / "slurmctld.log").read_text()
+    assert log.count("submit_batch_job: JobId=") == counted(unbuilt, tmp_path)

@@ -7,8 +7,7 @@ import sys
 import time
 
 import pytest
-import yaml
-from checkout import fresh
+from checkout import folder, fresh
 
 JOB = "results/one/points/monte_carlo/0.2.json"
 ENDLESS = {
@@ -84,7 +83,7 @@ def slow(*case):
 )
 def test_a_killed_run_leaves_no_job_and_the_next_one_resumes(tmp_path, command, name):
     checkout = fresh(tmp_path / "checkout")
-    checkout.configuration.write_text(yaml.safe_dump({"shared": [], "scenes": [ENDLESS]}))
+    folder(checkout.path, None, {"shared": [], "scenes": [ENDLESS]})
     run = begun(checkout, *command.split(), "--cores", "1", JOB)
     if name == "SIGKILL":
         run.kill()

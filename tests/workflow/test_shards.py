@@ -3,8 +3,7 @@
 import shutil
 
 import pytest
-import yaml
-from checkout import BELOW, Checkout, use
+from checkout import BELOW, Checkout, folder, use
 
 from twodiscs.points.base import read_json
 from twodiscs_paper.configuration.load import load
@@ -27,18 +26,9 @@ TABLE = "results/tiny/mean_times.csv"
 
 
 def place_at(path, home, **keys):
-    """Return a folder with a configuration in which ``keys`` differ."""
-    place = Checkout(path, home)
-    change(place, **keys)
-    return place
-
-
-def change(place, **keys):
-    """Write a configuration with other ``keys`` at its top, or of its scene."""
+    """Return a folder with a configuration in which ``keys`` differ, of all or of the scene."""
     top = {name: keys.pop(name) for name in TINY.keys() & keys.keys()}
-    place.configuration.parent.mkdir(parents=True, exist_ok=True)
-    content = TINY | top | {"scenes": [TINY["scenes"][0] | keys]}
-    place.configuration.write_text(yaml.safe_dump(content))
+    return folder(path, home, TINY | top | {"scenes": [TINY["scenes"][0] | keys]})
 
 
 def build(place):
@@ -49,8 +39,8 @@ def build(place):
 
 def shards(place):
     """Return {path: time stamp} of the shards."""
-    folder = place.path / "results" / "tiny" / "shards"
-    return {path: path.stat().st_mtime_ns for path in folder.rglob("*.json")}
+    paths = (place.path / "results" / "tiny" / "shards").rglob("*.json")
+    return {path: path.stat().st_mtime_ns for path in paths}
 
 
 def test_shards_are_jobs_that_a_dry_run_shows_and_do_not_depend_on_the_accuracy(unbuilt, tmp_path):
@@ -71,7 +61,7 @@ def test_shards_are_jobs_that_a_dry_run_shows_and_do_not_depend_on_the_accuracy(
     assert all(any(f"/{part}-" in name for name in files) for part in ("all", "horizontal_hop"))
     place.snakemake("--cores", "1", "results/code/physics.sha256")
     place.snakemake("--cores", "1", "--touch", "--", *files)
-    change(place, accuracy=5e-4)
+    place_at(place.path, unbuilt, accuracy=5e-4)
     assert planned()
     assert not planned() & first
 
@@ -93,14 +83,14 @@ def test_no_shard_is_done_twice(unbuilt, tmp_path):
     first = shards(place)
 
     # A tighter accuracy takes more shards: of each part the last one alone may be another.
-    change(place, accuracy=5e-4)
+    place_at(place.path, unbuilt, accuracy=5e-4)
     assert build(place).count(b",0.0005,reached,") == 2
     second = shards(place)
     assert all(second[path] == stamp for path, stamp in first.items())
     assert len(second) > len(first)
 
     # Another radius is of no consequence to the point there is; the old accuracy is still known.
-    change(place, radii=[0.24, 0.3])
+    place_at(place.path, unbuilt, radii=[0.24, 0.3])
     assert build(place).startswith(table)
     assert all(shards(place)[path] == stamp for path, stamp in second.items())
 
