@@ -97,35 +97,29 @@ depth: 1, moment_of_inertia: 0.4 → moment_of_inertia must be left out in a box
 
 #: Calls of the face.
 CALLS = """
-Scene(1.5, 1, 0.1, discs=True) → discs must be an integer of at least 2, not True
 Scene(1.5, 1, 0.1, periodic='x,y') → periodic must be some of the axes x and y (z needs a depth), …
 Scene('0,3', 1, 0.1) → width must be a positive number, not '0,3'; decimals follow a point, 0.3
 Scene(1.5, 1, 0.1, mass_ratio=0) → mass_ratio must be a positive, finite ratio, not 0.0
 Scene(1.5, 1, 0.1, n_discs=3) → 'n_discs'; did you mean discs?
 Scene(1.5, 1, np.array([0.1, 0.2])) → radius must be
-Scene(1.5, 1, 0.1, periodic=np.array([0.1, 0.2])) → periodic must be
 Scene(1.5, 1, 0.1, discs=3, periodic='x').turned() → periodic must be left out or
 Scene(1.5, 1) → missing 1 required positional argument: 'radius'
 Box.of(3) → scene must be a Scene, not 3
 exact.rate('any_wall', PAPER) → scene must be a Scene, not 'any_wall'
 td.simulate(PAPER, evnets=['any_wall']) → 'evnets'; did you mean events?
 td.simulate() → missing 1 required positional argument: 'scene'
-td.simulate(PAPER, scene=PAPER) → got multiple values for argument 'scene'
 td.simulate(PAPER, events='any wall') → ; did you mean any_wall?
 td.simulate(PAPER, events={'any_wall': 1e-9}) → events must be some of vertical_hop,
 td.simulate(PAPER, 0.5, progress=1) → progress must be True, False or None, not 1
 td.simulate(PAPER, 0.1, duration=10) → error and duration must not both be given
 td.simulate(PAPER, duration=1e9, budget=1e6) → duration must be below
 td.simulate(PAPER, seed=2**63) → seed must be an integer from 0 to 2^63 - 1, not 9223372036854775808
-td.simulate(PAPER, True) → must be a number above 0 and at most 1, or one of draft, …, not True
 td.simulate(RING, events='right_wall') → 'right_wall': the periodic axis x has no walls
 td.simulate(RING, events='horizontal_hop') → x two discs have no order that a hop could change
-td.sample(RING, 1, quantities='horizontal_hop_area') → x two discs have no order that a hop could
 td.intervals(RING, 'horizontal_hop') → x two discs have no order that a hop could change
 td.simulate(FOUR, events='horizontal_hop') → axis x are those of neighbours, see transmission
 td.intervals(FOUR, 'horizontal_hop') → axis x are those of neighbours, see transmission
 td.sample(PAPER, quantities='any_wall') → did you mean any_wall_area?
-td.sample(PAPER, 1, shell='0.5') → shell must be a number between 0 and 1, not '0.5'
 td.sample(PAPER, 1, shell=1.0) → shell must lie between 0 and 1, ends excluded, not 1.0
 td.sample(PAPER, 1).save('\\0') → path must be a file to write, not '\\x00': it has a
 td.sample(PAPER, 1).save('no/a.json') → path must be a file to write, not 'no/a.json'
@@ -133,13 +127,12 @@ td.plot(BOX, 'no/a.png') → path must be a file to write, not 'no/a.png'
 td.animate(td.trajectory(PAPER, 1), 'no/a.gif') → path must be a file to write, not 'no/a.gif'
 td.load_result('\\0') → path must be the path of a file, not '\\x00'
 td.load_result('absent.json') → path must be a file to read
-td.load('src') → folder must hold tables of results, but 'src' has none
 td.load('nothere') → tables of results, but 'nothere' does not exist
+td.load('src') → folder must hold tables of results, but 'src' has none
 td.scan(1.5, 1, [0.1], gravity=1) → gravity is no effect; effects must be some of
 td.scan(1.5, 1, []) → radii must have at least one radius
 td.scan(1.5, 1, [0.2, 0.2]) → radii must differ, because one radius has the same
 td.sample(PAPER, 1).more(budget=1e7) → to go on, give samples=
-td.simulate(PAPER, 0.5, budget=1).more(samples=10) → samples must be left out for a result of simu…
 td.simulate(PAPER, 0.5, budget=1).more(duration=10) → duration must be left out for a result of …
 start(x1=0.2) → have the discs apart, with 0.4 or more between their centres, not 0.3
 start(x1=-0.6) → disc 1 inside the box, with x1 between -0.55 and 0.55, not -0.6
@@ -152,7 +145,6 @@ observe(1) → function must take two arrays of states, not be 1
 observe(lambda a, b: 1.0) → function must return a real number, or the same
 observe(lambda a, b: None) → 4096 replicas, not None: is its return missing?
 observe(lambda a, b: b) → an array with the fields x1, y1, x2, y2, u1, v1
-observe(lambda a, b: [b['x1'], [0.0]]) → 4096 replicas, not [array(
 observe(lambda a, b: b['x1'].astype(str)) → of shape (4096,) and kind <U
 observe(lambda a, b: b['x1'] + 1j) → real and imaginary part as two columns
 td.plot(td.observe(PAPER, nine, [1], 1)) → at most 8 averages at a time to be drawn, not 9
@@ -201,23 +193,19 @@ a: 1⏎b: 2001-13-41 → FILE: month must be in 1..12
 a: *b → FILE, line 1: found undefined alias 'b'
 # café⏎a: \udce9 → FILE: must be UTF-8, which has no byte 0xe9 here
 seed: 010 → FILE, line 1: 010 must be a decimal number or text in quotes: YAML reads 8
-seed: 0x1F → FILE, line 1: 0x1F must be a decimal number …: YAML reads 31
 scenes: [{radii: [0.1, 1_0.5]}] → FILE, line 1: 1_0.5 must be …: YAML reads 10.5
 010: 1 → FILE, line 1: 010 must be a decimal number …: YAML reads 8
 results: here → the configuration needs the key 'scenes'
 scenes: [] → scenes must be a non-empty list of scenes, not []
-scenes: [a] → scenes[0] must be a block of keys, at least name and box, not 'a'
 scenes: &a [*a] → scenes[0] must be a block of keys, at least name and box, not [[[...]]]
-scenes: [{box: {width: 1, height: 1}}] → scenes[0] needs the key 'name'
+scenes: [a] → scenes[0] must be a block of keys, at least name and box, not 'a'
 scene: [] → the configuration has an unknown key 'scene'; did you mean 'scenes'?
 SCENE⏎zz: 1 → the configuration has an unknown key 'zz'; its keys are TOP_KEYS
-SCENE⏎null: 2 → the configuration has an unknown key empty; its keys are results, …
 SCENE⏎accuracy: 1 → the configuration has an unknown key 'accuracy'; it belongs in a scene
 SCENE⏎seed: '010' → seed must be an integer …, not '010'
 SCENE⏎seed: -1 → seed must be an integer from 0 to 2^63 - 1, not -1
 SCENE⏎results: ../elsewhere → results must be a path, …, not '../elsewhere'
 SCENE⏎results: src → results must be … outside the folders of the sources, not 'src'
-SCENE⏎results: out/ → results must be a path, … without a slash at its end, …, not 'out/'
 SCENE⏎shared: [paper, paper] → shared must be a list of different …, not ['paper', 'paper']
 SCENE⏎shared: [papers] → shared[0] must be one of …, not 'papers'; did you mean 'paper'?
 """
@@ -227,7 +215,6 @@ IN_SCENE = """
 name: a/b → .name must be a name of small letters…, not 'a/b'
 name: figures → .name must be … none of all, benchmarks, …, not 'figures'
 box: [1.5, 1] → .box must be a block {width: …, height: …}, …, not [1.5, 1]
-box: {width: 1.5} → .box needs the key 'height'
 width: 1 →  has an unknown key 'width'; it belongs in 'box'
 box: {discs: 3} → .box has an unknown key 'discs'; it belongs in a scene
 box: {width: 1,5, height: 1} → .box has an unknown key 5; decimals have a point
@@ -235,7 +222,6 @@ box: {width: 1.5, heigth: 1} → .box has an unknown key 'heigth'; did you mean 
 box: {width: 1, height: '1,2'} → .box.height must be a positive length …; decimals …, 1.2
 discs: 2.5 → .discs must be an integer from 2 to 1024, not 2.5
 discs: 65⏎radii: [0.01]⏎watch: {volume: true} → .watch.volume must be false for more than 64 discs…
-discs: 65⏎radii: [0.01]⏎watch: {areas: [any_wall]} → .watch.areas must be false for more than 64 …
 radii: [] → .radii must be a non-empty list of radii, or a block …, not []
 radii: [0.1, 0.2, 1e-1] → .radii must hold every radius once, but …
 radii: {smallest: 0.4} → .radii.smallest: radius 0.4 does not fit: …
@@ -252,13 +238,11 @@ effects: {periodic: [w]} → .effects.periodic[0] must be an axis …, not 'w'
 effects: {periodic: [x]}⏎watch: {mean_times: [horizontal_hop]} → .watch.mean_times must hold event…
 effects: {periodic: [x]}⏎watch: {hop_histogram: {event: horizontal_hop}} → … such as vertical_hop, …
 effects: {periodic: xy}⏎watch: {hop_histogram: true} → … must be false, because on these periodic …
-effects: {periodic: xy}⏎watch: {trajectory: 0.1} → … must be false, because on these periodic …
 effects: {moment_of_inertia: 0.5}⏎watch: {hop_histogram: [0.1]} → … because rough discs in a box …
 effects: {field: 1}⏎radii: [0.1, 0.378] → .radii: with field 1.0, radius 0.378 leaves … positions, …
 effects: {radius_ratio: 2}⏎radii: {smallest: 0.24} → .radii: smallest must be below 0.225…, not 0.24
 accuracy: papper → .accuracy must be …, not 'papper'; did you mean 'paper'?
 accuracy: {rihgt_wall: 1} → .accuracy has an unknown key 'rihgt_wall'; did you mean 'right_wall'?
-event_budget: 2.5 → .event_budget must be an integer from 1 to 1e15, not 2.5
 monte_carlo: 1e8 → .monte_carlo must be a block of the keys samples, shell, not '1e8'
 """
 

@@ -153,8 +153,7 @@ def test_measurements_know_their_errors_and_print_themselves(simulated, sampled)
     assert lines[0] == "Two discs of radius 0.2 in a box of 1.5 × 1.0"
     assert [line.split()[0] for line in lines[3:9]] == [f"{event}_time" for event in td.EVENTS]
     assert len({line.index("time", 24) for line in lines[3:9]}) == 1
-    frame = sampled.frame()
-    assert frame.loc["volume", "estimate"] == sampled["volume"].value
+    assert sampled.frame().loc["volume", "estimate"] == sampled["volume"].value
     assert "length⁴" in str(sampled["volume"])
 
 
@@ -198,8 +197,7 @@ def test_columns_of_a_printed_table_keep_apart(radius):
 
 
 def test_a_quantity_has_one_name(simulated, sampled):
-    times = [f"{event}_time" for event in td.EVENTS]
-    areas = [f"{event}_area" for event in td.EVENTS]
+    times, areas = ([f"{event}_{of}" for event in td.EVENTS] for of in ("time", "area"))
     assert list(simulated) == list(td.mean_times(SCENE)) == list(simulated.frame().index) == times
     assert [m.quantity for m in simulated.values()] == times
     assert list(sampled) == list(sampled.frame().index) == ["volume", *areas]
@@ -227,9 +225,10 @@ def test_intervals_have_a_mean_and_a_density_at_zero(intervals):
     assert abs(zero.value - zero.exact) < 5 * zero.stderr + 0.01 * zero.exact
     assert math.isclose(zero.exact, 3 * math.sqrt(2) / 16 / 0.6)
     assert sum(intervals.counts) + intervals.overflow == intervals.intervals
-    assert len(intervals.density) == len(intervals.edges) - 1 == len(intervals.frame())
-    assert [*intervals.frame()["count"]] == intervals.counts
-    assert intervals.frame().index.is_unique
+    frame = intervals.frame()
+    assert len(intervals.density) == len(intervals.edges) - 1
+    assert [*frame["count"]] == intervals.counts
+    assert frame.index.is_unique
     assert "density_at_zero" in str(intervals)
 
 

@@ -137,8 +137,8 @@ def test_errors_that_are_not_given_and_presets_are_those_of_the_pages():
 
 def test_notebooks_show_tables_and_complete_keys():
     found = td.simulate(SCENE, 0.5, budget=1)
-    assert found._ipython_key_completions_() == [f"{event}_time" for event in td.EVENTS]
     html = found._repr_html_()
+    assert found._ipython_key_completions_() == [f"{event}_time" for event in td.EVENTS]
     assert html.count("<tr>") == len(td.EVENTS)
     assert "<td>vertical_hop_time</td>" in html
     assert "<table " in td.intervals(SCENE, "vertical_hop", 1)._repr_html_()

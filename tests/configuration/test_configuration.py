@@ -35,23 +35,17 @@ def one(**keys):
 # Files of the repository
 
 
-def test_the_default_configuration_and_its_draft():
+def test_the_draft_is_a_quick_look_at_the_scenes_of_the_default_configuration():
     mapping = read(ROOT / "config/config.yaml")
-    paper, long = load.load(mapping).scenes
-    assert (paper.name, paper.box) == ("paper", Box(1.5, 1.0))
-    assert (long.name, long.box) == ("long", Box(3.0, 1.0))
-    assert {0.01, 0.05, 0.1, 0.2, 0.24, 0.3, 0.38} <= {*paper.radii}
-    assert not {0.25, 0.375, paper.box.largest_radius} & {*paper.radii}
-    assert paper.event_budget == 2 * 10**9
+    full = load.load(mapping)
     # As --configfile does: the draft's lists replace, its blocks are merged.
     update_config(mapping, read(ROOT / "config/draft.yaml"))
     draft = load.load(mapping)
-    assert draft.results == "results/draft"
-    for quick, slow in zip(draft.scenes, (paper, long), strict=True):
+    assert (full.results, draft.results) == ("results", "results/draft")
+    for quick, slow in zip(draft.scenes, full.scenes, strict=True):
         assert (quick.name, quick.box) == (slow.name, slow.box)
         assert quick.quantities.names == slow.quantities.names
-        assert len(quick.radii) <= 10
-        assert slow.dynamics["accuracy"] == dict.fromkeys(EVENTS, 3e-4)
+        assert len(quick.radii) <= 10 < len(slow.radii)
         assert quick.dynamics["accuracy"] == dict.fromkeys(EVENTS, 1e-2)
 
 
