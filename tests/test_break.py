@@ -1,4 +1,4 @@
-"""The break test: random scenes through the face, and whether their errors are right.
+"""The break test: an error bar could be wrong in some scene, so random ones go through the face.
 
 Scores of a scene share its trajectories, so only one random score of each call is used:
 scores of different calls are independent and standard normal. Their mean square and their coverage

@@ -1,4 +1,4 @@
-"""Every scene that is accepted ends soon if little is asked for, or is refused in one sentence.
+"""A scene could be accepted and then take hours or all memory, though little is asked for.
 
 Effects are at their ends, radii close to the largest, rings of every aspect. A call runs in a
 process of its own, with limits on processor time and memory. The first call may compile, so that

@@ -1,4 +1,4 @@
-"""Every mutant of the list is still a mistake: its text is in the sources once, near tests."""
+"""The mutants: an edit of the sources could take away the text of one, and nobody would see it."""
 
 import mutants
 import pytest
