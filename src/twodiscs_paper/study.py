@@ -58,6 +58,11 @@ def row(start, found=None, **cells):
     return start | cells
 
 
+def select(rows, **wanted):
+    """Return the ``rows`` that have these values."""
+    return [row for row in rows if all(row[name] == value for name, value in wanted.items())]
+
+
 def main_box(configuration):
     """Return the parameters "box" and "seed" of a study that is about the first scene."""
     return {"box": configuration.main.box.parameters(), "seed": configuration.seed}

@@ -137,8 +137,8 @@ def _passages():
         kappa, times = of(own, quantity="coefficient"), of(own, quantity="passage_time")
         yield "passages", "times", *look, _columns(times, "distance")
         if inertia is None:
-            kept = read_table(EXPECTED.parent / "long_run" / "passages" / "passages.csv")
-            kappa = [*kappa, *of(kept, quantity="coefficient", scene="h/4")]
+            kept = of(_long_run("passages"), quantity="coefficient", scene="h/4")
+            kappa = [*kappa, *kept]
             kappa = [_over_cube_root(row) for row in kappa]
         yield "transmission", "rough" if inertia else "smooth", *look, _columns(kappa, "distance")
         shown = [2.0**-n for n in passages.SHOWN.get(inertia, ())]
@@ -156,9 +156,9 @@ def _passages():
             ),
         )
     for discs, look in diffusion.FILES.items():
-        own = of(rows, quantity="diffusion", discs=discs)
+        own = of(_long_run("files"), quantity="diffusion", discs=discs)
         yield "diffusion", "files", *look, _columns(own, "distance")
-    yield from _long_files(rows)
+    yield from _long_files(_long_run("displacements"))
     for rate, look in friction.LOOKS.items():
         own = of(rows, friction=rate, quantity="coefficient")
         yield "friction", "kappa", *look, [(_scaled(r), r["estimate"], r["stderr"]) for r in own]
@@ -167,6 +167,10 @@ def _passages():
         middle = [math.sqrt(_scaled(a) * _scaled(b)) for a, b in pairwise(own)]
         due = [(x, r["estimate"], r["stderr"]) for x, r in zip(middle, steps, strict=True)]
         yield "friction", "exponent", *look, due
+
+
+def _long_run(name):
+    return read_table(EXPECTED.parent / "long_run" / name / "passages.csv")
 
 
 def _long_files(rows):
@@ -342,7 +346,8 @@ def test_the_laws_of_passages_with_friction_are_one_and_three_quarters_over_x():
 def test_residuals_are_those_of_the_table():
     for name, looks in (("transmission", transmission), ("diffusion", diffusion)):
         for quantity, (colour, marker, _) in looks.RESIDUAL_LOOKS.items():
-            rows = of(table("passages"), quantity=quantity)
+            rows = [*table("passages"), *_long_run("displacements")]
+            rows = of(rows, quantity=quantity)
             # Two discs with friction have a figure of their own.
             rows = [row for row in rows if row["friction"] is None or row["discs"] > 2]
             due = {(r["distance"], r["z"]) for r in rows if r["z"] is not None and r["distance"]}

@@ -10,7 +10,10 @@ import pytest
 import yaml
 
 from twodiscs.dynamics.two.passages import HOPS_OF_BLOCK
+from twodiscs.model.box import Box
 from twodiscs.points.base import read_json
+from twodiscs.sampling.many import insertions
+from twodiscs.theory.virial import rates
 from twodiscs_paper.studies.passages import measure as passages
 from twodiscs_paper.studies.passages.study import Passages
 from twodiscs_paper.studies.tails import measure as tails
@@ -23,7 +26,7 @@ def kept(name, table):
     """Return (configuration, rows) of a long run."""
     folder = PAPER / "long_run" / name
     configuration = yaml.safe_load((folder / "config.yaml").read_text(encoding="utf-8"))
-    return configuration, table.read(folder / f"{name}.csv")
+    return configuration, table.read(folder / f"{table.name()}.csv")
 
 
 def of(rows, **where):
@@ -116,16 +119,52 @@ def test_hops_of_a_disc_come_more_often_in_a_longer_file():
 
 
 def test_files_diffuse_by_passages_if_hops_are_rare():
-    """D = κ ν ℓ² in a file of 128 discs at δ = 1/32, smooth and with friction, and D < ν ℓ²."""
+    """D = κ ν ℓ² in files at δ = 1/32, smooth ones and one with friction, and D < ν ℓ²."""
     rows = of(kept_files()[3], distance=1 / 32)
-    for friction in {row["friction"] for row in rows}:
-        (moves,) = of(rows, quantity="diffusion", friction=friction)
-        kappa = of(rows, quantity="coefficient", friction=friction)[2:]
+    files = {(row["discs"], row["friction"]) for row in rows}
+    assert len(files) == 4
+    for discs, friction in files:
+        own = of(rows, discs=discs, friction=friction)
+        (moves,) = of(own, quantity="diffusion")
+        kappa = of(own, quantity="coefficient")[2:]
         assert len(kappa) == 3  # a pause of 2, 4 and 8 has the same κ
         for one in kappa:
             assert deviation(one, moves) < 5
             assert one["stderr"] < 0.01 * one["estimate"]
         assert moves["estimate"] + 5 * moves["stderr"] < 1
+
+
+@pytest.mark.parametrize("discs", [4, 8])
+def test_hops_of_short_files_are_those_of_monte_carlo(discs):
+    """At two distances; closer to the threshold insertions find too few hops."""
+    for halvings in (3, 4):
+        where = {"quantity": "rate", "discs": discs, "distance": 2.0**-halvings}
+        (found,) = of(kept_files()[3], **where)
+        scene, _ = passages.file_of(Box(1.5, 1.0), discs, halvings)
+        value, error = (
+            2 / discs * rates(scene, part)["horizontal_hop"]  # two discs take part in a hop
+            for part in insertions.sample(scene, 2**17, 4)
+        )
+        assert abs(found["estimate"] - value) < 5 * math.hypot(found["stderr"], error)
+        assert error < 0.05 * value
+
+
+def test_displacements_of_the_build_are_among_those_of_the_long_run():
+    """They have the same streams; open files have D by the longer run within five errors."""
+    _, found = kept("displacements", Passages)
+    own = of(Passages.read(PAPER / "expected" / "passages.csv"), discs=128)
+    radii = {row["radius"] for row in own}
+    same = [row for row in found if row["friction"] and row["radius"] in radii]
+    assert radii == {0.27, 0.28, 0.3}
+    for radius in radii:
+        assert_same(of(own, radius=radius), of(same, radius=radius))
+    compared = 0
+    for row in of(found, quantity="diffusion"):
+        for other in of(kept_files()[3], quantity="diffusion", discs=128, distance=row["distance"]):
+            if bool(other["friction"]) == bool(row["friction"]):
+                assert deviation(row, other) < 5
+                compared += 1
+    assert compared == 3
 
 
 def test_passages_agree_with_those_of_the_build():

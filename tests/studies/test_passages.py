@@ -5,6 +5,7 @@ fewer than 2e-5 of all seeds.
 """
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,12 +17,13 @@ from twodiscs.figures import style
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import Estimate
+from twodiscs.sampling.many import insertions
 from twodiscs.theory import exact
+from twodiscs.theory.virial import rates
 from twodiscs_paper.studies.estimates import LinearFit, mean_of
 from twodiscs_paper.studies.passages import (
     figure,
     figure_diffusion,
-    figure_files,
     figure_transmission,
     measure,
 )
@@ -90,15 +92,21 @@ def test_a_power_is_fitted_to_the_last_octaves():
 # A file of discs ----------------------------------------------------------------------------------
 
 
+def walked(scene, time, replicas, seed):
+    """Return (D/(ν ℓ²), hops of a disc per time) by displacements from ``time`` to twice of it."""
+    places, hops = file.recorded(scene, time, 2, replicas, seed)
+    early, late = file.squares(places, [1, 2]) / (scene.width / scene.discs) ** 2
+    per_time = hops / (2 * time)
+    return file.quotient((late - early) / time, per_time), mean_of(per_time)
+
+
 def test_two_discs_in_a_file_move_as_their_hops_are_correlated():
     """Against the exact rate, and D by correlations of hops, which another kernel counts."""
     scene = Box(1.5, 1.0, {"periodic": "x"}).scene(0.21875)
     rows = list(measure.one_ring("ring", BOX, None, 2**18, 1))
     due = next(row for row in rows if row["quantity"] == "diffusion" and row["method"] == "hops")
     assert due["radius"] == scene.radius
-    moved, hops = file.diffusion(
-        Scene(1.5, 1.0, scene.radius, discs=2, periodic="x"), 64.0, 4096, 2
-    )
+    moved, hops = walked(Scene(1.5, 1.0, scene.radius, discs=2, periodic="x"), 64.0, 4096, 2)
     assert abs(hops.value - exact.passing_rate(scene, HOP)) < 5 * hops.stderr
     assert abs(moved.value - due["estimate"]) < 5 * math.hypot(moved.stderr, due["stderr"])
 
@@ -106,10 +114,13 @@ def test_two_discs_in_a_file_move_as_their_hops_are_correlated():
 @pytest.mark.parametrize("inertia", [None, 0.5])
 def test_hops_in_a_file_are_those_of_monte_carlo(inertia):
     scene = Scene(2.25, 1.0, 0.2, discs=3, periodic="x", moment_of_inertia=inertia)
-    _, hops = file.diffusion(scene, 16.0, 2048, 3)
-    sampled = file.sampled_rate(scene, 10**5, 4)
-    assert sampled.stderr < 0.05 * sampled.value
-    assert abs(hops.value - sampled.value) < 5 * math.hypot(hops.stderr, sampled.stderr)
+    _, hops = walked(scene, 16.0, 2048, 3)
+    value, error = (
+        2 / scene.discs * rates(scene, part)["horizontal_hop"]  # two discs take part in a hop
+        for part in insertions.sample(scene, 10**5, 4)
+    )
+    assert error < 0.05 * value
+    assert abs(hops.value - value) < 5 * math.hypot(hops.stderr, error)
 
 
 def test_hops_that_know_nothing_of_each_other_have_the_ratio_one(monkeypatch):
@@ -119,7 +130,7 @@ def test_hops_that_know_nothing_of_each_other_have_the_ratio_one(monkeypatch):
     ways = way * np.array([[0, 0, 0, 0], [1, -1, 1, -1], [2, -2, 0, 0]])
     places = ways[:, :, None] + np.random.default_rng(1).random((4, 2))
     monkeypatch.setattr(file, "recorded", lambda *given: (places, np.full(2, hops)))
-    moved, rate = file.diffusion(scene, 16.0, 2, 3)
+    moved, rate = walked(scene, 16.0, 2, 3)
     assert moved.value == pytest.approx(1, rel=1e-12)
     assert rate.value == pytest.approx(hops / 32, rel=1e-12)
 
@@ -189,7 +200,7 @@ def test_a_long_file_with_kicks_has_the_law_of_its_density(monkeypatch):
         "LONG_FILE": 64, "LONG_REPLICAS": 24, "OPEN": (4,), "RECORDS": 96,
     }.items():  # fmt: skip
         monkeypatch.setattr(measure, name, value)
-    rows = list(measure.in_long_file("long", BOX, [0.28, 0.3], 1))
+    rows = list(measure.displacements("long", 1.5, 1.0, [0.28, 0.3], 1))
     judged = [row for row in rows if row.get("z") is not None]
     assert {row["quantity"] for row in judged} == {"single_file"}
     assert len(judged) == 3
@@ -267,14 +278,20 @@ def test_the_measured_density_is_the_limit_of_long_waves():
     assert abs(found.value) < 5 * found.stderr < 0.1 * shortest
 
 
+LONG_RUNS = {"kept": []} | {
+    name: Passages.read(Path(__file__).parents[2] / f"paper/long_run/{name}/passages.csv")
+    for name in ("files", "displacements")
+}
+
+
 def joined(name, box, inertias=(0.5,)):
     """Return the rows of all parts that there are for a box."""
     own, parts = {"name": name, "box": box, "events": 2**18, "seed": 1}, []
     for hop in measure.thresholds(box):
         some = inertias if hop == [*measure.thresholds(box)][-1] else (0.5,)
         parts.append({"part": "near_threshold", "hop": hop, "inertias": some, **own})
-    for part in ("on_ring", "in_file") if box.fits(box.height / 4) else ():
-        parts.append({"part": part, **own})
+    if box.fits(box.height / 4):
+        parts.append({"part": "on_ring", **own})
     if box.fits(0.28 * box.height):
         given = {"name": name, "box": box, "blocked": [0.28 * box.height], "seed": 1}
         parts.append({"part": "in_long_file", **given})
@@ -288,9 +305,8 @@ def small(monkeypatch):
     """Make the study one of few distances and hops."""
     for name, value in {
         "SMOOTH": range(6, 9), "ROUGH": range(6, 9), "RING": range(3, 4),
-        "MOST_HOPS": 2**12, "LIMIT_BLOCKS": 4, "FILES": (4,), "MOST_FILES": 2**8,
-        "FILE_SAMPLES": 2**16,
-        "LONG_FILE": 24, "LONG_REPLICAS": 8, "OPEN": (3,), "RECORDS": 64,
+        "MOST_HOPS": 2**12, "LIMIT_BLOCKS": 4,
+        "LONG_FILE": 24, "LONG_REPLICAS": 8, "RECORDS": 64,
     }.items():  # fmt: skip
         monkeypatch.setattr(measure, name, value)
 
@@ -305,8 +321,8 @@ def test_the_table_is_written(tmp_path, small, monkeypatch):
     assert max(map(abs, z)) < 5
     assert {row["quantity"] for row in rows} == {
         "correlation", "coefficient", "passage_time", "plateau", "slope", "exponent",
-        "passage_exponent", "last_exponent", "rate", "diffusion", "single_file", "density",
-        "displacement", "file", "order", "amplitude",
+        "passage_exponent", "last_exponent", "rate", "diffusion", "single_file", "displacement",
+        "file", "amplitude",
     }  # fmt: skip
     # Nothing but the passages tells time between passages from time between hops.
     times = [row for row in rows if row["quantity"] == "passage_time"]
@@ -321,9 +337,9 @@ def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small):
     assert {row["event"] for row in rows} == {"vertical_hop", None}
     with style.context():
         limit = [row for row in rows if row["method"] == "limit"]
-        for module in (figure, figure_transmission, figure_diffusion, figure_files):
+        for module in (figure, figure_transmission, figure_diffusion):
             for some in (rows, limit, []):
-                assert module.draw(Box(1.0, 4.0), {"passages": some, "kept": []})
+                assert module.draw(Box(1.0, 4.0), {"passages": some} | LONG_RUNS)
 
 
 def test_scores_have_the_errors_of_both_estimates():

@@ -17,7 +17,8 @@ rule configuration:
 
 if MAIN:
     LONG_RUNS = (
-        "files/files",
+        "displacements/passages",
+        "files/passages",
         "accuracy_cost/accuracy_cost",
         "brownian/brownian",
         "far/mean_times",

@@ -76,7 +76,7 @@ CLOSEST, FARTHER = 1e-9, 1e-5
 #: The number of radii in each regime. They are Chebyshev nodes, which are dense at both ends, where
 #: curves bend, and go on in geometric progression to the limits. Effects have fewer, because their
 #: theory takes longer, and four or more discs have the fewest: one radius takes up to a minute.
-NODES, FEWER, FEWEST, GEOMETRIC = 96, 56, 24, 8
+NODES, FEWER, FEWEST, GEOMETRIC = 96, 32, 24, 8
 
 
 def branches(box, others=()):

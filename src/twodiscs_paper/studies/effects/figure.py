@@ -39,8 +39,9 @@ MARKERS = ("o", "s", "^", "D", "v", "P")
 #: The range of the ratios; curves leave it only near the ends of the radii.
 SHOWN = (0.22, 22)
 
-#: Where the bars of costs begin, and the space for the numbers beside the longest one, a factor.
-COST_FROM, COST_ROOM = 0.5, 60.0
+#: Where the bars of costs begin, and the space for the number beside the longest one, a factor.
+#: Points: the end of the column of instructions, from the edge of the panel.
+COST_FROM, COST_ROOM, COLUMN = 0.5, 8.0, 26
 
 
 def draw(box, tables):
@@ -114,15 +115,17 @@ VARIANTS = {
 def _costs(axes, rows, looks):
     """Draw the time per event of each variant, over the time of a package without effects.
 
-    Beside each bar stand this ratio and the number of machine instructions of the kernel.
+    This ratio stands beside each bar, the number of machine instructions of the kernel in a column.
     """
-    longest = max(1 / row["ratio"] for row in rows)
+    longest, small = max(1 / row["ratio"] for row in rows), {"fontsize": 6.8}
     axes.set(xscale="log", xlim=(COST_FROM, longest * COST_ROOM), ylim=(len(rows) - 0.4, -0.6))
+    column = small | {"xycoords": axes.get_yaxis_transform(), "ha": "right"}
     for i, row in enumerate(rows):
-        colour = looks.get(row["variant"], (GREY,))[0]
-        axes.barh(i, 1 / row["ratio"] - COST_FROM, 0.62, COST_FROM, color=colour)
-        at, text = (1 / row["ratio"], i), f"{1 / row['ratio']:.3g}; {row['instructions']}"
-        drawing.label(axes, text, at, (3, 0), ha="left", fontsize=6.8)
+        time, colour = 1 / row["ratio"], looks.get(row["variant"], (GREY,))[0]
+        axes.barh(i, time - COST_FROM, 0.62, COST_FROM, color=colour)
+        drawing.label(axes, f"{time:.3g}", (time, i), (3, 0), ha="left", **small)
+        drawing.label(axes, f"{row['instructions']}", (1, i), (COLUMN, 0), **column)
+    drawing.label(axes, "instructions", (1, -0.6), (COLUMN + 8, 6), **column)
     axes.axvline(1, color=GREY, lw=0.5, zorder=0)
     axes.set_yticks(range(len(rows)), [VARIANTS.get(r["variant"], r["variant"]) for r in rows])
     axes.set_xlabel("relative time")

@@ -16,7 +16,7 @@ from twodiscs_paper.studies.passages.measure import ONE_INERTIA
 #: The distances that are shown, from the threshold.
 SHOWN = (0.01, 0.2)
 
-#: Short files of more than two discs; long files of smooth discs, without friction and with it.
+#: Short files of smooth discs; long files of smooth discs, without friction and with it.
 FILES = {4: (SKY, "P"), 8: (BLACK, "D")}
 SMOOTH_FILE, KICKED_FILE = (GREEN, "^"), (PURPLE, "v")
 
@@ -29,20 +29,24 @@ RESIDUAL_LOOKS = {
 
 
 def draw(box, tables):
-    """Draw D/(ν ℓ²) of passages.csv: two discs on a ring of the first scene, files, residuals."""
+    """Draw D/(ν ℓ²): two discs on a ring, in the first scene of passages.csv, files, residuals.
+
+    Files are of long runs: ``files`` of several numbers of discs, and ``displacements``.
+    """
     rows = tables["passages"]
     figure, (ring, files, lower) = panels.stacked(ring=1.9, files=1.6, residuals=1.4)
     if is_empty(figure, ring, rows, box):
         return figure
     panels.title(ring, "a", first_scene(rows, box)[0])
     _ring(ring, select(rows, quantity="diffusion", discs=2))
-    _files(files, rows)
+    _files(files, tables["files"], tables["displacements"])
     for axes in (ring, files):
         axes.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)), zorder=1)
         axes.set(xscale="log", ylabel=r"diffusion $D/(\nu\,\ell^2)$")
         axes.tick_params(which="both", labelbottom=False)
     # Two discs with friction have a figure of their own.
-    residuals(lower, [r for r in rows if not r["friction"] or r["discs"] > 2], RESIDUAL_LOOKS)
+    rows = [*select(rows, friction=None), *tables["displacements"]]
+    residuals(lower, rows, RESIDUAL_LOOKS)
     for axes in (ring, files, lower):
         axes.set(xlim=SHOWN)
     lower.xaxis.set_major_formatter("{x:g}")
@@ -56,8 +60,7 @@ def _ring(axes, rows):
         for method, filled in (("hops", False), ("states", True)):
             own = select(rows, method=method, moment_of_inertia=inertia)
             if own:
-                x, y, error = columns(own, "distance", "estimate", "stderr")
-                points(axes, x, y, error, LOOKS[inertia], filled=filled)
+                points(axes, *_diffusion(own), LOOKS[inertia], filled=filled)
                 if not filled:
                     _name_beside(axes, name, own, LOOKS[inertia][0])
     for filled, name in ((False, "by hops"), (True, "by displacements")):
@@ -76,22 +79,19 @@ def _name_beside(axes, name, rows, colour):
     drawing.label(axes, name, at, (-8, 8), ha="right", color=colour, fontsize=7.3)
 
 
-def _files(axes, rows):
-    """Draw short and long files: by displacements full symbols, by the order open ones."""
+def _files(axes, short, long):
+    """Draw short files, with full symbols, and long ones."""
     for discs, look in FILES.items():
-        own = select(rows, quantity="diffusion", discs=discs)
-        if own:
-            x, y, error = columns(own, "distance", "estimate", "stderr")
-            points(axes, x, y, error, look, f"{discs} smooth discs", True)
+        own = select(short, quantity="diffusion", discs=discs)
+        points(axes, *_diffusion(own), look, f"{discs} smooth discs", True)
     for kicked, look in ((False, SMOOTH_FILE), (True, KICKED_FILE)):
-        own = [
-            row for row in select(rows, quantity="diffusion", method="order")
-            if (row["friction"] is not None) == kicked
-        ]  # fmt: skip
-        if own:
-            x, y, error = columns(own, "distance", "estimate", "stderr")
-            name = f"{own[0]['discs']} {'with friction' if kicked else 'smooth discs'}"
-            points(axes, x, y, error, look, name)
+        own = select(long, quantity="diffusion")
+        own = [row for row in own if (row["friction"] is not None) == kicked]
+        name = f"{own[0]['discs']} {'with friction' if kicked else 'smooth discs'}"
+        points(axes, *_diffusion(own), look, name)
     axes.set(ylim=(0.3, 1.15))
-    if axes.get_legend_handles_labels()[1]:
-        axes.legend(loc="lower left", ncols=2)
+    axes.legend(loc="lower left", ncols=2)
+
+
+def _diffusion(rows):
+    return columns(rows, "distance", "estimate", "stderr")

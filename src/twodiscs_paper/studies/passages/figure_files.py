@@ -7,7 +7,7 @@ import numpy as np
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import BLACK, BLUE, GREY, PURPLE, VERMILLION
 from twodiscs.model.scene import Scene
-from twodiscs_paper.studies.passages.figure import columns, is_empty, points, select
+from twodiscs_paper.studies.passages.figure import columns, points, select
 from twodiscs_paper.studies.passages.figure_diffusion import KICKED_FILE, SMOOTH_FILE
 from twodiscs_paper.studies.passages.models import file
 
@@ -28,11 +28,9 @@ SHOWN = (0.4, 400)
 
 
 def draw(box, tables):
-    """Draw the rows of passages.csv on long files: displacements, and their collapse."""
-    rows = tables["passages"]
+    """Draw the rows of a long run of long files: displacements, and their collapse."""
+    rows = tables["displacements"]
     figure, (moved, collapse) = panels.stacked(moved=2.7, collapse=2.0)
-    if is_empty(figure, moved, rows, box):
-        return figure
     _moved(moved, [row for row in rows if row["quantity"] in LONG])
     _collapse(collapse, rows)
     return figure

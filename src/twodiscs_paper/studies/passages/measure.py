@@ -78,10 +78,6 @@ PAUSE, WORK, KICK, FEWEST_KICKED, STRIPS = 12, 4, 4, 2**9, 16
 #: Necks are long from this x on: a pair forgets its velocity several times within it.
 LONG_NECK = 5
 
-#: Numbers of discs in a file on a ring; the time from which on displacements count, in mean times
-#: between hops of a disc in one direction; the most replicas and the fewest; samples for the rate.
-FILES, FOLLOWED, MOST_FILES, FEWEST_FILES, FILE_SAMPLES = (4, 8), 2, 2**12, 2**8, 2**19
-
 #: Long files: the number of discs, and of replicas; halvings of the distance below h/4 where discs
 #: can pass; the rate of kicks, and the time between records, with the thermal speed and h as units;
 #: the number of records, and the lags in records.
@@ -407,90 +403,64 @@ def one_ring(name, box, inertia, events, seed):
         yield from NearThreshold(name, scene, "horizontal_hop", n, seed).diffusion(events)
 
 
-def one_file(name, box, discs, events, seed):
-    """Yield the rows of smooth ``discs`` on a ring as long per disc as the ring of two discs."""
-    for n in RING:
-        pair = Box(box.width, box.height, {"periodic": "x"}).scene(radius_at(box.height / 4, n))
-        scene = Scene(box.width * discs / 2, box.height, pair.radius, discs=discs, periodic="x")
-        start = start_of(name, scene, "horizontal_hop", 2.0**-n) | {"method": "states"}
-        streams = [hop_seed(scene, "horizontal_hop", name, seed, f"{discs} {i}") for i in range(2)]
-        sampled = file.sampled_rate(scene, FILE_SAMPLES, streams[0])
-        # A power of two, so that the last digits of the rate do not change the time.
-        time = 2.0 ** round(math.log2(FOLLOWED * 2 / sampled.value))
-        price = 2 * time * exact.event_rate(pair) * (discs / 2) ** 0.5
-        replicas = int(min(max(events / price, FEWEST_FILES), MOST_FILES))
-        moved, hops = file.diffusion(scene, time, replicas, streams[1])
-        cells = {"time": 2 * time, "replicas": moved.n}
-        yield row(start, hops, quantity="rate", **cells, **compared(hops, sampled))
-        yield row(start, moved, quantity="diffusion", **cells)
-
-
-def one_long_file(name, box, radius, friction, known, seed, inertia=None):
+def one_long_file(name, box, radius, frictions, seed, inertia=None):
     """Yield the rows of one long file, which is open at a ``radius`` below h/4, else blocked.
 
-    Rough discs have an ``inertia``, I/(m r²), and no law, because their F is not known. If
-    ``friction`` is not None, it is the rate of kicks. Squares of lengths are over ℓ². An open
-    file of smooth discs has a row of the ``density``, which does not depend on friction. With
-    friction it is ``known``, {"density": ``Estimate``}.
+    It is followed with each of ``frictions``: None, or the rate of kicks. Rough discs have an
+    ``inertia``, I/(m r²), and no law, because their F is not known. Squares of lengths are over ℓ².
+    An open file has a row of the ``density`` from its first motion, which is without kicks.
     """
     limit, per_disc = box.height / 4, box.width / 2
-    is_open = radius < limit
+    is_open, variance = radius < limit, None
     scene = Scene(
         per_disc * LONG_FILE, box.height, radius, discs=LONG_FILE, periodic="x",
         moment_of_inertia=inertia,
     )  # fmt: skip
     unit = box.height / file.thermal_speed(scene)
-    rate = None if friction is None else friction / unit
-    start = start_of(name, scene, "horizontal_hop", 1 - radius / limit) | {"friction": rate}
-
-    def stream(what):
+    start = start_of(name, scene, "horizontal_hop", 1 - radius / limit)
+    for friction in frictions:
+        rate = start["friction"] = None if friction is None else friction / unit
         kind = friction if inertia is None else f"rough {inertia}"
-        return hop_seed(scene, "horizontal_hop", name, seed, f"long file {kind} {what}")
+        stream = hop_seed(scene, "horizontal_hop", name, seed, f"long file {kind} states")
 
-    def make_row(quantity, method, found, lag=None, **more):
-        more["time"] = None if lag is None else lag * STEP * unit
-        return row(start, found, quantity=quantity, method=method, replicas=found.n, **more)
+        def make_row(quantity, method, found, lag=None, **more):
+            more["time"] = None if lag is None else lag * STEP * unit
+            return row(start, found, quantity=quantity, method=method, replicas=found.n, **more)
 
-    places, hops = file.recorded(
-        scene, STEP * unit, RECORDS, LONG_REPLICAS, stream("states"), rate
-    )  # fmt: skip
-    numbers = file.order(places, scene.width)
-    ordered = file.in_order(places, numbers, scene.width)
-    moved, whole_file = (file.squares(x, LAGS) / per_disc**2 for x in (places, ordered))
-    steps = file.squares(numbers, LAGS)
-
-    variance = None
-    if is_open:
-        variance = known.get("density")
-        if variance is None:
+        places, hops = file.recorded(scene, STEP * unit, RECORDS, LONG_REPLICAS, stream, rate)
+        numbers = file.order(places, scene.width)
+        ordered = file.in_order(places, numbers, scene.width)
+        moved, whole_file = (file.squares(x, LAGS) / per_disc**2 for x in (places, ordered))
+        steps = file.squares(numbers, LAGS)
+        if is_open and variance is None:
             variance = file.measured_density(scene, places)
             yield make_row("density", "states", variance)
 
-    def law(lag):
-        if inertia or (rate is None and variance):
-            return None
-        return file.law(scene, rate, lag * STEP * unit, variance and variance.value)
+        def law(lag, rate=rate, variance=variance and variance.value):
+            if inertia or (rate is None and variance):
+                return None
+            return file.law(scene, rate, lag * STEP * unit, variance)
 
-    for k, lag in enumerate(LAGS):
-        yield make_row("displacement", "states", mean_of(moved[k]), lag)
+        for k, lag in enumerate(LAGS):
+            yield make_row("displacement", "states", mean_of(moved[k]), lag)
+            if is_open:
+                yield make_row("order", "states", mean_of(steps[k]), lag)
+            yield make_row("file", "states", mean_of(whole_file[k]), lag, reference=law(lag))
+        if rate is not None:
+            early, late = (LAGS.index(lag) for lag in SINGLE)
+            root = math.sqrt(SINGLE[0] * STEP * unit)
+            found = mean_of((whole_file[late] - whole_file[early]) / root)
+            due = (law(SINGLE[1]) - law(SINGLE[0])) / root
+            # F is ∝ √S.
+            error = due * variance.stderr / variance.value / 2 if variance else 0.0
+            cells = compared(found, Estimate(due, error, 1), found.n)
+            yield make_row("single_file", "states", found, SINGLE[1], **cells)
         if is_open:
-            yield make_row("order", "states", mean_of(steps[k]), lag)
-        yield make_row("file", "states", mean_of(whole_file[k]), lag, reference=law(lag))
-    if rate is not None:
-        early, late = (LAGS.index(lag) for lag in SINGLE)
-        root = math.sqrt(SINGLE[0] * STEP * unit)
-        found = mean_of((whole_file[late] - whole_file[early]) / root)
-        due = (law(SINGLE[1]) - law(SINGLE[0])) / root
-        # F is ∝ √S.
-        error = due * variance.stderr / variance.value / 2 if variance else 0.0
-        cells = compared(found, Estimate(due, error, 1), found.n)
-        yield make_row("single_file", "states", found, SINGLE[1], **cells)
-    if is_open:
-        per_time = hops / (RECORDS * STEP * unit)
-        yield make_row("rate", "states", mean_of(per_time))
-        early, late = (LAGS.index(lag) for lag in HOPPED)
-        walked = (steps[late] - steps[early]) / ((HOPPED[1] - HOPPED[0]) * STEP * unit)
-        yield make_row("diffusion", "order", file.quotient(walked, per_time), HOPPED[1])
+            per_time = hops / (RECORDS * STEP * unit)
+            yield make_row("rate", "states", mean_of(per_time))
+            early, late = (LAGS.index(lag) for lag in HOPPED)
+            walked = (steps[late] - steps[early]) / ((HOPPED[1] - HOPPED[0]) * STEP * unit)
+            yield make_row("diffusion", "order", file.quotient(walked, per_time), HOPPED[1])
 
 
 def in_the_limit(seed):
@@ -521,29 +491,10 @@ def with_friction(name, box, events, seed):
         yield from one_friction(name, box, friction, halvings, events, seed)
 
 
-def in_file(name, box, events, seed):
-    """Yield the rows of files of several discs on a ring."""
-    for discs in FILES:
-        yield from one_file(name, box, discs, 2 * events, seed)
-
-
 def in_long_file(name, box, blocked, seed):
-    """Yield the rows of long files on a ring, smooth, with kicks and rough.
-
-    They are blocked at the radii ``blocked``, at the first one also without friction and of rough
-    discs; the others are open.
-    """
-    for radius in (blocked[0], *(radius_at(box.height / 4, n) for n in OPEN)):
-        found = {}
-        for friction in (None, FRICTION):
-            for one in one_long_file(name, box, radius, friction, {**found}, seed):
-                if one["quantity"] == "density":
-                    parts = (one[part] for part in ("estimate", "stderr", "replicas"))
-                    found["density"] = Estimate(*parts)
-                yield one
-    yield from one_long_file(name, box, blocked[0], None, {}, seed, ONE_INERTIA)
-    for radius in blocked[1:]:
-        yield from one_long_file(name, box, radius, FRICTION, {}, seed)
+    """Yield the rows of long files with friction that are blocked at the radii ``blocked``."""
+    for radius in blocked:
+        yield from one_long_file(name, box, radius, [FRICTION], seed)
 
 
 # Long runs --------------------------------------------------------------------------------------
@@ -599,6 +550,19 @@ def long_run(thresholds):
     """Yield the rows of many hops at ``thresholds``, at distances that no build goes down to."""
     for one in thresholds:
         yield from cluster_rows(one, cluster_counts(one))
+
+
+def displacements(name, width, height, blocked, seed):
+    """Yield the rows of a long run of long files, without and with friction.
+
+    They are blocked at the first of the radii ``blocked``, or open; rough discs are blocked. At the
+    other radii they are blocked and have friction, as in a build.
+    """
+    box, both = Box(width, height), [None, FRICTION]
+    for radius in (blocked[0], *(radius_at(height / 4, n) for n in OPEN)):
+        yield from one_long_file(name, box, radius, both, seed)
+    yield from one_long_file(name, box, blocked[0], [None], seed, ONE_INERTIA)
+    yield from in_long_file(name, box, blocked[1:], seed)
 
 
 def file_of(box, discs, halvings):
@@ -701,7 +665,7 @@ def fits(rows):
 PARTS = {
     part.__name__: part
     for part in (
-        near_threshold, on_ring, with_friction, in_file, in_long_file, in_the_limit, long_run,
+        near_threshold, on_ring, with_friction, in_long_file, in_the_limit, long_run, displacements,
         long_files,
     )
 }  # fmt: skip

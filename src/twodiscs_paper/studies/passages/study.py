@@ -193,7 +193,7 @@ def _parts(configuration):
             near = {"part": "near_threshold", "hop": hop, "inertias": inertias}
             parts[f"near_threshold_{scene.name}_{hop}"] = near | own
         if first and scene.box.fits(scene.box.height / 4):
-            own_parts = ("on_ring", "with_friction", "in_file")
+            own_parts = ("on_ring", "with_friction")
             parts |= {part: {"part": part} | own for part in own_parts}
         blocked = [part * scene.box.height for part in BLOCKED]
         if first and all(scene.box.fits(radius) for radius in blocked):
@@ -297,13 +297,16 @@ STUDY = Study(
                 hops of a disc per time in either direction, each by ℓ (dashed), at distances δ =
                 (r_c − r)/r_c from the radius r_c at which hops become blocked. (a) Two discs, by
                 correlations of hops (open symbols) and by displacements (full symbols). (b) Files
-                of four and eight discs by displacements (full symbols), and long files by the order
-                of the discs (open symbols). With friction, all velocities are drawn anew at random
+                in long runs, by the order of the discs: of four and eight discs (full symbols), and
+                long ones (open symbols). With friction, all velocities are drawn anew at random
                 times. (c) Residuals z in standard errors, from the exact rate, between two
                 estimators, or of F in ⟨x²⟩ = F√t from theory. Error bars are one standard error.
                 """
             ),
             tables=("passages",),
+            kept={
+                name: f"paper/long_run/{name}/passages.csv" for name in ("files", "displacements")
+            },
         ),
         "files": Entry(
             "Displacements in files",
@@ -321,7 +324,7 @@ STUDY = Study(
                 equally. Error bars are one standard error.
                 """
             ),
-            tables=("passages",),
+            kept={"displacements": "paper/long_run/displacements/passages.csv"},
         ),
     },
     parts=_parts,

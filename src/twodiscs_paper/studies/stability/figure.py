@@ -1,15 +1,15 @@
 """How theory and sampling behave in numerically hard cases: parts of stability.csv."""
 
 import numpy as np
-from matplotlib.ticker import FixedLocator, LogLocator, NullLocator
+from matplotlib.ticker import LogLocator, NullLocator
 from scipy.special import ndtr
 
-from twodiscs.figures import drawing, panels
+from twodiscs.figures import panels
 from twodiscs.figures.style import BLACK, BLUE, GREY, ORANGE, SERIES, VERMILLION, new_figure
+from twodiscs_paper.study import select
 
-#: Inches: the width of two columns, the height of a panel, margins, the gap between panels.
-WIDTH, HEIGHT = 7.0, 1.5
-RIGHT, BOTTOM, TOP, BETWEEN = 0.1, 0.36, 0.24, 0.6
+#: Inches: the width of two columns, and the height of a panel with its labels.
+WIDTH, HEIGHT = 7.0, 2.0
 
 BOUND = {"color": GREY, "lw": 0.6, "ls": (0, (4, 2)), "zorder": 0}
 #: Errors that are exactly zero are drawn here.
@@ -21,42 +21,18 @@ LARGEST_Z = 5
 
 def draw(box, tables):
     """Draw the rows of stability.csv on theory and sampling, for the ``box`` of the first scene."""
-    parts = by_part(tables["stability"])
-    figure = new_figure(TOP + 2 * HEIGHT + BETWEEN + BOTTOM, WIDTH)
-    _largest(panel(figure, "a"), parts.get("theory", []))
-    _thresholds(panel(figure, "b"), parts.get("theory", []))
-    _shares(panel(figure, "c"), parts.get("sampling", []))
-    _scores(panel(figure, "d"), parts.get("estimates", []), parts.get("extremes", []))
-    panels.title(figure.axes[0], "", box)
+    rows = tables["stability"]
+    figure = new_figure(2 * HEIGHT, WIDTH, layout="constrained")
+    axes = dict(zip("abcd", figure.subplots(2, 2).flat, strict=True))
+    for letter, one in axes.items():
+        one.set_label(letter)
+        panels.title(one, letter, box if letter == "a" else None)
+    theory = select(rows, part="theory")
+    _largest(axes["a"], theory)
+    _thresholds(axes["b"], theory)
+    _shares(axes["c"], select(rows, part="sampling"))
+    _scores(axes["d"], select(rows, part="estimates"), select(rows, part="extremes"))
     return figure
-
-
-def by_part(rows):
-    """Return {part: its rows}."""
-    parts = {}
-    for row in rows:
-        parts.setdefault(row["part"], []).append(row)
-    return parts
-
-
-def panel(figure, name, names=0.0, beside=0.0, lowest=0.0):
-    """Return new axes in one of the four quarters, with their letter ``name``.
-
-    ``names`` and ``beside`` are the widths, in inches, of texts at the left and at the right of the
-    panel. The quarters begin at the height ``lowest``, in inches.
-    """
-    place = "abcd".index(name)
-    left, across = panels.LEFT + place % 2 * WIDTH / 2, WIDTH / 2 - panels.LEFT - RIGHT
-    bottom = lowest + BOTTOM + (1 - place // 2) * (HEIGHT + BETWEEN)
-    axes = panels.add_panel(figure, bottom, HEIGHT, left + names, across - names - beside, name)
-    corner = {"xycoords": "axes fraction", "ha": "left", "va": "bottom"}
-    drawing.label(axes, f"({name})", (0, 1), (2 - 72 * (panels.LEFT + names), 3), **corner)
-    return axes
-
-
-def select(rows, **wanted):
-    """Return the ``rows`` that have these values."""
-    return [row for row in rows if all(row[name] == value for name, value in wanted.items())]
 
 
 def _logarithmic(axes, x, y):
@@ -127,47 +103,6 @@ def _shares(axes, rows):
     axes.legend(loc="lower left")
 
 
-# A line for each radius ---------------------------------------------------------------------------
-
-
-def rounded(number):
-    """Return a positive ``number`` to one digit, "10⁻⁹" or "5 × 10⁷", in mathtext."""
-    mantissa, exponent = f"{number:.0e}".split("e")
-    times = "" if mantissa == "1" else rf"{mantissa}\times"
-    return rf"{times}10^{{{int(exponent)}}}"
-
-
-def _power(distance):
-    """Return "(1 − 10⁻⁹)" or the like in mathtext."""
-    return f"(1{'+' if distance > 0 else '-'}{rounded(abs(distance))})"
-
-
-def radii_of(rows):
-    """Return {(case, radius): name in mathtext}, ascending in the radius."""
-    names = {"h/4": "h/4", "w/4": "w/4", "largest radius": r"r_{\mathrm{max}}"}
-    texts = {}
-    for row in sorted(rows, key=lambda row: row["radius"]):
-        key = row["case"], row["radius"]
-        if row["case"] in names:
-            texts[key] = rf"${names[row['case']]}\,{_power(row['distance'])}$"
-        else:
-            tiny = f"$r={rounded(row['radius'])}$"
-            texts[key] = (
-                f"$r={panels.math_of(row['radius'])}$" if row["case"] == "ordinary" else tiny
-            )
-    return texts
-
-
-def lines(axes, names):
-    """Make the ordinate a list of ``names``, from the top down."""
-    axes.set_ylim(len(names) - 0.4, -0.6)
-    axes.yaxis.set_major_locator(FixedLocator(range(len(names))))
-    axes.set_yticklabels(names, fontsize=6.9)
-    axes.tick_params(axis="y", length=0)
-    for i in range(len(names)):
-        axes.axhline(i, color=GREY, lw=0.25, alpha=0.5, zorder=0)
-
-
 def _scores(axes, estimates, extremes):
     """Draw how many residuals are how large, beside the normal law of as many of them."""
     edges = np.linspace(-LARGEST_Z, LARGEST_Z, 2 * LARGEST_Z + 1)
@@ -183,9 +118,3 @@ def _scores(axes, estimates, extremes):
     axes.stairs(law, edges, color=BLACK, lw=0.8, label="normal law")
     axes.set(xlim=(edges[0], edges[-1]), xlabel="residual $z$", ylabel=f"count of {number}")
     axes.legend(loc="upper left")
-
-
-def heading(axes):
-    """Put the legend above the panel."""
-    tight = {"handletextpad": 0.1, "columnspacing": 0.5, "borderaxespad": 0.0, "borderpad": 0.1}
-    axes.legend(loc="lower right", bbox_to_anchor=(0.97, 1.01), ncols=3, **tight)

@@ -19,29 +19,18 @@ from twodiscs.figures.style import (
     name_of,
     new_figure,
 )
-from twodiscs_paper.studies.stability.figure import (
-    BETWEEN,
-    BOTTOM,
-    BOUND,
-    HEIGHT,
-    NOTHING,
-    RIGHT,
-    TOP,
-    WIDTH,
-    by_part,
-    heading,
-    lines,
-    panel,
-    radii_of,
-    rounded,
-    select,
-)
+from twodiscs_paper.studies.stability.figure import BOUND, HEIGHT, NOTHING, WIDTH
+from twodiscs_paper.study import select
 
 #: The symbol of times by the formula of textbooks; the look of the sum rule of virials.
 TEXTBOOK, VIRIAL = {"color": VERMILLION, "marker": "x", "markersize": 3.4}, (GREY, "o")
 
-#: Inches: the lowest panel, with its labels, and the space for the names of its scenes.
-LOWEST, NAMES = 2.75, 1.1
+#: Inches: the height of the lowest panel. Its legend, and that of the first one, stand above.
+LOWEST = 2.6
+ABOVE = {
+    "loc": "lower right", "bbox_to_anchor": (1, 1.01), "handletextpad": 0.1, "columnspacing": 0.8,
+    "borderaxespad": 0.0,
+}  # fmt: skip
 
 #: Colour and marker of each quantity of the runs of many events.
 WORST = {"energy_error": (BLUE, "o"), "smallest_gap": (VERMILLION, "s"), "excess": (GREEN, "^")}
@@ -49,20 +38,65 @@ WORST = {"energy_error": (BLUE, "o"), "smallest_gap": (VERMILLION, "s"), "excess
 
 def draw(box, tables):
     """Draw the rows of stability.csv on dynamics, for the ``box`` of the first scene."""
-    parts = by_part(tables["stability"])
-    figure = new_figure(LOWEST + TOP + 2 * HEIGHT + BETWEEN + BOTTOM, WIDTH)
-    runs = parts.get("dynamics", [])
-    _runs(panel(figure, "a", 0.5, 0.3, LOWEST), runs, radii_of(runs))
-    _times(panel(figure, "b", 0.85, 0.0, LOWEST), parts.get("times", []))
-    _reversal(panel(figure, "c", lowest=LOWEST), parts.get("reversal", []))
-    _coverage(panel(figure, "d", lowest=LOWEST), parts.get("coverage", []))
-    _extremes(figure, parts.get("extremes", []))
-    panels.title(figure.axes[2], "", box)
+    rows = tables["stability"]
+    figure = new_figure(2 * HEIGHT + LOWEST, WIDTH, layout="constrained")
+    upper, middle, lower = figure.subfigures(3, height_ratios=(HEIGHT, HEIGHT, LOWEST))
+    axes = iter((*upper.subplots(1, 2), *middle.subplots(1, 2), lower.subplots()))
+    for letter, part, of_part in (
+        ("a", "dynamics", _runs),
+        ("b", "times", _times),
+        ("c", "reversal", _reversal),
+        ("d", "coverage", _coverage),
+        ("e", "extremes", _extremes),
+    ):
+        one = next(axes)
+        one.set_label(letter)
+        panels.title(one, letter, box if letter == "c" else None)
+        of_part(one, select(rows, part=part))
     return figure
 
 
-def _runs(axes, rows, radii):
+def rounded(number):
+    """Return a positive ``number`` to one digit, "10⁻⁹" or "5 × 10⁷", in mathtext."""
+    mantissa, exponent = f"{number:.0e}".split("e")
+    times = "" if mantissa == "1" else rf"{mantissa}\times"
+    return rf"{times}10^{{{int(exponent)}}}"
+
+
+def _power(distance):
+    """Return "(1 − 10⁻⁹)" or the like in mathtext."""
+    return f"(1{'+' if distance > 0 else '-'}{rounded(abs(distance))})"
+
+
+def radii_of(rows):
+    """Return {(case, radius): name in mathtext}, ascending in the radius."""
+    names = {"h/4": "h/4", "w/4": "w/4", "largest radius": r"r_{\mathrm{max}}"}
+    texts = {}
+    for row in sorted(rows, key=lambda row: row["radius"]):
+        key = row["case"], row["radius"]
+        if row["case"] in names:
+            texts[key] = rf"${names[row['case']]}\,{_power(row['distance'])}$"
+        else:
+            tiny = f"$r={rounded(row['radius'])}$"
+            texts[key] = (
+                f"$r={panels.math_of(row['radius'])}$" if row["case"] == "ordinary" else tiny
+            )
+    return texts
+
+
+def lines(axes, names):
+    """Make the ordinate a list of ``names``, from the top down."""
+    axes.set_ylim(len(names) - 0.4, -0.6)
+    axes.yaxis.set_major_locator(FixedLocator(range(len(names))))
+    axes.set_yticklabels(names, fontsize=6.9)
+    axes.tick_params(axis="y", length=0)
+    for i in range(len(names)):
+        axes.axhline(i, color=GREY, lw=0.25, alpha=0.5, zorder=0)
+
+
+def _runs(axes, rows):
     """Draw the worst errors of the runs of many events, with their bounds."""
+    radii = radii_of(rows)
     places = {key: i for i, key in enumerate(radii)}
     lines(axes, list(radii.values()))
     names = {"energy_error": "$|E-1/2|$", "smallest_gap": "overlap", "excess": "beyond wall"}
@@ -79,7 +113,7 @@ def _runs(axes, rows, radii):
     axes.xaxis.set_major_locator(FixedLocator([NOTHING, 1e-15, 1e-13, 1e-11]))
     axes.set_xticklabels(["0", "$10^{-15}$", "$10^{-13}$", "$10^{-11}$"])
     axes.xaxis.set_minor_locator(NullLocator())
-    heading(axes)
+    axes.legend(ncols=3, **ABOVE)
     beside = {"xycoords": blended_transform_factory(axes.transAxes, axes.transData), "ha": "left"}
     for row in select(rows, quantity="energy_error"):
         events = f"${rounded(row['count'])}$"
@@ -114,12 +148,8 @@ def _times(axes, rows):
         axes.axvline(row["high"], **BOUND)
 
 
-def _extremes(figure, rows):
+def _extremes(axes, rows):
     """Draw the residuals of the mean times in extreme scenes, a line for each scene."""
-    across = WIDTH - panels.LEFT - NAMES - RIGHT
-    axes = panels.add_panel(figure, BOTTOM, LOWEST - BOTTOM - TOP, panels.LEFT + NAMES, across, "e")
-    corner = {"xycoords": "axes fraction", "ha": "left", "va": "bottom"}
-    drawing.label(axes, "(e)", (0, 1), (2 - 72 * (panels.LEFT + NAMES), 3), **corner)
     cases = [*dict.fromkeys(row["case"] for row in rows)]
     lines(axes, cases)
     for event, look in (LOOKS | {"virial": VIRIAL}).items():
@@ -132,8 +162,7 @@ def _extremes(figure, rows):
     for z in (-5, 5):
         axes.axvline(z, **BOUND)
     axes.axvline(0, color=GREY, lw=0.5, zorder=0)
-    tight = {"handletextpad": 0.1, "columnspacing": 0.8, "borderaxespad": 0.0}
-    axes.legend(loc="lower right", bbox_to_anchor=(1, 1.01), ncols=7, **tight)
+    axes.legend(ncols=7, **ABOVE)
 
 
 # Reversal and coverage ----------------------------------------------------------------------------

@@ -27,9 +27,8 @@ import numpy as np
 from twodiscs.dynamics.many import engine
 from twodiscs.dynamics.many.lockstep import HORIZONTAL
 from twodiscs.points.estimates import Estimate
-from twodiscs.sampling.many import initial, insertions
+from twodiscs.sampling.many import initial
 from twodiscs.theory import channel
-from twodiscs.theory.virial import rates
 from twodiscs_paper.studies.estimates import mean_of
 
 
@@ -41,30 +40,6 @@ def quotient(values, others):
     ratio, below = np.mean(values) / np.mean(others), np.mean(others)
     spread = mean_of((np.asarray(values) - ratio * np.asarray(others)) / below)
     return Estimate(ratio, spread.stderr, spread.n)
-
-
-def diffusion(scene, time, replicas, seed):
-    """Return (D/(ν ℓ²), hops of a disc per time) as ``Estimate``s, for a ``Scene`` on a ring.
-
-    D follows from the growth of the displacements from ``time`` to twice ``time``, ν from all hops
-    until then. There are ``replicas`` independent initial states.
-    """
-    places, hops = recorded(scene, time, 2, replicas, seed)
-    early, late = squares(places, [1, 2]) / (scene.width / scene.discs) ** 2
-    per_time = hops / (2 * time)
-    return quotient((late - early) / time, per_time), mean_of(per_time)
-
-
-def sampled_rate(scene, samples, seed):
-    """Return the hops of a disc per time along a ring as an ``Estimate``, by Monte Carlo."""
-    found, error = (
-        rates(scene, part)["horizontal_hop"] for part in insertions.sample(scene, samples, seed)
-    )
-    share = 2 / scene.discs  # two discs take part in a hop
-    return Estimate(share * found, share * error, samples)
-
-
-# Long files -------------------------------------------------------------------------------------
 
 
 #: The waves that S is taken from.
