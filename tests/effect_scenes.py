@@ -1,4 +1,4 @@
-"""One scene for each effect, and one that combines most of them."""
+"""One scene for each effect, and two that combine many of them."""
 
 from twodiscs.model.scene import Scene
 
@@ -14,3 +14,8 @@ SCENES = {
         1.5, 1.0, 0.15, depth=0.9, radius_ratio=1.4, mass_ratio=0.3, periodic="x", field=0.3
     ),
 }
+
+#: Discs in the plane with all effects that go together; its kernels take longest to compile.
+ALL = Scene(
+    1.5, 1.0, 0.2, periodic="x", field=0.3, radius_ratio=1.2, mass_ratio=2.0, moment_of_inertia=0.4
+)

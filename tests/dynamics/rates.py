@@ -1,10 +1,31 @@
-"""How tests of the ensemble decide that it does not have the exact rates."""
+"""How tests of dynamics decide that a number is not the exact one: by five standard errors."""
+
+import math
+
+import numpy as np
 
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.runs import relative_errors
 from twodiscs.model.events import EVENTS
 from twodiscs.theory.exact import mean_times
+
+
+def five(found, due, error):
+    """Assert that a number is within five errors of another one."""
+    assert abs(found - due) <= 5 * error, (found, due, error)
+
+
+def same_sizes(counts, other):
+    """Compare κ, the share of single hops and the mean size up to 64 hops of clusters.
+
+    ``counts`` are the numbers of clusters by size, ``other`` are sizes.
+    """
+    own = np.repeat(np.arange(counts.size), counts)
+    for of in (lambda n: n % 2 / n, lambda n: n == 1, lambda n: np.minimum(n, 64)):
+        values = [np.asarray(of(sizes), float) for sizes in (own, other)]
+        errors = [part.std() / math.sqrt(part.size) for part in values]
+        five(values[0].mean(), values[1].mean(), math.hypot(*errors))
 
 
 def check_rates(scene, seed, blocks, duration=None):

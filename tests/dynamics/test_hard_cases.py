@@ -1,9 +1,7 @@
-"""Whole trajectories where arithmetic has it hard, event by event against 50 digits."""
+"""Roundings could add, lose or repeat an event where arithmetic has it hard."""
 
 import math
-from itertools import islice
 
-import numpy as np
 import pytest
 from exact_motion import compare
 from hypothesis import assume, given, settings
@@ -57,24 +55,6 @@ def test_tiny_discs_aimed_at_each_other(radius, miss):
     assert compare(scene, state, 4) >= 2 if miss else compare(scene, state, 8) == 8
 
 
-@pytest.mark.parametrize("ulps", [-4, -1, 0, 1, 4])
-def test_grazing_by_some_roundings(ulps):
-    """The impact parameter is σ to some roundings; hit or miss, the motion goes on the same way.
-
-    At a graze of ulps the deflection is some √ε, so both outcomes agree to 1e-7 for a while; what
-    must not happen is a second collision, or discs that overlap.
-    """
-    impact = 0.4 * (1 + ulps * 2.0**-52)
-    state = (-0.5, impact / 2, 0.5, -impact / 2, *unit_speed(1.0, 0.0, -1.0, 0.0))
-    rows = list(events_of(PAPER, state, 1.2))
-    names = [row[1] for row in rows]
-    assert names.count("disc_collision") <= 1
-    assert names.count("horizontal_hop") == 1
-    assert names.count("vertical_hop") == 0
-    for row in rows:
-        assert math.dist(row[4][:2], row[4][2:4]) >= 0.4 - 1e-14
-
-
 @pytest.mark.parametrize("state", [
     # no relative velocity
     (-0.3, 0.1, 0.3, -0.1, 0.6, 0.3741657386773941, 0.6, 0.3741657386773941),
@@ -118,24 +98,6 @@ def test_corner_hit_exactly_by_both_discs():
     assert rows[-1][4][:4] == state[:4]
 
 
-@pytest.mark.parametrize("height", [1e6, 1e-6])
-def test_collisions_in_a_box_of_extreme_shape(height):
-    """Discs close together along a box of 1e-6 × 1e6, between very many hits on its long walls."""
-    scene = Scene(1 / height, height, 2e-7)
-    half_x, half_y = scene.range_x / 2, scene.range_y / 2
-    across, along = (half_x, half_y) if half_x < half_y else (half_y, half_x)
-    place = {"across": (0.3 * across, -0.4 * across), "along": (4e-7, -4e-7)}
-    speed = {"across": (0.3, -0.5), "along": (-0.4, 0.5)}
-    order = ("across", "along") if half_x < half_y else ("along", "across")
-    x, y = (place[axis] for axis in order)
-    u, v = (speed[axis] for axis in order)
-    state = (x[0], y[0], x[1], y[1], *unit_speed(u[0], v[0], u[1], v[1]))
-    names = [row[1] for row in events_of(scene, state, 4e-6)]
-    assert names.count("disc_collision") >= 1
-    assert along > 1e5
-    assert compare(scene, state, 40) >= 12
-
-
 def test_discs_smaller_than_the_spacing_of_coordinates():
     """Centres that coincide have no line of centres: no division by zero, no energy lost."""
     scene = Scene(1e-6, 1e6, 1e-15)
@@ -146,23 +108,6 @@ def test_discs_smaller_than_the_spacing_of_coordinates():
             state, time, _ = advance(state, law_of(scene))
             assert 0 <= time < math.inf
             assert abs(math.fsum(v * v for v in state[4:]) - 1) < 1e-14
-
-
-@pytest.mark.parametrize("sides", [(1.5, 1.0), (1.0, 1.0), (3.0, 1.0)])
-@pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9])
-def test_no_flight_passes_through_the_other_disc(sides, distance):
-    """The gap at the closest approach of every flight, not only at its ends."""
-    box = Box(*sides)
-    for radius in (0.05 * box.shortest, box.largest_radius * (1 - distance)):
-        scene = box.scene(radius)
-        path = islice(events_of(scene, invariant_state(scene, 3), math.inf), 8000)
-        path = np.array([row[4][:4] for row in path])
-        start = path[:-1, :2] - path[:-1, 2:]
-        step = np.diff(path[:, :2] - path[:, 2:], axis=0)
-        square = np.maximum(np.sum(step**2, axis=1), 1e-300)
-        share = np.clip(-np.sum(start * step, axis=1) / square, 0, 1)
-        nearest = np.hypot(*(start + share[:, None] * step).T)
-        assert nearest.min() >= scene.contact_distance - 1e-14
 
 
 #: Velocities that are trouble, before they are scaled to the energy.

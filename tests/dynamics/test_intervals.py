@@ -1,19 +1,19 @@
-"""Intervals between hops: exact draws, whose mean and density at zero are known."""
+"""Intervals could be cut off at an end, put in another bin or have too small errors."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from effect_scenes import SCENES
-from factory import through_json
 
+import twodiscs as td
 from twodiscs.dynamics import runs, trajectory
 from twodiscs.dynamics.many import engine
 from twodiscs.dynamics.two import returns
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.points.intervals import BINS, GROWTH, wide_edges
-from twodiscs.sampling import rounds
 from twodiscs.sampling.many import initial, insertions
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import density_at_zero
@@ -22,23 +22,18 @@ from twodiscs.theory.virial import rates
 PAPER = Scene(1.5, 1.0, 0.2)
 
 
-def check_mean(scene, event, number):
-    found = runs.hop_intervals(scene, event, number, 9)
-    assert abs(found.mean - mean_times(scene)[event]) <= 5 * found.stderr
-    assert sum(found.equal.counts) + found.overflow == found.intervals >= number
-    assert math.frexp(found.bin_width)[0] == 0.5  # a power of two
-
-
 @pytest.mark.parametrize("event", HOPS)
-@pytest.mark.parametrize("radius", [0.05, 0.2])
-def test_hop_intervals_have_the_exact_mean(event, radius):
-    check_mean(PAPER.with_radius(radius), event, 2_000_000)
-
-
-@pytest.mark.slow
-def test_horizontal_hops_in_a_field_have_the_exact_mean():
-    """This box cannot be turned by a quarter: its horizontal hops have separate starts."""
-    check_mean(SCENES["field"], "horizontal_hop", 500_000)
+@pytest.mark.parametrize(
+    "scene",
+    [PAPER.with_radius(0.05), PAPER, pytest.param(SCENES["field"], marks=pytest.mark.slow)],
+    ids=repr,
+)
+def test_hop_intervals_have_the_exact_mean(event, scene):
+    """In a field the box cannot be turned by a quarter: horizontal hops have separate starts."""
+    found = runs.hop_intervals(scene, event, 1_000_000, 9)
+    assert abs(found.mean - mean_times(scene)[event]) <= 5 * found.stderr
+    assert sum(found.equal.counts) + found.overflow == found.intervals >= 1_000_000
+    assert math.frexp(found.bin_width)[0] == 0.5  # a power of two
 
 
 @pytest.mark.parametrize(("event", "side"), [("vertical_hop", 1.0), ("horizontal_hop", 1.5)])
@@ -56,28 +51,19 @@ def test_hop_intervals_have_the_exact_density_at_zero(event, side):
     assert abs(counts @ at_zero / (n * width) - exact) <= 5 * np.hypot(*error * at_zero)
 
 
-def test_hop_chains_do_not_depend_on_lanes():
-    results, going = [], np.ones(1, np.bool_)
-    wide = np.repeat([65, 66], [1, 64])
-    for lanes in (5, 64):
-        sums = np.zeros((2, 67), np.int64)
-        totals = returns.record_intervals(
-            PAPER, "vertical_hop", 1, 0, 2, 64, (0.25, wide), sums, going, returns=16, lanes=lanes
-        )
-        results.append((totals, sums))
-    for few, more in zip(*results, strict=True):
-        assert np.array_equal(few, more)
-
-
 def test_squares_are_those_of_the_counts_of_each_chain():
-    """A chain at a time, its counts are known; in wide bins they are sums over those in others."""
+    """A chain at a time, its counts are known; in wide bins they are sums over those in others.
+
+    They do not depend on the number of lanes.
+    """
     edges, found, going = np.array(wide_edges(64)), [], np.ones(1, np.bool_)
     wide = np.full(65, 65 + edges.size)
     wide[: edges[-1]] = 65 + np.searchsorted(edges, np.arange(edges[-1]), side="right") - 1
     for first, stop in (*((i, i + 1) for i in range(8)), (0, 8)):
         sums = np.zeros((2, 66 + edges.size), np.int64)
+        how = {"returns": 32, "lanes": 1 if stop - first == 1 else 5}
         returns.record_intervals(
-            PAPER, "vertical_hop", 3, first, stop, 1, (0.25, wide), sums, going, returns=32, lanes=4
+            PAPER, "vertical_hop", 3, first, stop, 1, (0.25, wide), sums, going, **how
         )
         found.append(sums)
     chains = np.array([counts for counts, _ in found[:-1]])
@@ -93,18 +79,6 @@ def test_wide_bins_widen():
     growth = np.diff(edges) / np.maximum(edges[:-1], 1)
     assert (growth >= GROWTH).all()
     assert edges[-1] <= BINS < (1 + GROWTH) * edges[-1]
-
-
-def test_wide_bins_of_a_point_join_its_equal_bins():
-    found = runs.hop_intervals(PAPER, "vertical_hop", 1, 1)
-    edges = found.wide.edges
-    joined = np.add.reduceat(found.equal.counts[: edges[-1]], edges[:-1])
-    assert found.wide.counts == joined.tolist()
-
-
-def test_a_blocked_hop_has_no_intervals():
-    with pytest.raises(ValueError, match="blocked"):
-        runs.hop_intervals(PAPER.with_radius(0.3), "horizontal_hop", 1, 1)
 
 
 # More than two discs -----------------------------------------------------------------------------
@@ -177,14 +151,6 @@ def test_errors_of_intervals_of_many_are_those_of_repetitions():
     assert abs(ratio - 1) < 5 / math.sqrt(2 * 59)
 
 
-def test_intervals_of_many_do_not_depend_on_who_draws_them():
-    run = runs.IntervalRun(*MANY["three"], 150_000, 3)
-    (part,) = run.parts.values()
-    assert part.planned == 3
-    pieces = through_json({ends: part.work(*ends) for ends in ((0, 1), (1, 3))})
-    assert run.point({"all": rounds.joined(part, pieces)}) == run.run()
-
-
 def test_what_is_not_known_of_many_is_refused():
     scene = Scene(1.5, 1.0, 0.13, discs=16)
     with pytest.raises(ValueError, match="is so large for 16 discs that the time between"):
@@ -193,3 +159,7 @@ def test_what_is_not_known_of_many_is_refused():
         runs.hop_intervals(MANY["four in a channel"][0], "horizontal_hop", 1, 1)
     with pytest.raises(ValueError, match="budget must allow for 65536 intervals"):
         runs.hop_intervals(*MANY["three"], 1, 1, budget=1000)
+    with pytest.raises(ValueError, match=r"^scene must have smooth discs"):
+        td.intervals(replace(scene, discs=3, moment_of_inertia=0.3), "vertical_hop", 1000)
+    with pytest.raises(ValueError, match="blocked"):
+        runs.hop_intervals(PAPER.with_radius(0.3), "horizontal_hop", 1, 1)

@@ -1,19 +1,15 @@
-"""One event at a time, against 50-digit arithmetic, where doubles have it hard."""
+"""One event could be off by more than its inputs allow, where doubles have it hard."""
 
 import math
 
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import assume, example, given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from twodiscs.dynamics.law import (
-    DISC,
-    END_OF_TIME,
     WALL_X1,
-    WALL_Y1,
-    WALL_Y2,
     Law,
     after_event,
     contact_quotient,
@@ -90,6 +86,7 @@ def check_contact(dx, dy, du, dv, sigma):
     st.floats(0, 2 * math.pi),
     st.floats(1e-9, 1.4),
 )
+@example(direction=0.2, room=0.3, heading=0.0, speed=0.0)
 @settings(max_examples=400, deadline=None, derandomize=True)
 def test_contact_from_anywhere(direction, room, heading, speed):
     distance = SIGMA * (1 + room)
@@ -107,34 +104,6 @@ def test_grazing_within_some_roundings(direction, room, ulps, speed):
     along = SIGMA * room
     c, s = math.cos(direction), math.sin(direction)
     check_contact(-along * c - impact * s, -along * s + impact * c, speed * c, speed * s, SIGMA)
-
-
-@pytest.mark.parametrize("sigma", [1e-6, 0.02, 0.4, 0.76, 1e6])
-def test_head_on_is_exact(sigma):
-    distance, speed = 3 * sigma, 0.5
-    found = contact_time(-distance, 0.0, speed, 0.0, sigma)
-    assert abs(found - (distance - sigma) / speed) <= 4 * EPS * found
-
-
-def test_no_relative_velocity_is_no_contact():
-    assert contact_time(0.5, 0.1, 0.0, 0.0, SIGMA) is None
-
-
-@given(st.floats(0, 2 * math.pi), st.floats(0, 2 * math.pi), st.integers(-3, 3))
-@settings(max_examples=300, deadline=None, derandomize=True)
-def test_contact_is_a_matter_of_direction(place, heading, ulps):
-    """At contact, to some ulps, discs that part are free and discs that approach collide."""
-    distance = SIGMA * (1 + ulps * EPS)
-    dx, dy = distance * math.cos(place), distance * math.sin(place)
-    du, dv = math.cos(heading), math.sin(heading)
-    approach = dx * du + dy * dv
-    assume(abs(approach) > 1e-6)
-    found = contact_time(dx, dy, du, dv, SIGMA)
-    if approach > 0:
-        assert found is None
-    else:
-        # The distance is off by some roundings, so the time is by as many over the normal speed.
-        assert 0 <= found <= 16 * EPS * SIGMA**2 / abs(approach)
 
 
 @given(
@@ -166,28 +135,6 @@ def step(state, remaining=math.inf, half_x=HALF_X, half_y=HALF_Y, sigma=SIGMA):
     assert time >= 0
     assert all(map(math.isfinite, after))
     return time, code, after
-
-
-def test_wall_wins_a_tie_with_a_disc_which_then_comes_at_once():
-    """Both discs reach the top and each other after the same time, 0.5."""
-    box = {"half_x": 0.5, "half_y": 0.25, "sigma": 0.25}
-    state = (-0.5, 0.0, 0.0, 0.0, 0.5, 0.5, 0.0, 0.5)
-    times, codes = [], []
-    for _ in range(3):
-        time, code, state = step(state, **box)
-        times.append(time)
-        codes.append(code)
-    assert times == [0.5, 0.0, 0.0]
-    assert codes == [WALL_Y1, WALL_Y2, DISC]
-    assert state[4:] == (0.0, -0.5, 0.5, -0.5)
-
-
-def test_end_of_time_moves_and_changes_nothing_else():
-    state = (0.1, 0.05, -0.4, -0.1, 0.5, -0.5, 0.5, 0.5)
-    time, code, after = step(state, remaining=0.0625)
-    assert (time, code) == (0.0625, END_OF_TIME)
-    assert after[4:] == state[4:]
-    assert after[0] == 0.1 + 0.5 * 0.0625
 
 
 @pytest.mark.parametrize("beyond", [1, 2, -1])

@@ -1,4 +1,4 @@
-"""Many discs: rates of the kernel of few discs and of theory, no lost hop, no overlap."""
+"""The kernel of many discs could lose an event that the one of few discs finds, or drift."""
 
 import itertools
 import math
@@ -10,60 +10,9 @@ from twodiscs.dynamics.many import cells as many_cells
 from twodiscs.dynamics.many import engine, path
 from twodiscs.dynamics.many import lockstep as many
 from twodiscs.dynamics.many.engine import mean_interval
-from twodiscs.dynamics.runs import relative_errors
-from twodiscs.model.events import SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial
 from twodiscs.sampling.many.cells import grid_of
-from twodiscs.theory import n_discs
-from twodiscs.theory.virial import rates, virial_weights
-
-
-def counts_of(scene, seed, replicas, events, epochs=7.3):
-    """Return (sums, products, duration) of ``many_cells``, whose times begin anew some times."""
-    duration = engine.duration_of(scene, events)
-    hops_x = None if scene.periodic else True
-    sums, products = many_cells.count_events(
-        initial.states(scene, replicas, seed), np.uint64(seed), 0, duration, duration / epochs,
-        many.law_of(scene), grid_of(scene), True, hops_x, None,
-    )  # fmt: skip
-    return sums, products, duration
-
-
-def means(sums, products, duration, replicas):
-    """Return (rates, standard errors) of all classes."""
-    found = sums / replicas / duration
-    return found, found * np.where(sums > 0, relative_errors(sums, products, replicas), 0.0)
-
-
-THREE = [
-    Scene(1.5, 1.0, 0.15, discs=3),
-    Scene(1.5, 1.0, 0.26, discs=3),
-    Scene(1.0, 1.5, 0.24, discs=3),
-]
-
-
-@pytest.mark.parametrize(
-    "scene",
-    [
-        THREE[0],
-        pytest.param(THREE[1], marks=pytest.mark.slow),
-        pytest.param(THREE[2], marks=pytest.mark.slow),
-        Scene(3.5, 0.6, 0.18, discs=8),
-        Scene(7.0, 0.6, 0.18, discs=16),
-        pytest.param(
-            Scene(7.0, 0.6, 0.18, discs=16, moment_of_inertia=0.5), marks=pytest.mark.slow
-        ),
-    ],
-    ids=repr,
-)
-def test_rates_are_exact(scene):
-    """Five sigma on every class, with as few cells as there may be."""
-    found, errors = means(*counts_of(scene, 1, 4096, 256), 4096)
-    for event, rate in rates(scene, n_discs.known_derivatives(scene)).items():
-        k = [*SHELLS].index(event)
-        assert abs(found[k] - rate) <= 5 * errors[k], (event, found[k], rate, errors[k])
-
 
 #: At the border: where one kernel ends and the other one begins, and on rings.
 BORDER = [
@@ -82,33 +31,18 @@ SHORT = [
 ]
 
 
+#: Few rough discs, which only the other kernel follows; and kicks.
+ROUGH = Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.3)
+KICKED = Scene(8.75, 0.6, 0.18, discs=20, friction=4.0)
 #: Its kernels take seconds to compile.
 ROUGH_TOO = pytest.param(BORDER[4], marks=pytest.mark.slow)
 
 
-@pytest.mark.parametrize(
-    "scene",
-    [
-        BORDER[1],
-        *(pytest.param(s, marks=pytest.mark.slow) for s in (BORDER[0], *BORDER[2:4], *SHORT)),
-    ],
-    ids=repr,
-)
-def test_both_kernels_have_the_same_rates(scene):
-    """Five sigma on every class, beyond the few events that are the same ones."""
-    replicas = 1024
-    found, errors = means(*counts_of(scene, 2, replicas, 1024), replicas)
-    duration = engine.duration_of(scene, 1024)
-    hops_x = None if scene.periodic else True
-    sums, products = many.count_events(
-        initial.states(scene, replicas, 3), np.uint64(3), 0, 64, duration, many.law_of(scene),
-        hops_x, None,
-    )  # fmt: skip
-    other, spread = means(sums, products, duration, replicas)
-    assert np.all(np.abs(found - other) <= 5 * np.hypot(errors, spread)), (found, other)
+#: Few discs have as few cells as there may be.
+THREE = Scene(1.5, 1.0, 0.26, discs=3)
 
 
-@pytest.mark.parametrize("scene", [*BORDER[:4], *SHORT, ROUGH_TOO], ids=repr)
+@pytest.mark.parametrize("scene", [THREE, *BORDER[:4], *SHORT, ROUGH_TOO], ids=repr)
 def test_a_few_events_are_the_same_ones(scene):
     """From the same states, before roundings have grown: the same counts, every one of them."""
     replicas, duration = 256, engine.duration_of(scene, 2 * scene.discs)
@@ -118,7 +52,7 @@ def test_a_few_events_are_the_same_ones(scene):
         *given, duration, duration / 3, law, grid_of(scene), True, hops_x, None
     )
     other = many.count_events(*given, 64, duration, law, hops_x, None)
-    assert one[0].sum() > 10 * replicas
+    assert one[0].sum() > (2 if scene is THREE else 10) * replicas
     for some, same in zip(one, other, strict=True):
         assert np.array_equal(some, same)
 
@@ -135,32 +69,10 @@ def test_which_kernel_runs():
     assert not alone[:2].any()
 
 
-def test_shards_add_up():
-    scene = BORDER[0]
-    whole = engine.run_classes(scene, 7, 0, 3, 8.0, replicas=20)
-    parts = [engine.run_classes(scene, 7, a, b, 8.0, replicas=20) for a, b in ((0, 1), (1, 3))]
-    for one, *pieces in zip(whole, *parts, strict=True):
-        assert np.array_equal(one, sum(pieces))
-
-
-def test_the_virial_theorem_holds_for_many_discs():
-    """Five sigma, at a packing fraction of .5 in a box."""
-    side = math.sqrt(64 * math.pi * 0.01 / 0.5)
-    scene, replicas = Scene(side, side, 0.1, discs=64), 256
-    sums, products = engine.run_classes(
-        scene, 8, 0, 1, engine.duration_of(scene), replicas=replicas
-    )
-    duration = engine.duration_of(scene)
-    weights = np.array([virial_weights(scene).get(event, 0.0) for event in SHELLS])
-    second = np.triu(products) + np.triu(products, 1).T
-    covariance = (second / replicas - np.outer(sums, sums) / replicas**2) / replicas / duration**2
-    error = math.sqrt(weights @ covariance @ weights)
-    assert error < 0.01
-    assert abs(weights @ sums / replicas / duration - 1) < 5 * error
-
-
 @pytest.mark.parametrize(
-    "scene", [BORDER[0], BORDER[3], *SHORT, ROUGH_TOO, Scene(48.0, 1.0, 0.1, discs=64)], ids=repr
+    "scene",
+    [BORDER[0], BORDER[3], *SHORT, ROUGH_TOO, Scene(48.0, 1.0, 0.1, discs=64), ROUGH],
+    ids=repr,
 )
 def test_advanced_states_are_those_of_the_other_kernel(scene):
     """After some events of each disc, and there and back again; rounds of a ring as well."""
@@ -181,7 +93,7 @@ def test_advanced_states_are_those_of_the_other_kernel(scene):
     assert states == pytest.approx(start, abs=1e-7 * scene.width)
 
 
-@pytest.mark.parametrize("scene", [BORDER[0], BORDER[3], *SHORT, ROUGH_TOO], ids=repr)
+@pytest.mark.parametrize("scene", [BORDER[0], BORDER[3], *SHORT, ROUGH_TOO, KICKED], ids=repr)
 def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
     """In the same order, hops as well, before roundings have grown; also past a full log."""
     state = initial.states(scene, 1, 1)[:, 0]
@@ -227,66 +139,59 @@ def test_intervals_are_those_of_the_other_kernel(scene, hop, monkeypatch):
     assert np.array_equal(sums[0, :65].sum(), found[1].sum())
 
 
-def test_each_row_of_256_discs_is_where_it_says():
-    """The energy stays, discs are level at hops, and touch at collisions."""
-    scene = Scene(8.0, 4.0, 0.1, discs=256)
-    rows = [*path.events_of(scene, initial.states(scene, 1, 1)[:, 0], path.usual_duration(scene))]
-    assert len(rows) > 1500
-    for _, name, first, second, state in rows:
-        x, y, u, v = np.split(state, 4)
-        assert np.sum(u * u + v * v) == pytest.approx(1, abs=1e-12)
-        if name == "vertical_hop":
-            assert y[first - 1] == pytest.approx(y[second - 1], abs=1e-9)
-        if name == "disc_collision":
-            i, j = first - 1, second - 1
-            assert math.hypot(x[i] - x[j], y[i] - y[j]) == pytest.approx(0.2, abs=1e-9)
-
-
-#: Roundings of the box that an overlap may be, and |E − 1/2| after 1e8 events.
-GAP_BOUND, ENERGY_BOUND = 1e-14, 1e-11
-
-
-def check_conserved(scene, events):
-    """Follow one trajectory in pieces and check distances, ranges and the energy after each."""
-    n, states = scene.discs, initial.states(scene, 1, 1)
-    law, grid, epoch = (
-        many.law_of(scene),
-        grid_of(scene),
-        engine.duration_of(scene, 64 * scene.discs),
-    )
-    pieces, laps = 20, np.zeros((n, 1))
-    duration = engine.duration_of(scene, events / pieces)
-    for _ in range(pieces):
-        many_cells.advance_all(states, laps, duration, epoch, law, grid, None, None)
-        x, y, u, v = np.split(states[:, 0], 4)
-        half = law.ring[1] * (1 + 1e-15) if law.ring else scene.range_x / 2
-        assert np.max(np.abs(x)) <= half
-        assert np.max(np.abs(y)) <= scene.range_y / 2
-        i, j = np.array([*itertools.combinations(range(n), 2)]).T
-        dx = np.abs(x[i] - x[j])
-        dx = np.minimum(dx, scene.width - dx) if law.ring else dx
-        gap = np.min(np.hypot(dx, y[i] - y[j])) - scene.contact_distance
-        assert gap >= -GAP_BOUND * max(scene.width, scene.height)
-        assert abs(np.sum(u * u + v * v) - 1) / 2 < ENERGY_BOUND
-        if law.ring:
-            assert abs(np.sum(u)) < 1e-10
-    return states
+def check_state(scene, state, error):
+    """Discs do not overlap and are between the walls; energy and momenta are what they were."""
+    x, y, u, v, *s = np.reshape(state, (-1, scene.discs))
+    i, j = np.array([*itertools.combinations(range(scene.discs), 2)]).T
+    dx = x[i] - x[j]
+    if scene.periodic:
+        dx -= scene.width * np.round(dx / scene.width)
+    gap = np.min(np.hypot(dx, y[i] - y[j])) - scene.contact_distance
+    assert gap >= -1e-13 * max(scene.width, scene.height)
+    assert scene.periodic or np.max(np.abs(x)) <= scene.range_x / 2 * (1 + 1e-15)
+    assert np.max(np.abs(y)) <= scene.range_y / 2 * (1 + 1e-15)
+    turning = scene.moment_of_inertia * np.sum(s[0] ** 2) if s else 0.0
+    assert abs(np.sum(u * u + v * v) + turning - 1) < error
+    assert "x" not in scene.conserved or abs(np.sum(u)) < 10 * error
 
 
 side = math.sqrt(256 * math.pi * 0.01 / 0.6)
-DENSE = [
-    Scene(side, side, 0.1, discs=256),
-    Scene(side, side, 0.1, discs=256, periodic="x"),
-    Scene(18.0, 0.6, 0.18, discs=64),
-]
+#: In both kernels: dilute, dense and hardly fitting discs, tiny ones, channels and rings.
+STAYING = {
+    "three": Scene(1.5, 1.0, 0.15, discs=3),
+    "hardly fit": Scene(1.5, 1.0, 0.3005102, discs=3),
+    "tiny": Scene(1.5, 1.0, 1e-9, discs=5),
+    "dense channel": Scene(2.24, 0.6, 0.18, discs=8),
+    "ring": Scene(1.5, 1.0, 0.2, discs=4, periodic="x"),
+    "many": Scene(side, side, 0.1, discs=256),
+    "long channel": Scene(18.0, 0.6, 0.18, discs=64),
+    "dense ring": Scene(side, side, 0.1, discs=256, periodic="x"),
+    "rough": BORDER[4],
+}
 
 
-@pytest.mark.parametrize("scene", DENSE, ids=repr)
-def test_everything_is_conserved(scene):
-    check_conserved(scene, 1_000_000)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("scene", DENSE[:2], ids=repr)
-def test_everything_is_conserved_over_a_hundred_million_events(scene):
-    check_conserved(scene, 10**8)
+@pytest.mark.parametrize(
+    ("name", "events"),
+    [
+        *((name, 1e5) for name in STAYING),
+        *(pytest.param(name, 2e7, marks=pytest.mark.slow) for name in ("three", "many")),
+    ],
+)
+def test_nothing_overlaps_or_drifts(name, events):
+    """In each row, where discs are level at hops and touch at collisions; and for a long time."""
+    scene, states = STAYING[name], initial.states(STAYING[name], 1, 1)
+    rows = path.events_of(scene, states[:, 0], engine.duration_of(scene, 2000))
+    for _, event, first, second, state in itertools.islice(rows, 1000):
+        check_state(scene, state, 1e-12)
+        x, y, *_ = np.reshape(state, (-1, scene.discs))
+        if event == "vertical_hop":
+            assert y[first - 1] == pytest.approx(y[second - 1], abs=1e-9)
+        if event == "disc_collision":
+            dx = x[first - 1] - x[second - 1]
+            dx -= scene.width * np.round(dx / scene.width) if scene.periodic else 0.0
+            apart = math.hypot(dx, y[first - 1] - y[second - 1])
+            assert apart == pytest.approx(scene.contact_distance, abs=1e-9)
+    laps, part = np.zeros((scene.discs, 1)), engine.duration_of(scene, events)
+    for _ in range(5):
+        engine.advance_all(scene, states, laps, part, None)
+        check_state(scene, states, 1e-11)

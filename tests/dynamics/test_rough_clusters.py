@@ -1,4 +1,4 @@
-"""Rough discs near a threshold, whose events come in crowds that most runs do not see.
+"""Rough discs near a threshold could have an error bar that most runs make too small.
 
 Whether a mean time has an error is decided from the scene, so it is the same for every seed; where
 it has one, its scores are standard normal.
@@ -12,61 +12,14 @@ import pytest
 import twodiscs as td
 from twodiscs.theory.exact import replicas_needed
 
-#: On a ring of a narrow gap; the second one far narrower, seed 1380 of which was 13 errors off.
-RINGS = [
-    (
-        td.Scene(1.0, 5.83, 0.25 / (1 + 1e-3), moment_of_inertia=0.0044, periodic="x"),
-        {"error": 3e-2, "budget": 1e6},
-    ),
-    (
-        td.Scene(
-            7.630025739441089, 44.505652858375726, 1.907486404112955,
-            moment_of_inertia=0.004411334602263394, periodic="x",
-        ),
-        {"error": 3e-2, "budget": 1e6},
-    ),
-]  # fmt: skip
-BOXES = [
-    (td.Scene(1.5, 1.0, 0.25 / 1.01, moment_of_inertia=0.5), {"error": 1e-2, "budget": 2e7}),
-    (td.Scene(1.5, 1.0, 0.25 / 1.001, moment_of_inertia=0.2), {"error": 1e-2, "budget": 2e7}),
-]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("scene", "asked"), RINGS)
-@pytest.mark.parametrize("seed", [0, 1, 2, 3, 1380])
-def test_crowds_that_no_run_sees_leave_no_error_bar(scene, asked, seed):
-    row = td.simulate(scene, seed=seed, **asked)["disc_collision_time"]
-    assert (row.status, row.stderr, row.z) == ("too-few", None, None)
-    assert row.value is not None
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("scene", "asked"), RINGS + BOXES)
-def test_every_seed_says_the_same_of_collisions(scene, asked):
-    for seed in range(40):
-        assert td.simulate(scene, seed=seed, **asked)["disc_collision_time"].status == "too-few"
-
 
 @pytest.mark.parametrize("seed", range(8))
 def test_an_error_does_not_depend_on_the_largest_count(seed):
     """A disc that stays in a corner hits it up to a thousand times: some of these runs have one."""
-    scene, asked = BOXES[0]
-    row = td.simulate(scene, seed=seed, events=["right_wall"], **asked)["right_wall_time"]
+    scene, asked = td.Scene(1.5, 1.0, 0.25 / 1.01, moment_of_inertia=0.5), ["right_wall"]
+    row = td.simulate(scene, error=1e-2, budget=2e7, seed=seed, events=asked)["right_wall_time"]
     assert row.status == "reached"
     assert abs(row.z) < 5
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("scene", "asked"), BOXES)
-def test_discs_in_corners_leave_errors_what_they_are(scene, asked):
-    """Every seed has an error; the mean square of scores is within 5 standard errors of 1."""
-    seeds = 400
-    rows = [td.simulate(scene, seed=seed, **asked)["right_wall_time"] for seed in range(seeds)]
-    assert {row.status for row in rows} == {"reached"}
-    square = np.mean([row.z**2 for row in rows])
-    print(f"mean square {square:.2f}")
-    assert abs(square - 1) < 5 * math.sqrt(2 / seeds)
 
 
 def test_a_run_waits_for_crowds_that_its_budget_can_show():

@@ -1,4 +1,4 @@
-"""Rare hops from starts next to their surface: the exact share, the exact rates, honest errors."""
+"""Rare hops counted in a strip could have another rate, or an error that does not cover it."""
 
 import math
 from itertools import product
@@ -6,7 +6,6 @@ from itertools import product
 import numpy as np
 import pytest
 from factory import all_reached
-from mpmath import mp
 
 from twodiscs.comparison import scores
 from twodiscs.dynamics import runs
@@ -26,7 +25,6 @@ PAPER = Scene(1.5, 1.0, 0.2)
 PLACES = [
     (PAPER.with_radius(radius), hop)
     for radius, hop in (
-        (0.2, "horizontal_hop"),
         (0.245, "horizontal_hop"),
         (0.2494, "horizontal_hop"),
         (0.25 * (1 - 1e-6), "horizontal_hop"),
@@ -52,16 +50,9 @@ NECKS = {
 }
 
 #: Each of them has another kernel, which takes seconds to compile.
-SLOW = "unequal", "balls", "channel", "tube", "falling", "field"
-COUNTED = [
-    pytest.param(*neck, id=name, marks=[pytest.mark.slow] if name in SLOW else [])
-    for name, neck in NECKS.items()
-]
+COUNTED = [pytest.param(*neck, id=name, marks=pytest.mark.slow) for name, neck in NECKS.items()]
 #: The other necks need many draws, or a kernel that takes seconds to compile.
-DRAWN = [
-    pytest.param(*neck, id=name, marks=[] if name in ("field", "channel") else [pytest.mark.slow])
-    for name, neck in NECKS.items()
-]
+DRAWN = [NECKS["field"], NECKS["channel"], *COUNTED[:1], COUNTED[4]]
 at_places = pytest.mark.parametrize(("scene", "hop"), PLACES)
 
 
@@ -71,31 +62,32 @@ class Endless(strip.Strip):
     fastest = math.inf
 
 
-def check_rate(scene, hop, band, blocks=24, seed=1):
+def check_rate(scene, hop, band, found):
     """Five sigma."""
-    found, events = strip.run_blocks(scene, hop, band, seed, 0, blocks)
     mean, error = stratified_mean(strip.fractions_of(scene, hop, band), *found)
     assert error / mean < 0.05
     true = exact.rate(scene, hop) * 2 * band.time / band.fraction
     assert abs(mean - true) < 5 * error
-    return events / (blocks * REPLICAS)
 
 
 @at_places
 @pytest.mark.parametrize("shorter", [1, 8])
 def test_any_strip_has_the_exact_rate(scene, hop, shorter):
+    """A path ends only where no hop can follow."""
     band = strip.strip_of(scene, hop)
     band = strip.strip_around(scene, hop, band.time / shorter)
     assert band.within == scene.fastest * band.time
-    lasting = check_rate(scene, hop, band) / check_rate(scene, hop, Endless(*band))
-    assert 0.5 < lasting < 1
+    found, events = strip.run_blocks(scene, hop, band, 1, 0, 24)
+    check_rate(scene, hop, band, found)
+    the_same, all_events = strip.run_blocks(scene, hop, Endless(*band), 1, 0, 24)
+    assert np.array_equal(found, the_same)
+    assert 0.5 < events / all_events < 1
 
 
 @pytest.mark.parametrize(("scene", "hop"), COUNTED)
 def test_strips_of_effects_have_the_exact_rate(scene, hop):
     band = strip.strip_of(scene, hop)
-    check_rate(scene, hop, band)
-    check_rate(scene, hop, strip.strip_around(scene, hop, band.time / 4), seed=2)
+    check_rate(scene, hop, band, strip.run_blocks(scene, hop, band, 1, 0, 24)[0])
 
 
 @pytest.mark.parametrize(("scene", "hop"), [(PAPER, "vertical_hop"), *COUNTED])
@@ -110,39 +102,6 @@ def test_starts_fill_the_strata_as_their_exact_shares_say(scene, hop):
     assert expected.min() > 100
     chi2 = np.sum((starts - expected) ** 2 / expected)
     assert scores.chi2_p(chi2, starts.size - 1) > 1e-6
-
-
-@at_places
-def test_strata_take_most_of_the_scatter(scene, hop):
-    band = strip.strip_of(scene, hop)
-    found, _ = strip.run_blocks(scene, hop, band, 2, 0, 100)
-    unstratified = stratified_mean([[1.0]], *(part.sum(keepdims=True) for part in found))
-    assert (
-        stratified_mean(strip.fractions_of(scene, hop, band), *found)[1] ** 2
-        < unstratified[1] ** 2 / 3
-    )
-
-
-@at_places
-def test_the_share_is_exact(scene, hop):
-    """Against ∫ (A − u)(B − k(u))₊² du by quadrature in fifty digits, k = √(σ² − u²)₊."""
-    band = strip.strip_of(scene, hop)
-    with mp.workdps(50):
-        sides = mp.mpf(scene.width), mp.mpf(scene.height)
-        a, b = (
-            side - 2 * mp.mpf(scene.radius) for side in (sides if AXIS[hop] == "x" else sides[::-1])
-        )
-        sigma, end = 2 * mp.mpf(scene.radius), mp.mpf(band.within)
-
-        def density(u):
-            k = mp.sqrt(max(sigma**2 - u**2, 0))
-            return 2 * (a - u) * max(b - k, 0) ** 2
-
-        least = mp.sqrt(max(sigma**2 - b**2, 0))
-        cuts = sorted({least, min(sigma, a), a})
-        volume = mp.quad(density, [c for c in cuts if c >= least])
-        share = mp.quad(density, [0, end / 4, end]) / volume
-        assert abs(exact.fraction_near(scene, hop, band.within) / share - 1) < 1e-13
 
 
 @pytest.mark.parametrize(("scene", "hop"), [(PAPER, "vertical_hop"), *NECKS.values()])
@@ -180,35 +139,12 @@ def test_starts_in_a_strip_are_those_from_everywhere_that_are_in_it(scene, hop):
     assert np.all(np.abs(means[0] - means[1]) <= 5 * np.hypot(*errors) + 1e-15)
 
 
-@pytest.mark.parametrize(("scene", "hop"), [*PLACES, *COUNTED])
-def test_paths_end_only_where_no_hop_can_follow(scene, hop):
-    band = strip.strip_of(scene, hop)
-    found, events = strip.run_blocks(scene, hop, band, 3, 0, 8)
-    the_same, all_events = strip.run_blocks(scene, hop, Endless(*band), 3, 0, 8)
-    assert np.array_equal(found, the_same)
-    assert events < all_events
-
-
 @at_places
 def test_events_are_about_as_many_as_expected(scene, hop):
     band = Endless(*strip.strip_of(scene, hop))
     events = strip.run_blocks(scene, hop, band, 1, 0, 24)[1] / (24 * REPLICAS)
     # The choice of T needs no more than that.
     assert events == pytest.approx(strip.expected_events(scene, hop, band), rel=0.2)
-
-
-def test_lanes_and_shards_do_not_matter():
-    scene = PAPER.with_radius(0.245)
-    band = strip.strip_of(scene, "horizontal_hop")
-    whole = strip.run_blocks(scene, "horizontal_hop", band, 7, 0, 3, replicas=100)
-    other = strip.run_blocks(scene, "horizontal_hop", band, 7, 0, 3, replicas=100, lanes=5)
-    parts = [
-        strip.run_blocks(scene, "horizontal_hop", band, 7, a, b, replicas=100)
-        for a, b in ((0, 1), (1, 3))
-    ]
-    for one, same, *pieces in zip(whole, other, *parts, strict=True):
-        assert np.array_equal(one, same)
-        assert np.array_equal(one, sum(pieces))
 
 
 @at_places
@@ -277,15 +213,6 @@ def test_a_budget_is_shared_and_spent():
     of_strip = point.strips[hop].events / point.events
     assert of_strip == pytest.approx(planned[hop] / sum(planned.values()), rel=0.2)
     assert 8e6 < point.events < 1.02e7
-
-
-@pytest.mark.parametrize(
-    ("hop", "distance"),
-    [("any_wall", 0.1), ("horizontal_hop", 0.3), ("horizontal_hop", 0.0), ("vertical_hop", None)],
-)
-def test_bad_distances_are_refused(hop, distance):
-    with pytest.raises(ValueError, match="must"):
-        exact.fraction_near(PAPER, hop, distance)
 
 
 def test_every_rare_hop_has_random_numbers_of_its_own(monkeypatch):

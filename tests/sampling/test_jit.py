@@ -1,4 +1,4 @@
-"""Compiled code is kept, and never used for other sources than its own."""
+"""Compiled code could be that of other sources, or of effects that a scene does not have."""
 
 import json
 import os
@@ -7,12 +7,11 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import twodiscs
 from twodiscs.dynamics import law
-from twodiscs.sampling import jit, streams
+from twodiscs.sampling import jit
 
 SCRIPT = """
 import numpy as np
@@ -145,11 +144,6 @@ def test_without_a_compiler_there_are_no_kernels_and_a_sentence_says_so():
     assert done.stderr.count("\n") == 1
 
 
-def test_one_kernel_runs_in_python_for_who_steps_through_it():
-    state = streams.open_stream(np.uint64(1), 0)
-    assert streams.uniform.py_func(state.copy()) == streams.uniform(state)
-
-
 def test_kernels_start_without_linear_algebra_which_is_there_for_others():
     script = """
 import sys, numba
@@ -169,30 +163,6 @@ print(np.allclose(numba.njit(product)(a), product(a), rtol=1e-9, atol=0))
 
 
 # Effects that are absent ---------------------------------------------------------------------
-
-
-@jit.optional(lambda x, bonus: x)
-def with_bonus(x, bonus):
-    """Return x and a bonus, a tuple of one number: there is no such thing as ``None[0]``."""
-    return x + bonus[0]
-
-
-@jit.compiled
-def total_with_bonus(values, bonus):
-    total = 0.0
-    for x in values:
-        total += with_bonus(x, bonus)
-    return total
-
-
-def test_the_type_of_the_last_argument_chooses_between_present_and_absent():
-    values = np.array([1.0, 2.0, 4.0])
-    assert total_with_bonus(values, None) == 7.0
-    assert total_with_bonus(values, (10.0,)) == 37.0
-    # The same outside of a kernel.
-    assert with_bonus(1.0, None) == 1.0
-    assert with_bonus(1.0, (10.0,)) == 11.0
-    assert with_bonus.__doc__.startswith("Return x and a bonus")
 
 
 # Absent effects are not compiled ----------------------------------------------------------------

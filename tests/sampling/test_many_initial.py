@@ -1,15 +1,24 @@
-"""Initial states of N discs: uniform where that is known, whichever way they are drawn."""
+"""Initial states of many discs could overlap, or one way to draw them have another law."""
 
 import itertools
 import math
 
 import numpy as np
 import pytest
+from scipy.stats import f
 
+from twodiscs.model.many import arrangement, is_ordered
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.many import initial
+from twodiscs.sampling.many import chains, initial
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import n_discs
+
+
+def box(discs, packing, periodic=""):
+    """Return discs of the radius .1 at a packing fraction, in a square."""
+    side = math.sqrt(discs * math.pi * 0.01 / packing)
+    return Scene(side, side, 0.1, discs=discs, periodic=periodic)
+
 
 GASES = {
     "rejection": Scene(1.5, 1.0, 0.16, discs=5),
@@ -18,44 +27,76 @@ GASES = {
     "channel, upright": Scene(0.6, 2.0, 0.18, discs=5),
     "channel, narrow": Scene(40.0, 0.6, 0.29, discs=64),
     "chain": Scene(1.5, 1.0, 0.2, discs=6),
-    "ring": Scene(1.5, 1.0, 0.15, discs=4, periodic="x"),
+    "rejection, ring": Scene(1.5, 1.0, 0.15, discs=4, periodic="x"),
 }
+#: So many that chains of events draw them.
+LARGE = [
+    box(256, 0.6),
+    box(256, 0.6, "x"),
+    Scene(40.0, 0.6, 0.18, discs=128),
+    Scene(0.41, 30.0, 0.1, discs=128, periodic="x"),
+]
 
 
-def parts(scene, found):
-    """Return x, y, u, v, each (N, number)."""
-    return np.split(found, 4)
+def apart(scene, found):
+    """Return (x, y, u, v) of states and the distances of all pairs, in rows."""
+    x, y, u, v = np.split(found, 4)
+    i, j = np.array([*itertools.combinations(range(scene.discs), 2)]).T
+    dx = x[i] - x[j]
+    dx -= scene.width * np.round(dx / scene.width) if scene.periodic else 0.0
+    return x, y, u, v, dx, y[i] - y[j]
+
+
+@pytest.mark.parametrize("scene", [*GASES.values(), *LARGE], ids=repr)
+def test_states_are_allowed(scene):
+    x, y, u, v, dx, dy = apart(scene, initial.states(scene, 10 if scene in LARGE else 200, 1))
+    assert np.min(np.hypot(dx, dy)) >= scene.contact_distance * (1 - 1e-14)
+    assert np.max(np.abs(x)) <= scene.range_x / 2
+    assert np.max(np.abs(y)) <= scene.range_y / 2
+    assert np.sum(u**2 + v**2, axis=0) == pytest.approx(1.0, rel=1e-12)
+    assert not scene.periodic or np.max(np.abs(np.sum(u, axis=0))) < 1e-14
+    if scene in LARGE:  # no disc is left where it began
+        began = np.array(arrangement(scene)).T
+        assert not np.any(x == began[0][:, None])
+        assert is_ordered(scene) or not np.any(y == began[1][:, None])
 
 
 @pytest.mark.parametrize("name", GASES)
-def test_states_are_allowed(name):
-    scene = GASES[name]
-    assert initial.method(scene) == {"ring": "rejection"}.get(name, name.split(",")[0])
-    x, y, u, v = parts(scene, initial.states(scene, 200, 1))
-    assert np.max(np.abs(x)) <= scene.range_x / 2
-    assert np.max(np.abs(y)) <= scene.range_y / 2
-    for i, j in itertools.combinations(range(scene.discs), 2):
-        dx = np.abs(x[i] - x[j])
-        dx = np.minimum(dx, scene.width - dx) if scene.periodic else dx
-        assert np.min(np.hypot(dx, y[i] - y[j])) >= scene.contact_distance * (1 - 1e-14)
-    assert np.sum(u**2 + v**2, axis=0) == pytest.approx(1.0, rel=1e-12)
-    if scene.periodic:
-        assert np.sum(u, axis=0) == pytest.approx(0.0, abs=1e-14)
+def test_the_way_to_draw_is_chosen(name):
+    assert initial.method(GASES[name]) == name.split(",")[0]
+
+
+EDGES = (1.0, 1.05, 1.2, 1.5, 2.0, 2.5, 3.5)
 
 
 def moments(scene, found):
-    """Return (mean, standard error) of what two ways to draw are to agree on."""
-    x, y, u, v = parts(scene, found)
-    pairs = list(itertools.combinations(range(scene.discs), 2))
-    square = np.array([(x[i] - x[j]) ** 2 + (y[i] - y[j]) ** 2 for i, j in pairs])
-    seen = np.array(
-        [
-            (x**2).mean(0), (y**2).mean(0), (y**4).mean(0), square.mean(0), square.min(0),
-            (square < 1.2 * scene.contact_distance**2).sum(0), (u**4).mean(0), (v**4).mean(0),
-            np.abs(np.array([y[i] - y[j] for i, j in pairs])).mean(0),
-        ]
+    """Return numbers of each state: places, velocities, pair distances, and sixfold order."""
+    x, y, u, v, dx, dy = apart(scene, found)
+    distance = np.hypot(dx, dy) / scene.contact_distance
+    shells = [((a < distance) & (distance < b)).sum(0) for a, b in itertools.pairwise(EDGES)]
+    six = np.exp(6j * np.arctan2(dy, dx)) * (distance < 1.4)
+    return np.array(
+        [(x**2).mean(0), (y**2).mean(0), (y**4).mean(0), (u**4).mean(0), (v**4).mean(0),
+         distance.min(0), (distance**2).mean(0), np.abs(dy).mean(0), *shells,
+         np.abs(six.sum(0)) ** 2, np.cos(2 * math.pi * x / scene.width).mean(0) ** 2]
     )  # fmt: skip
-    return seen.mean(1), seen.std(1) / math.sqrt(seen.shape[1])
+
+
+def difference(scene, one, other):
+    """Return the largest difference of mean numbers of two sets of states, in standard errors."""
+    one, other = moments(scene, one), moments(scene, other)
+    # Rare numbers may be in one of the sets only: both have the spread of their union.
+    spread = np.hstack([some - some.mean(1, keepdims=True) for some in (one, other)]).std(1)
+    error = spread * math.sqrt(1 / one.shape[1] + 1 / other.shape[1])
+    return np.max(np.abs(one.mean(1) - other.mean(1)) / np.maximum(error, 1e-300))
+
+
+def drawn(scene, number, seed, **changes):
+    """Return ``number`` states of a ``Scene``, with some ``changes`` of how they are drawn."""
+    how = initial.initial_of(scene)._replace(**changes)
+    found = np.zeros((4 * scene.discs, number))
+    initial.draw_states(open_stream(np.uint64(seed), 0), how, found)
+    return found
 
 
 @pytest.mark.parametrize(
@@ -69,34 +110,70 @@ def moments(scene, found):
     ],
 )
 def test_ways_to_draw_agree(scene, one, other):
-    """Five sigma of both."""
-    (mean, error), (same, spread) = (
-        moments(scene, initial.states(scene, 500 if way == "chain" else 20_000, seed, by=way))
+    number = {"chain": 500}
+    found, same = (
+        initial.states(scene, number.get(way, 20_000), seed, by=way)
         for seed, way in ((1, one), (2, other))
     )
-    assert np.all(np.abs(mean - same) <= 5 * np.hypot(error, spread))
+    assert difference(scene, found, same) < 5
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        box(20, 0.55),
+        box(20, 0.5, "x"),
+        Scene(9.6, 0.75, 0.18, discs=24),
+        *(
+            pytest.param(scene, marks=pytest.mark.slow)
+            for scene in (
+                box(20, 0.1),
+                Scene(0.54, 5.0, 0.13, discs=20, periodic="x"),
+                Scene(0.7, 3.0, 0.1, discs=24, periodic="x"),
+                box(32, 0.6),
+            )
+        ),
+    ],
+    ids=repr,
+)
+def test_chains_of_events_have_the_law_of_chains_of_single_moves(scene):
+    chain = initial._chain(scene)
+    singly = initial.Chain(chain.centres, 4000, chain.scales)
+    assert difference(scene, drawn(scene, 500, 1), drawn(scene, 400, 2, chain=singly)) < 5
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", [Scene(1.5, 1.0, 0.295, discs=3), Scene(2.0, 1.5, 0.24, discs=7)])
-def test_longer_chains_are_no_different(scene, monkeypatch):
-    """Chains of half and of twice the length have the same law."""
-    found = []
-    for seed, factor in ((1, 0.5), (2, 2)):
-        monkeypatch.setattr(initial, "TRIALS", int(factor * initial.TRIALS))
-        found.append(moments(scene, initial.states(scene, 2000, seed, by="chain")))
-    (mean, error), (same, spread) = found
-    assert np.all(np.abs(mean - same) <= 5 * np.hypot(error, spread))
+@pytest.mark.parametrize("scene", [box(20, 0.1), box(64, 0.6), box(256, 0.6)], ids=repr)
+def test_longer_event_chains_are_no_different(scene, monkeypatch):
+    number = 2**14 // scene.discs
+    one = drawn(scene, number, 1)
+    monkeypatch.setattr(chains, "CONTACTS", 4 * chains.CONTACTS)
+    assert difference(scene, one, drawn(scene, number // 2, 2)) < 5
 
 
 def test_chains_that_are_too_short_are_seen(monkeypatch):
-    scene = Scene(2.5, 0.6, 0.18, discs=8)
-    found = []
-    for seed, sweeps, number in ((1, 50, 4000), (2, 4000, 400)):
-        monkeypatch.setattr(initial, "TRIALS", sweeps)
-        found.append(moments(scene, initial.states(scene, number, seed, by="chain")))
-    (mean, error), (same, spread) = found
-    assert np.max(np.abs(mean - same) / np.hypot(error, spread)) > 10
+    scene = box(32, 0.6)
+    one = drawn(scene, 200, 1)
+    monkeypatch.setattr(chains, "CONTACTS", 16)
+    assert difference(scene, one, drawn(scene, 200, 2)) > 10
+
+
+def free_length(scene, found):
+    """Return A − S of discs in an ordered channel."""
+    x, y, _, _ = np.split(found, 4)
+    heights = np.take_along_axis(y, np.argsort(x, axis=0), 0)
+    return scene.range_x - np.sqrt(scene.contact_distance**2 - np.diff(heights, axis=0) ** 2).sum(0)
+
+
+def test_long_channels_are_those_of_exact_draws():
+    """The variance of the free length is too large in the states that chains begin with."""
+    scene = Scene(28.0, 0.6, 0.18, discs=80)
+    both = drawn(scene, 160, 1), drawn(scene, 250, 2, chain=None)
+    assert difference(scene, *both) < 5
+    one, other = (free_length(scene, found) for found in both)
+    law = f(one.size - 1, other.size - 1)
+    ratio = one.var(ddof=1) / other.var(ddof=1)
+    assert min(law.sf(ratio), law.cdf(ratio)) > 2.9e-7
 
 
 @pytest.mark.parametrize(
@@ -114,32 +191,29 @@ def test_heights_in_a_channel_are_accepted_at_every_density(scene, least):
     assert accepted / 2000 > least
 
 
-def test_mean_room_in_a_channel():
+@pytest.mark.parametrize("name", ["channel", "channel, dense"])
+def test_mean_room_in_a_channel(name):
     """⟨1/(A − S)⟩ = ∂lnV/∂A / N over the drawn heights; five sigma."""
-    for scene in (GASES["channel"], GASES["channel, dense"]):
-        x, y, _, _ = parts(scene, initial.states(scene, 20_000, 4))
-        order = np.argsort(x, axis=0)
-        heights = np.take_along_axis(y, order, 0)
-        taken = np.sqrt(scene.contact_distance**2 - np.diff(heights, axis=0) ** 2).sum(0)
-        seen = 1 / (scene.range_x - taken)
-        true = n_discs.known_derivatives(scene, hops=False).per_width / scene.discs
-        # The inverse has a finite variance for N ≥ 2.
-        assert abs(seen.mean() - true) < 5 * seen.std() / math.sqrt(seen.size)
+    scene = GASES[name]
+    # The inverse has a finite variance for N ≥ 2.
+    seen = 1 / free_length(scene, initial.states(scene, 20_000, 4))
+    true = n_discs.known_derivatives(scene, hops=False).per_width / scene.discs
+    assert abs(seen.mean() - true) < 5 * seen.std() / math.sqrt(seen.size)
 
 
-@pytest.mark.parametrize("name", ["channel", "channel, upright", "chain", "ring"])
+@pytest.mark.parametrize("name", ["channel", "channel, upright", "chain", "rejection, ring"])
 def test_each_disc_is_any_of_them(name):
     """Five sigma on how often a disc is in which place of the row; the first states stay."""
     scene, number = GASES[name], 400 if name == "chain" else 4000
     found = initial.labelled(scene, number, 6)
     assert np.array_equal(initial.labelled(scene, 50, 6), found[:, :50])
-    x, y, *_ = parts(scene, found)
+    x, y, *_ = np.split(found, 4)
     ranks = np.argsort(np.argsort(y if scene.height > scene.width else x, axis=0), axis=0)
     counts = np.array([np.bincount(rank, minlength=scene.discs) for rank in ranks])
     share = 1 / scene.discs
     assert np.all(np.abs(counts - number * share) < 5 * math.sqrt(number * share * (1 - share)))
     # Nothing else has changed.
-    same = parts(scene, initial.states(scene, number, 6))
+    same = np.split(initial.states(scene, number, 6), 4)
     assert np.array_equal(np.sort(x, axis=0), np.sort(same[0], axis=0))
     assert np.array_equal(found[2 * scene.discs :], np.vstack(same[2:]))
 

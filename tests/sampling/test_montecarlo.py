@@ -1,4 +1,4 @@
-"""Rejection sampling: the exact volume, and the exact expectation of every shell."""
+"""A shell could be hit with another probability than its exact expectation."""
 
 import math
 
@@ -12,7 +12,6 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS, SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
-from twodiscs.sampling.prism import prism_of
 from twodiscs.theory import exact
 
 PAPER = Scene(1.5, 1.0, 0.2)
@@ -45,24 +44,6 @@ def test_hits_have_their_exact_probability(width, height, radius, shell):
         sampled = found[f"{event}_area"]
         expected = exact.shell_expectation(scene, event, sampled.epsilon)
         assert_binomial(sampled.hits, samples, expected / sampled.measure)
-
-
-def test_blocks_add_up_and_are_independent_of_company():
-    # Squares of separations, and grains of the places of disc 1 at the walls.
-    ends = montecarlo.shell_ends(
-        [0.01] * len(SHELLS),
-        lambda thick: 0.42**2,
-        lambda axis, side, thick: 2**32 - 2**26 if side > 0 else 2**26,
-    )
-    arguments = (PAPER.range_x, PAPER.range_y, PAPER.contact_distance, ends, True)
-    whole = montecarlo.sample_blocks(np.uint64(3), 0, 4, *arguments)
-    parts = [montecarlo.sample_blocks(np.uint64(3), a, b, *arguments) for a, b in ((0, 1), (1, 4))]
-    assert np.array_equal(whole, sum(parts))
-    only = montecarlo.sample_blocks(np.uint64(3), 0, 4, *arguments[:4], None)
-    assert only[0] == whole[0]
-    assert not only[1:].any()
-    other = montecarlo.sample_blocks(np.uint64(4), 0, 4, *arguments)
-    assert not np.array_equal(whole, other)
 
 
 def test_joint_hits_of_two_walls():
@@ -116,13 +97,6 @@ def test_a_radius_on_the_threshold_has_a_shell():
     assert point.quantities["horizontal_hop_area"].epsilon == 0.02 * 0.25
 
 
-def test_no_hits_where_rejection_is_hopeless():
-    """At r_max (1 − 1e-3) one sample in 1e11 is accepted: no hit, and no complaint."""
-    scene = PAPER.with_radius(PAPER.largest_radius * (1 - 1e-3))
-    point = montecarlo.sample_point(scene, EVERYTHING, 1, 0.02, 1)
-    assert point.quantities["volume"].hits == 0
-
-
 # Scenes with effects ----------------------------------------------------------------------------
 
 #: Blocked hops, discs that hardly fit, a large disc that passes nowhere but reaches all walls, and
@@ -146,10 +120,6 @@ def everything(scene):
     return ["volume", *(f"{event}_area" for event in scene.events)]
 
 
-def prism(scene):
-    return prism_of(scene)._replace(inertia=None)
-
-
 @pytest.mark.parametrize("scene", [*SCENES.values(), *MORE_SCENES], ids=repr)
 @pytest.mark.parametrize("shell", [0.05, 0.8])
 def test_weighted_hits_have_their_exact_probability(scene, shell):
@@ -163,59 +133,6 @@ def test_weighted_hits_have_their_exact_probability(scene, shell):
         event = quantity.removesuffix("_area")
         expected = exact.shell_expectation(scene, event, sampled.epsilon)
         assert_binomial(sampled.hits, samples, expected / sampled.measure)
-
-
-#: Counts of one block of each scene with the seed 9: volume, then hops, collisions and three walls.
-COUNTED = ("vertical_hop", "horizontal_hop", "disc_collision", "right_wall", "top_wall", "any_wall")
-COUNTS = {
-    "unequal": [893325, 38911, 17192, 27208, 15793, 26396, 16273],
-    "torus": [697303, 0, 0, 51237, 0, 0, 0],
-    "channel": [629218, 45135, 0, 47991, 0, 24824, 24987],
-    "field": [295344, 16259, 2287, 18513, 5392, 4788, 7393],
-    "rough": [567288, 39071, 5868, 47171, 13683, 23130, 18392],
-    "balls": [772643, 60328, 22189, 44803, 16015, 28478, 22101],
-    "combination": [524812, 45094, 0, 37421, 0, 7544, 24896],
-}
-
-
-@pytest.mark.parametrize("name", COUNTS)
-def test_weighted_counts_are_the_same_everywhere(name):
-    scene = SCENES[name]
-    epsilon = [0.02 if event in scene.events else 0.0 for event in EVENTS]
-    arguments = prism(scene), montecarlo.weighted_ends(scene, epsilon)
-    found = montecarlo.weighted_blocks(np.uint64(9), 0, 1, *arguments)
-    assert [found[0], *(found[1 + EVENTS.index(event)] for event in COUNTED)] == COUNTS[name]
-
-
-@pytest.mark.parametrize("name", ["torus", "combination"])
-def test_weighted_blocks_add_up(name):
-    scene = SCENES[name]
-    epsilon = [0.02 if event in scene.events else 0.0 for event in EVENTS]
-    arguments = prism(scene), montecarlo.weighted_ends(scene, epsilon)
-    whole = montecarlo.weighted_blocks(np.uint64(3), 0, 3, *arguments)
-    parts = [
-        montecarlo.weighted_blocks(np.uint64(3), a, b, *arguments) for a, b in ((2, 3), (0, 2))
-    ]
-    assert np.array_equal(whole, sum(parts))
-    other = montecarlo.weighted_blocks(np.uint64(4), 0, 3, *arguments)
-    assert not np.array_equal(whole, other)
-
-
-@pytest.mark.slow
-def test_only_what_is_watched_is_sampled_with_effects():
-    scene = SCENES["combination"]
-    for event in ("vertical_hop", "any_wall"):
-        point = montecarlo.sample_point(scene, [f"{event}_area"], 1, 0.1, 1)
-        assert point.quantities.keys() == {f"{event}_area"}
-        epsilon = [0.02 if e == event else 0.0 for e in EVENTS]
-        ends = montecarlo.weighted_ends(scene, epsilon)
-        assert [name for name, end in zip(EVENTS, ends, strict=True) if end is not None] == [event]
-        counts = montecarlo.weighted_blocks(np.uint64(1), 0, 1, prism(scene), ends)
-        assert np.flatnonzero(counts).tolist() == [0, 1 + EVENTS.index(event)]
-    assert montecarlo.weighted_ends(scene, [0.0] * len(EVENTS)) is None
-    point = montecarlo.sample_point(scene, ["volume"], 1, 0.1, 1)
-    assert point.quantities.keys() == {"volume"}
-    assert point.samples == montecarlo.BLOCK
 
 
 @pytest.mark.parametrize("scene", [*SCENES.values(), *MORE_SCENES], ids=repr)

@@ -1,19 +1,34 @@
-"""Starts of every scene: the law of the invariant measure, and that of a flux on its surfaces."""
+"""Initial states could have another law than the invariant measure, or the flux on a surface."""
 
 import math
+from fractions import Fraction
+from itertools import pairwise
 
+import mpmath
 import numpy as np
 import pytest
 from effect_scenes import SCENES
-from sampling.uniformity import assert_uniform
-from scipy.special import betainc
+from sampling.uniformity import (
+    FALSE_ALARM,
+    assert_uniform,
+    assert_uniform_on_sphere,
+    energy_left,
+    parts,
+    scaled_components,
+)
+from scipy.special import chdtrc
 
+from twodiscs.dynamics.two import strip
+from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.separations import draw_crossing, separation_sampler
-from twodiscs.sampling.starts import COMPONENTS, draw_states, start_sampler, state_in, states
+from twodiscs.sampling.jit import compiled
+from twodiscs.sampling.prism import fraction_if_accepted, prism_of, propose_anywhere
+from twodiscs.sampling.separations import draw_separation, separation_sampler
+from twodiscs.sampling.starts import COMPONENTS, draw_states, start_sampler, states
 from twodiscs.sampling.streams import open_stream
 
 PLAIN = Scene(1.5, 1.0, 0.2)
+SMOOTH = {"plain": PLAIN, "plain, narrow": PLAIN.with_radius(0.3)}
 
 #: D is 2, 3, 4 and 6 in the scenes of one effect; here it is 5 and 3, 6 and 4 again.
 STARTS = {
@@ -33,28 +48,7 @@ def on_surface(scene, surface, n):
     return found
 
 
-def parts(scene, starts):
-    """Return {axis: (q1, q2, v1, v2)} and the spins (s1, s2) of rough discs or None.
-
-    Coordinates on periodic axes are wrapped into the box.
-    """
-    found = {"x": starts[[0, 2, 4, 6]], "y": starts[[1, 3, 5, 7]]}
-    if scene.depth is not None:
-        found["z"] = starts[8:12]
-    for axis in scene.periodic:
-        side = scene.side(axis)
-        found[axis][:2] -= side * np.round(found[axis][:2] / side)
-    return found, starts[8:10] if scene.moment_of_inertia else None
-
-
 # The law ----------------------------------------------------------------------------------------
-
-
-def energy_left(scene, y1, y2):
-    """Return twice the kinetic energy at total energy 1/2; heights count from the bottom."""
-    (r1, r2), (m1, m2) = scene.radii, scene.masses
-    half = scene.height / 2
-    return 1 - 2 * scene.field * (m1 * (y1 + half - r1) + m2 * (y2 + half - r2))
 
 
 def distance_square(scene, places):
@@ -102,46 +96,6 @@ def assert_same_law(scene, drawn, plain):
         assert abs(a.mean() - b.mean()) <= 5 * error
 
 
-def scaled_components(scene, found, spins, normal=None):
-    """Return unit vectors of D components, from velocities scaled by √mass, a row each.
-
-    With a ``normal`` axis the first row is the relative motion along it. Energy and momenta have
-    the required values.
-    """
-    m1, m2 = scene.masses
-    reduced, common, rows = math.sqrt(m1 * m2 / (m1 + m2)), [], []
-    for axis in (normal, *(a for a in scene.axes if a != normal)) if normal else scene.axes:
-        v1, v2 = found[axis][2:]
-        if axis in scene.conserved:
-            assert np.max(np.abs(m1 * v1 + m2 * v2)) < 8 * 2.0**-52 * math.sqrt(max(m1, m2))
-            rows.append(reduced * (v1 - v2))
-        elif axis == normal:
-            rows.append(reduced * (v1 - v2))
-            common.append((m1 * v1 + m2 * v2) / math.sqrt(m1 + m2))
-        else:
-            rows += [math.sqrt(m1) * v1, math.sqrt(m2) * v2]
-    rows += common
-    if spins is not None:
-        rows += [math.sqrt(scene.moment_of_inertia * m1) * spins[0]]
-        rows += [math.sqrt(scene.moment_of_inertia * m2) * spins[1]]
-    assert len(rows) == scene.velocity_components
-    square, left = np.sum(np.square(rows), axis=0), energy_left(scene, *found["y"][:2])
-    assert np.max(np.abs(square - left)) < 16 * 2.0**-52
-    return np.array(rows) / np.sqrt(square)
-
-
-def assert_uniform_on_sphere(unit):
-    """Every component squared has a beta law; second and fourth mixed moments are exact."""
-    d, n = unit.shape
-    for i, a in enumerate(unit):
-        assert abs(np.mean(np.sign(a))) <= 5 / math.sqrt(n)
-        assert_uniform(betainc(1 / 2, (d - 1) / 2, a**2))
-        for b in unit[:i]:
-            assert abs(np.mean(a * b)) <= 5 * np.std(a * b) / math.sqrt(n)
-            product = a**2 * b**2
-            assert abs(np.mean(product) - 1 / (d * (d + 2))) <= 5 * np.std(product) / math.sqrt(n)
-
-
 @pytest.mark.parametrize("scene", [PLAIN, *STARTS.values()], ids=["plain", *STARTS])
 def test_starts_have_the_law_of_the_invariant_measure(scene):
     found, spins = parts(scene, states(scene, 50_000, 17))
@@ -161,12 +115,12 @@ SURFACES = [
     for name, scene in STARTS.items()
     for axis in "xy"
     if axis in scene.walled
-]
+] + [("plain", "y"), ("plain, narrow", "y")]
 
 
 @pytest.mark.parametrize(("name", "hop"), SURFACES)
 def test_starts_on_a_surface_have_the_law_of_the_flux(name, hop):
-    scene = STARTS[name]
+    scene = SMOOTH.get(name) or STARTS[name]
     found, spins = parts(scene, on_surface(scene, "xy".index(hop), 50_000))
     places = {axis: both[:2] for axis, both in found.items()}
     assert np.array_equal(*places[hop])
@@ -200,10 +154,149 @@ def test_rows_that_a_scene_has_no_use_for_are_zero(scene):
             assert not np.any(found[used:])
 
 
-def test_a_start_on_the_surface_of_a_plain_scene_is_a_crossing():
-    draw = separation_sampler(PLAIN)
-    state = open_stream(np.uint64(17), 0)
-    found = on_surface(PLAIN, 1, 5)
-    for i in range(5):
-        crossing = draw_crossing(state, draw.half_x, draw.half_y, draw.beyond_x)
-        assert state_in(found, i) == crossing
+# Separations of plain scenes -------------------------------------------------------------------
+
+
+JAM = Box(1.5, 1.0).largest_radius
+
+#: Boxes and radii in every regime, next to the thresholds and where the discs hardly fit.
+CASES = [
+    (1.5, 1.0, r)
+    for r in (1e-9, 0.01, 0.2, 0.25, 0.25 + 1e-12, 0.3, 0.374999, 0.375001, 0.38,
+              JAM * (1 - 1e-4), JAM * (1 - 1e-9))
+] + [
+    (1.0, 1.0, 0.2499), (1.0, 1.0, 0.25), (1.0, 1.0, 0.2501), (1.0, 1.0, 0.2928932),
+    (2.0, 1.0, 0.49), (2.0, 1.0, 0.5 * (1 - 1e-9)), (1.0, 2.0, 0.3), (1.0, 1.5, 0.38),
+    (3.0, 1.0, 0.4), (3.0, 1.0, 0.499999), (1.0, 3.0, 0.4), (1e6, 1.0, 0.3), (1e-6, 1.0, 2e-7),
+]  # fmt: skip
+
+
+@compiled
+def separations(seed, draw, n):
+    state = open_stream(seed, 0)
+    found = np.empty((3, n))
+    for i in range(n):
+        found[0, i], found[1, i], found[2, i] = draw_separation(state, draw)
+    return found
+
+
+def slack_density(scene):
+    """Return (A, B, σ, upper end, g), g(p) ∝ the density of p = A − |x1 − x2|, for mpmath."""
+    w, h, r = (Fraction(x) for x in (scene.width, scene.height, scene.radius))
+
+    def exact(q):
+        return mpmath.mpf(q.numerator) / q.denominator
+
+    a, b, sigma = exact(w - 2 * r), exact(h - 2 * r), exact(2 * r)
+    start = mpmath.sqrt(sigma**2 - b**2) if sigma > b else mpmath.mpf(0)
+
+    def density(slack):
+        u = a - slack
+        k = mpmath.sqrt(sigma**2 - u**2) if u < sigma else mpmath.mpf(0)
+        return slack * max(b - k, 0) ** 2
+
+    return a, b, sigma, a - start, density
+
+
+def slack_law(scene):
+    """Return edges (65) and cumulative probabilities of the slack at them, by quadrature."""
+    with mpmath.workdps(40):
+        a, _, sigma, top, density = slack_density(scene)
+        edges = [top * i / 64 for i in range(65)]
+        kinks = [a - sigma] if a > sigma else []
+        masses = []
+        for low, high in pairwise(edges):
+            inside = [kink for kink in kinks if low < kink < high]
+            points = [low, *inside, high]
+            # To 2e-11 of the scatter of a single draw.
+            masses.append(mpmath.quad(density, points, maxdegree=2))
+        total = sum(masses)
+        return np.array([float(e) for e in edges]), np.array([float(m / total) for m in masses])
+
+
+@pytest.mark.parametrize(("width", "height", "radius"), CASES)
+def test_separations_have_the_invariant_law(width, height, radius):
+    scene = Scene(width, height, radius)
+    draw = separation_sampler(scene)
+    n = 40_000
+    slack_x, slack_y, u = separations(np.uint64(11), draw, n)
+    assert np.all((slack_x >= 0) & (slack_y >= 0))
+    edges, masses = slack_law(scene)
+    counts, _ = np.histogram(slack_x, bins=edges)
+    assert counts.sum() == n
+    keep = n * masses >= 10
+    expected = np.append(n * masses[keep], n * masses[~keep].sum())
+    seen = np.append(counts[keep], counts[~keep].sum())
+    if expected[-1] < 10:
+        expected = np.append(expected[:-2], expected[-2:].sum())
+        seen = np.append(seen[:-2], seen[-2:].sum())
+    chi_square = np.sum((seen - expected) ** 2 / expected)
+    assert chdtrc(expected.size - 1, chi_square) > FALSE_ALARM
+
+    # Given u, the slack in y is (B − k)√U.
+    with mpmath.workdps(40):
+        a, b, sigma, _, _ = slack_density(scene)
+        rooms = []
+        for p in slack_x[:2000]:
+            u = a - mpmath.mpf(float(p))
+            k = mpmath.sqrt(sigma**2 - u**2) if u < sigma else mpmath.mpf(0)
+            rooms.append(float(b - k))
+    assert_uniform((slack_y[:2000] / np.array(rooms)) ** 2)
+
+
+@pytest.mark.parametrize("radius", [0.2, 0.3, 0.38, JAM * (1 - 1e-9)])
+@pytest.mark.parametrize("sides", [(0, 0), (1, 0), (-1, 1), (1, -1)])
+def test_components_are_chosen(radius, sides):
+    scene = Scene(1.5, 1.0, radius)
+    n = 20_000
+    x1, y1, x2, y2 = states(scene, n, 5, order=sides)[:4]
+    for side, difference in zip(sides, (x1 - x2, y1 - y2), strict=True):
+        above = np.count_nonzero(difference > 0)
+        if side:
+            assert above == (n if side > 0 else 0)
+        else:
+            assert abs(above - n / 2) <= 5 * math.sqrt(n) / 2
+    half_x, half_y = scene.range_x / 2, scene.range_y / 2
+    assert np.all(np.abs([x1, x2]) <= half_x)
+    assert np.all(np.abs([y1, y2]) <= half_y)
+    gap = np.hypot(x1 - x2, y1 - y2) - scene.contact_distance
+    assert gap.min() >= -1e-15
+
+
+# Proposals in the neck of a hop -----------------------------------------------------------------
+
+
+@compiled
+def accepted(state, prism, proposals):
+    """Return how many of some proposals in a neck are accepted."""
+    count = 0
+    for _ in range(proposals):
+        _, y1, _, dx, dy, dz = propose_anywhere(state, prism, prism.neck)
+        fraction = fraction_if_accepted(state, prism, y1, dx, dy, dz, prism.components - 2)
+        count += fraction >= 0.0
+    return count
+
+
+@pytest.mark.parametrize(
+    ("scene", "hop"),
+    [
+        # In a field the energy of the lower places of a neck counts in the measure.
+        (Scene(1.5, 1.0, 0.24, field=0.4), "horizontal_hop"),
+        (Scene(1.5, 1.0, 0.2, field=0.5, mass_ratio=4.0), "vertical_hop"),
+        (Scene(1.5, 1.0, 0.2, field=0.4, mass_ratio=0.25), "horizontal_hop"),
+        # Wide necks: some proposals have the opposite order.
+        (Scene(1.5, 1.0, 0.1, mass_ratio=2.0), "horizontal_hop"),
+        (Scene(1.5, 1.0, 0.05, radius_ratio=2.0), "vertical_hop"),
+        pytest.param(
+            Scene(1.5, 1.0, 0.2, field=0.3, depth=0.6), "vertical_hop", marks=pytest.mark.slow
+        ),
+    ],
+    ids=repr,
+)
+def test_the_chance_of_a_proposal_is_exact(scene, hop):
+    """At 5 sigma."""
+    band, proposals = strip.strip_of(scene, hop), 200_000
+    prism, chance = prism_of(scene, hop, band.within), strip.acceptance(scene, hop, band)
+    assert 0.001 < chance <= 1
+    found = accepted(open_stream(np.uint64(1), 0), prism, proposals) / proposals
+    assert abs(found - chance) < 5 * math.sqrt(chance * (1 - chance) / proposals)

@@ -1,4 +1,4 @@
-"""Work in threads: in order, no more than is asked for, and errors are those of the work."""
+"""Threads could change the order, hide an error or keep a process from ending."""
 
 import subprocess
 import sys
@@ -42,12 +42,6 @@ def test_errors_come_out_and_end_the_work():
     with pytest.raises(ZeroDivisionError):
         list(in_threads(work, ((i,) for i in range(100))))
     assert len(begun) <= 2
-
-
-def test_who_waits_is_told_that_time_goes_by():
-    told = []
-    list(in_threads(time.sleep, [(0.5,)], waiting=lambda: told.append(True)))
-    assert told
 
 
 #: A process that ends while a thread of it works, as at Ctrl-C.

@@ -1,14 +1,13 @@
-"""The ordered channel: against other theories, sums of moments, and its limits."""
+"""The theory of an ordered channel could be off from others, from sums of moments or its limits."""
 
 import math
 
 import numpy as np
 import pytest
 
-from twodiscs.model.checks import InputError
 from twodiscs.model.scene import Scene
 from twodiscs.theory import channel, n_discs, three
-from twodiscs.theory.virial import Derivatives, rates, virial_sum
+from twodiscs.theory.virial import Derivatives
 
 BOUND = 1e-10
 
@@ -104,58 +103,6 @@ def test_long_channels_are_made_of_moments(discs, width, height, radius):
         assert abs(known - value) <= PROMISED * max(1, abs(value))
 
 
-def test_four_discs_in_a_shorter_channel():
-    """By a product rule over the heights: the integrand has a kink in its fourth derivative."""
-    scene, values = Scene(1.3, 0.6, 0.18, discs=4), []
-    for order in (40, 56):
-        x, w = np.polynomial.legendre.leggauss(order)
-        y, w = scene.range_y * (1 + x) / 2, scene.range_y * w / 2
-        d = np.sqrt(scene.contact_distance**2 - (y[:, None] - y) ** 2)
-        middle = d[:, :, None] + d[None]
-        room = scene.range_x - middle
-        total = 0.0
-        for i in range(order):
-            left = np.maximum(room[i, :, :, None] - d[None], 0.0) ** 2
-            total += w[i] * (left * left @ w @ w @ w)
-        values.append(math.log(total))
-    spread = abs(values[0] - values[1])
-    assert spread < 1e-7
-    assert channel.derivatives(scene, hops=False).log_volume == pytest.approx(
-        values[1], abs=2 * spread
-    )
-
-
-@pytest.mark.parametrize(
-    ("discs", "width", "height", "radius"),
-    [(4, 1.2, 0.6, 0.18), (5, 1.6, 0.6, 0.18), (8, 2.7, 0.6, 0.18), (16, 7.0, 1.0, 0.29),
-     (64, 30.0, 0.6, 0.18), (4, 1e-6, 4e-7, 1.2e-7), (512, 240.0, 0.6, 0.18)],
-)  # fmt: skip
-def test_the_virial_theorem(discs, width, height, radius):
-    scene = Scene(width, height, radius, discs=discs)
-    known = channel.derivatives(scene, hops=False)
-    # If there is little room, walls and collisions cancel.
-    size = scene.range_x * known.per_width / (2 * discs)
-    assert virial_sum(scene, rates(scene, known)) == pytest.approx(1, abs=1e-11 * size)
-
-
-@pytest.mark.parametrize("discs", [4, 8, 24])
-def test_a_tonks_gas_is_left_where_the_channel_is_as_wide_as_the_discs(discs):
-    """V → B^N (A − (N − 1) σ)^N, with relative corrections of the order N (B/σ)² σ/room."""
-    radius, gap = 0.25, 1e-6
-    scene = Scene(1.0 * discs, 0.5 + gap, radius, discs=discs)
-    room = scene.range_x - (discs - 1) * scene.contact_distance
-    known = channel.derivatives(scene)
-    small = discs**2 * scene.range_y**2 / scene.contact_distance / room
-    assert known.log_volume == pytest.approx(
-        discs * math.log(scene.range_y * room), abs=small + 1e-11 * discs
-    )
-    assert known.per_width == pytest.approx(discs / room, rel=1e-9)
-    assert known.per_contact == pytest.approx(discs * (discs - 1) / room, rel=1e-9)
-    assert known.per_height == pytest.approx(discs / scene.range_y, rel=1e-5)
-    # All heights are independent: ∫ δ(y_i − y_j) is 1/B for each pair.
-    assert known.vertical_hops == pytest.approx(discs * (discs - 1) / 2 / scene.range_y, rel=1e-5)
-
-
 def test_hops_of_many_discs_are_those_of_the_sum_without_a_series(monkeypatch):
     scenes = [Scene(w, 1.0, 0.28, discs=n) for n, w in ((24, 13.0), (48, 25.0))]
     found = [channel.derivatives(scene).vertical_hops for scene in scenes]
@@ -185,37 +132,3 @@ def test_many_discs_tend_to_the_largest_eigenvalue():
     # Each order takes off a power of 1/N, N = 256.
     assert np.all(np.abs(first[1]) < 5e-4)
     assert np.all(np.abs(second) < 2e-5)
-
-
-def test_the_limit_is_a_tonks_gas_in_a_narrow_channel():
-    found = channel.limit(0.5 + 1e-7, 0.25, 3.0)
-    assert found.length == pytest.approx(1 / 3.0 + 0.5, rel=1e-10)
-    assert found.per_contact == pytest.approx(3.0, rel=1e-10)
-    assert found.level == pytest.approx(1e7, rel=1e-6)
-
-
-def test_what_is_no_ordered_channel_is_refused():
-    with pytest.raises(InputError, match="ordered channel"):
-        channel.derivatives(Scene(3.0, 1.0, 0.2, discs=4))
-    with pytest.raises(InputError, match="2 \\+ √3 radii"):
-        channel.limit(1.0, 0.2, 1.0)
-    with pytest.raises(InputError, match="force must"):
-        channel.limit(0.6, 0.18, 0.0)
-
-
-def test_turned_channels_are_the_same():
-    along, up = (
-        n_discs.known_derivatives(Scene(3.0, 0.6, 0.18, discs=4)),
-        n_discs.known_derivatives(Scene(0.6, 3.0, 0.18, discs=4)),
-    )
-    assert along == up.turned()
-    assert n_discs.event_rates(Scene(3.0, 0.6, 0.18, discs=4))["horizontal_hop"] == 0.0
-
-
-def test_two_discs_are_those_of_a_scene():
-    scene, scene = Scene(1.5, 1.0, 0.2), Scene(1.5, 1.0, 0.2, discs=2)
-    from twodiscs.theory.exact import rate
-
-    for event, found in rates(scene, n_discs.known_derivatives(scene)).items():
-        copies = scene.copies(event)
-        assert found == pytest.approx(copies * rate(scene, event), rel=1e-13)

@@ -1,4 +1,4 @@
-"""Regions in which events come in crowds: their shares by quadrature of another kind."""
+"""Regions in which events come in crowds could have another share or a share of nothing."""
 
 import math
 from itertools import pairwise

@@ -1,4 +1,4 @@
-"""Rules of quadrature against integrals that are known."""
+"""A rule of quadrature could be exact for less than it promises."""
 
 import math
 from fractions import Fraction

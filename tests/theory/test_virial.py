@@ -1,4 +1,4 @@
-"""The virial theorem of Clausius, term by term, for exact rates and with effects."""
+"""A momentum or a weight of the virial theorem could be another one with effects."""
 
 import math
 from dataclasses import replace
@@ -8,7 +8,8 @@ import pytest
 from effect_scenes import SCENES
 
 from twodiscs.model.scene import Scene
-from twodiscs.theory import exact, virial
+from twodiscs.theory import exact, n_discs, virial
+from twodiscs.theory.virial import flux_constant
 
 PAPER = Scene(1.5, 1.0, 0.2)
 
@@ -90,9 +91,62 @@ def test_weights_make_the_rates_add_up_to_one(radius, inertia):
     assert virial.weights(replace(scene, friction=2.0)) == virial.weights(scene)
 
 
-@pytest.mark.parametrize("event", ["right_wall", "top_wall"])
-@pytest.mark.parametrize("name", ["plain", "unequal", "rough", "balls"])
-def test_pressure_is_that_of_an_ideal_gas_for_small_discs(event, name):
-    scene = ({"plain": PAPER} | SCENES)[name].with_radius(1e-9)
-    ratio = virial.pressure_factor(scene, event) * exact.rate(scene, event)
-    assert ratio == pytest.approx(1, abs=1e-7)
+KNOWN = [
+    Scene(1.5, 1.0, 0.2), Scene(1.5, 1.0, 0.38),
+    *(Scene(*sides, discs=3) for sides in ((1.5, 1.0, 0.05), (1.5, 1.0, 0.28), (1.0, 1.5, 0.2))),
+    *(Scene(*sides, discs=n) for n, *sides in (
+        (4, 1.2, 0.6, 0.18), (5, 1.6, 0.6, 0.18), (5, 2.2, 0.6, 0.18), (8, 2.7, 0.6, 0.18),
+        (16, 7.0, 1.0, 0.29), (4, 1e-6, 4e-7, 1.2e-7), (512, 240.0, 0.6, 0.18),
+    )),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("scene", KNOWN, ids=repr)
+def test_the_virial_theorem_holds(scene):
+    found = virial.rates(scene, n_discs.known_derivatives(scene, hops=False))
+    size = found["right_wall"] * virial.virial_weights(scene)["right_wall"]
+    assert virial.virial_sum(scene, found) == pytest.approx(1, abs=1e-11 * (1 + size))
+
+
+def rates_of_small_discs(scene):
+    """Return {class of events: rate} without hops, for small σ at fixed ranges A and B.
+
+    They follow from V ≈ (AB)^N [1 − n (πσ²/(AB) − (4/3) σ³ (A + B)/(AB)²)], n = N(N − 1)/2. Wall
+    hits are those of an ideal gas with the second virial coefficient, and collisions have the first
+    two orders.
+    """
+    c, n = flux_constant(scene.velocity_components), scene.discs * (scene.discs - 1) / 2
+    a, b, sigma = scene.range_x, scene.range_y, scene.contact_distance
+    closed = math.pi * sigma**2 / (a * b)
+    return {
+        "disc_collision": c / math.sqrt(2) * n * (2 * closed / sigma)
+        * (1 - 2 * sigma * (a + b) / (math.pi * a * b)),
+        "right_wall": c * (scene.discs + n * closed) / a,
+        "top_wall": c * (scene.discs + n * closed) / b,
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("discs", [2, 3])
+def test_small_discs(discs):
+    """The error of the first orders falls like the next one: σ³ for walls, σ² over collisions."""
+    errors = {}
+    for radius in (2e-3, 1e-3):
+        scene = Scene(1.5, 1.0, radius, discs=discs)
+        true = virial.rates(scene, n_discs.known_derivatives(scene))
+        for event, rate in rates_of_small_discs(scene).items():
+            errors.setdefault(event, []).append(abs(rate / true[event] - 1))
+    for event, (large, small) in errors.items():
+        assert small < 1e-3
+        power = math.log2(large / small)
+        assert power > (1.8 if event == "disc_collision" else 2.8), (event, errors)
+
+
+def test_overlap_on_a_ring():
+    """Against the mean over a grid of separations."""
+    for height, radius in ((1.0, 0.2), (0.6, 0.18), (0.5, 0.2)):
+        scene = Scene(1.5, height, radius, discs=2, periodic="x")
+        b, sigma = scene.range_y, scene.contact_distance
+        v = b * (np.arange(200_000) + 0.5) / 200_000
+        closed = 2 * np.sqrt(np.maximum(sigma**2 - v**2, 0)) / scene.width
+        mean = np.mean(2 * (b - v) / b * closed)
+        assert virial.overlap_of_two(scene) == pytest.approx(mean, rel=1e-6)

@@ -1,0 +1,176 @@
+"""Rough or kicked discs, more than two, could gain energy, or be kicked as another replica.
+
+Statistical comparisons allow five standard errors.
+"""
+
+import math
+from collections import Counter
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from sampling.uniformity import assert_uniform_on_sphere
+
+import twodiscs as td
+from twodiscs.dynamics import trajectory
+from twodiscs.dynamics.many import engine, path
+from twodiscs.model.scene import Scene
+from twodiscs.sampling.many import initial
+from twodiscs.theory.exact import replicas_needed
+
+BOX = Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.3)
+RING = Scene(4.0, 2.0, 0.15, discs=initial.LARGE, periodic="x", moment_of_inertia=0.5)
+
+
+def five(values, due):
+    error = values.std(ddof=1) / math.sqrt(values.size)
+    assert abs(values.mean() - due) <= 5 * error, (values.mean(), due, error)
+
+
+@pytest.mark.parametrize("inertia", [None, 0.4])
+@pytest.mark.parametrize("periodic", ["", "x"])
+def test_two_discs_are_those_of_the_engine_of_two(periodic, inertia):
+    """One by one: the same events at the same times with the same velocities and spins."""
+    scene = Scene(1.5, 1.0, 0.2, moment_of_inertia=inertia, periodic=periodic)
+    start = initial.states(scene, 1, 5)[:, 0]
+    # x1, x2, y1, y2, u1, u2, v1, v2, s1, s2 and x1, y1, x2, y2, u1, v1, u2, v2, s1, s2.
+    order = [0, 2, 1, 3, 4, 6, 5, 7, 8, 9][: start.size]
+    found = [*path.events_of(scene, start, 12.0)]
+    other = [*trajectory.events_of(scene, tuple(start[order]), 12.0)]
+    assert len(found) > 30
+    for (time, *event, state), (due, *same, known) in zip(found, other, strict=True):
+        assert event[0] == same[0]
+        assert time == pytest.approx(due, abs=1e-9)
+        assert state[order] == pytest.approx(known, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("scene", "friction"),
+    [
+        (replace(BOX, discs=5, radius=0.1), 0.0),
+        pytest.param(replace(BOX, discs=5, radius=0.1), 2.0, marks=pytest.mark.slow),
+        pytest.param(RING, 2.0, marks=pytest.mark.slow),
+    ],
+)
+def test_velocities_and_spins_are_on_a_sphere(scene, friction):
+    """At the start and later, also after kicks."""
+    scene, replicas, n = replace(scene, friction=friction), 4096, scene.discs
+    states, laps = initial.states(scene, replicas, 7), np.zeros((n, replicas))
+    for time in (0.0, 3.0):
+        if time:
+            kicks = engine.kicks_of(scene, replicas, 7)
+            engine.advance_all(scene, states, laps, time, kicks)
+        unit = states[2 * n :].copy()
+        unit[2 * n :] *= math.sqrt(scene.moment_of_inertia)
+        assert np.sum(unit**2, axis=0) == pytest.approx(1, abs=1e-12)
+        assert_uniform_on_sphere(unit)
+
+
+def test_rough_walls_take_the_momentum_along_a_ring():
+    """It is 0 only in the mean, and forgotten; the one of smooth discs stays 0."""
+    n, replicas = RING.discs, 512
+    states, laps = initial.states(RING, replicas, 4), np.zeros((n, replicas))
+    before = states[2 * n : 3 * n].sum(axis=0)
+    engine.advance_all(RING, states, laps, 64.0, None)
+    after = states[2 * n : 3 * n].sum(axis=0)
+    five(after, 0.0)
+    five(before * after, 0.0)
+    five(after**2, 1 / 3)
+    assert RING.velocity_components == 3 * n
+
+
+def test_bursts_in_a_neck_need_initial_states_in_it():
+    """As two discs alone, divided by the pairs; smooth discs have no bursts."""
+    near = Scene(2.2, 1.0, 0.25 / 1.001, discs=3, moment_of_inertia=0.02)
+    pair = replace(near, discs=2)
+    assert replicas_needed(near, "disc_collision", 0.01) == pytest.approx(
+        replicas_needed(pair, "disc_collision", 0.01) / 3
+    )
+    assert replicas_needed(near, "top_wall", 0.01) == pytest.approx(
+        replicas_needed(pair, "top_wall", 0.005) / 3
+    )
+    assert replicas_needed(replace(near, moment_of_inertia=None), "top_wall", 0.01) == 0
+    found = td.simulate(near, 0.02, budget=1e6, seed=1)
+    assert found["disc_collision_time"].status == "too-few"
+    assert found["right_wall_time"].status == "reached"
+
+
+def test_a_start_needs_the_energy_of_its_spins():
+    (start,) = td.starts(BOX, 1, seed=1)
+    assert len(td.trajectory(BOX, 2.0, start=start)) > 2
+    start["s3"] *= 2
+    with pytest.raises(td.InputError, match=r"^start must have a total energy of 0.5, not "):
+        td.trajectory(BOX, 2.0, start=start)
+
+
+FEW = Scene(1.5, 1.0, 0.15, discs=3, friction=4.0)
+CHANNEL = Scene(8.75, 0.6, 0.18, discs=20, friction=4.0)
+KICKED = Scene(3.0, 1.0, 0.15, discs=3, periodic="x", friction=4.0)
+
+
+@pytest.mark.parametrize("scene", [FEW, KICKED], ids=["few", "ring"])
+def test_a_kick_keeps_places_energy_and_momentum(scene):
+    """Kicks are rows of a trajectory, and their number is that of a Poisson process."""
+    time = 32.0
+    start = initial.states(scene, 1, 3)[:, 0]
+    if scene.periodic:
+        # Another momentum along the ring, which has to stay.
+        start[2 * scene.discs : 3 * scene.discs] += 0.1
+        start[2 * scene.discs :] /= np.linalg.norm(start[2 * scene.discs :])
+    rows = [*path.events_of(scene, start, time, seed=3)]
+    names = Counter(row[1] for row in rows)
+    assert abs(names["kick"] - scene.friction * time) <= 5 * math.sqrt(scene.friction * time)
+    momentum = start[2 * scene.discs : 3 * scene.discs].sum()
+    for (before, *_, old), (now, name, first, second, new) in pairwise(rows):
+        (x, y, u, v), (*_, w) = np.split(new, 4), np.split(old, 4)
+        assert np.sum(u * u + v * v) == pytest.approx(1, abs=1e-12)
+        assert not scene.periodic or np.sum(u) == pytest.approx(momentum, abs=1e-12)
+        if name == "kick":
+            assert (first, second) == (None, None)
+            assert np.all(v != w)
+            old_x, old_y, old_u, _ = np.split(old, 4)
+            assert x == pytest.approx(old_x + old_u * (now - before), abs=1e-9)
+            assert y == pytest.approx(old_y + w * (now - before), abs=1e-9)
+    other = [*path.events_of(scene, start, time, seed=4)]
+    assert np.array_equal(other[0][-1], rows[0][-1])
+    assert not np.array_equal(other[-1][-1], rows[-1][-1])
+
+
+def test_both_kernels_count_the_same_events_between_kicks(monkeypatch):
+    """Before roundings have grown, and after some kicks."""
+    duration = engine.duration_of(CHANNEL, 160)
+    assert duration * CHANNEL.friction > 3
+    one = engine.run_classes(CHANNEL, 5, 0, 1, duration, replicas=4)
+    monkeypatch.setattr(engine, "large_grid", lambda scene: None)
+    other = engine.run_classes(CHANNEL, 5, 0, 1, duration, replicas=4)
+    assert np.array_equal(one[0], other[0])
+    assert np.array_equal(one[1], other[1])
+
+
+def test_kicks_belong_to_replicas_not_to_blocks(monkeypatch):
+    """Two blocks of four replicas from the same state are one block of eight, in both kernels."""
+    duration = engine.duration_of(CHANNEL, 160)
+    state = initial.states(CHANNEL, 1, 1)
+    monkeypatch.setattr(engine, "states_of", lambda _, number, *__: np.repeat(state, number, 1))
+    for _ in range(2):
+        first, _ = engine.run_classes(CHANNEL, 5, 0, 1, duration, replicas=4)
+        halves = engine.run_classes(CHANNEL, 5, 0, 2, duration, replicas=4)
+        whole = engine.run_classes(CHANNEL, 5, 0, 1, duration, replicas=8)
+        assert np.array_equal(halves[0], whole[0])
+        assert np.array_equal(halves[1], whole[1])
+        assert not np.array_equal(halves[0], 2 * first)
+        monkeypatch.setattr(engine, "large_grid", lambda scene: None)
+
+
+@pytest.mark.slow
+def test_chains_of_different_blocks_have_different_kicks(monkeypatch):
+    """From one and the same state, chains differ by their kicks alone, in all blocks."""
+    chains, mean = 4, engine.mean_interval(FEW, "vertical_hop")
+    states = initial.states_of(initial.initial_of(FEW), 1, 3, 0)
+    monkeypatch.setattr(engine, "states_of", lambda *given: np.repeat(states, chains, axis=1))
+    bins = mean / 16, np.arange(65) // 8 + 65
+    sums = np.zeros((3, 74), np.int64)
+    given = 8 * mean, FEW, "vertical_hop", 3, 0, 2, chains, bins, sums
+    times, _ = engine.record_within(*given, np.ones(1, np.bool_))
+    assert np.unique(times).size == 2 * chains

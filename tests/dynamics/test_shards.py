@@ -1,0 +1,140 @@
+"""A result could depend on who computes which blocks, in how many lanes or on which processor."""
+
+import os
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from effect_scenes import ALL, SCENES
+
+from twodiscs.dynamics import runs
+from twodiscs.dynamics.many import engine
+from twodiscs.dynamics.two import strip
+from twodiscs.model.events import EVENTS, SHELLS
+from twodiscs.model.scene import Scene
+from twodiscs.sampling import montecarlo
+from twodiscs.sampling.many import initial, insertions
+from twodiscs.sampling.prism import prism_of
+
+PAPER = Scene(1.5, 1.0, 0.2)
+TWO = {
+    "plain": PAPER,
+    "combination": SCENES["combination"],
+    "friction": replace(PAPER, friction=2.0),
+    "all": ALL,
+    "all, friction": replace(ALL, friction=2.0),
+}
+MANY = {
+    "rough": Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.5),
+    "channel": Scene(1.6, 0.6, 0.18, discs=4),
+    "dense": Scene(1.5, 1.0, 0.19, discs=5),
+    "cells": Scene(15.0, 1.0, 0.1, discs=initial.LARGE),
+}
+
+
+def of_two(scene):
+    return lambda first, stop, **lanes: runs.run_blocks(
+        scene, EVENTS, 3, first, stop, 8.0, replicas=100, **lanes
+    )
+
+
+def of_many(scene):
+    return lambda first, stop, **lanes: engine.run_classes(
+        scene, 7, first, stop, 8.0, replicas=100 if scene.discs < initial.LARGE else 20, **lanes
+    )
+
+
+def of_strip(first, stop, **lanes):
+    scene, hop = PAPER.with_radius(0.245), "horizontal_hop"
+    band = strip.strip_of(scene, hop)
+    found, events = strip.run_blocks(scene, hop, band, 7, first, stop, replicas=100, **lanes)
+    return *found, events
+
+
+def plain_shells(first, stop):
+    # Squares of separations, and grains of the places of disc 1 at the walls.
+    ends = montecarlo.shell_ends(
+        [0.01] * len(SHELLS),
+        lambda thick: 0.42**2,
+        lambda axis, side, thick: 2**32 - 2**26 if side > 0 else 2**26,
+    )
+    ranges = PAPER.range_x, PAPER.range_y, PAPER.contact_distance
+    return (montecarlo.sample_blocks(np.uint64(3), first, stop, *ranges, ends, True),)
+
+
+def weighted_shells(first, stop):
+    scene = SCENES["combination"]
+    epsilon = [0.02 if event in scene.events else 0.0 for event in EVENTS]
+    prism = prism_of(scene)._replace(inertia=None)
+    ends = montecarlo.weighted_ends(scene, epsilon)
+    return (montecarlo.weighted_blocks(np.uint64(3), first, stop, prism, ends),)
+
+
+#: Kernels by name: functions of the first block and the one after the last.
+KERNELS = {
+    **{name: of_two(scene) for name, scene in TWO.items()},
+    **{f"many, {name}": of_many(scene) for name, scene in MANY.items()},
+    "strip": of_strip,
+    "insertions": lambda first, stop: insertions.run_blocks(MANY["channel"], 7, first, stop),
+    "shells": plain_shells,
+    "weighted shells": weighted_shells,
+}
+#: Each compiles a kernel for all effects.
+SLOW = [pytest.param(name, marks=pytest.mark.slow) for name in ("all", "all, friction")]
+
+
+@pytest.mark.parametrize("name", [*(name for name in KERNELS if name[:3] != "all"), *SLOW])
+def test_blocks_add_up_in_any_number_of_lanes(name):
+    run = KERNELS[name]
+    whole = run(0, 4)
+    for total, *parts in zip(whole, run(0, 1), run(1, 4), strict=True):
+        assert np.array_equal(total, sum(parts))
+    assert not np.array_equal(run(0, 1)[0], run(1, 2)[0])
+    for lanes in () if "shells" in name or name == "insertions" else (1, 37):
+        for one, same in zip(whole, run(0, 4, lanes=lanes), strict=True):
+            assert np.array_equal(one, same)
+
+
+BITS = """
+import hashlib
+from twodiscs.dynamics import runs
+from twodiscs.dynamics.many import engine
+from twodiscs.model.events import EVENTS
+from twodiscs.model.scene import Scene
+from twodiscs.points.base import content_of
+from twodiscs.sampling import montecarlo
+from twodiscs.sampling.many import initial, insertions
+scene = Scene(1.5, 1.0, 0.24)
+effects = {"periodic": "x", "field": 0.3, "radius_ratio": 1.2, "mass_ratio": 2.0}
+bent = Scene(1.5, 1.0, 0.2, moment_of_inertia=0.4, **effects)
+areas = ["volume", *(event + "_area" for event in EVENTS)]
+for point in (
+    runs.count_events(scene, {event: 0.02 for event in EVENTS}, 10**6, 11),
+    runs.hop_intervals(scene, "vertical_hop", 1, 11),
+    montecarlo.sample_point(scene, areas, 1, 0.02, 11),
+    runs.count_events(bent, {"vertical_hop": 0.02, "any_wall": 0.02}, 10**6, 11),
+):
+    print(content_of("", {}, {}, point.parts))
+scenes = [Scene(1.5, 1.0, 0.15, discs=3), Scene(2.3, 0.6, 0.18, discs=8)]
+scenes += [Scene(1.5, 1.0, 0.2, discs=6), Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.3)]
+for scene in [*scenes, Scene(1.5, 1.0, 0.15, discs=4, periodic="x")]:
+    counts = engine.run_classes(scene, 5, 0, 1, 16.0, replicas=64)
+    for part in (*counts, *insertions.run_blocks(scene, 5, 0, 1), initial.states(scene, 50, 3)):
+        print(hashlib.sha256(part.tobytes()).hexdigest())
+"""
+
+
+@pytest.mark.slow
+def test_the_bits_do_not_depend_on_the_processor(tmp_path):
+    """A processor without AVX computes the same."""
+    generic = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""}
+    generic |= {"NUMBA_CACHE_DIR": str(tmp_path)}
+    command = [sys.executable, "-c", BITS]
+    here, there = (
+        subprocess.run(command, env=environment, check=True, capture_output=True).stdout
+        for environment in (os.environ, os.environ | generic)
+    )
+    assert here == there
+    assert here.count(b"\n") == 4 + 5 * 5
