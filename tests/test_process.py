@@ -17,6 +17,7 @@ import tempfile
 import threading
 import warnings
 from contextlib import contextmanager
+from inspect import isfunction
 from pathlib import Path
 
 import matplotlib
@@ -31,44 +32,34 @@ SCENE = {"width": 1.5, "height": 1.0, "radius": 0.2}
 
 EXPECTED = Path(__file__).parents[1] / "paper" / "expected"
 
-#: {public name: a call of it, or a use, with a scene}
+#: {name: a call of a public function, with a scene, and a use of its result}
 CALLS = {
-    "AccuracyWarning": lambda s: issubclass(td.AccuracyWarning, UserWarning),
-    "Box": lambda s: td.Box(1.5, 1.0),
-    "Cost": lambda s: str(td.cost(s)),
-    "EFFECTS": lambda s: td.EFFECTS["field"],
-    "EVENTS": lambda s: td.EVENTS[0],
-    "InputError": lambda s: _refused(),
-    "Intervals": lambda s: td.intervals(s, "vertical_hop", 100).frame(),
-    "Measurement": lambda s: td.sample(s, 1)["volume"].u,
-    "Measurements": lambda s: td.sample(s, 1, progress=True).frame(),
-    "Observed": lambda s: td.observe(s, _speed, [0.1], 8).frame(),
-    "Price": lambda s: td.cost(s).prices[0].seconds(0.1),
-    "Scan": lambda s: td.scan(1.5, 1.0, [0.2], 0.5).frame(),
-    "Scene": lambda s: td.Scene(1.5, 1.0, 0.1, field=0.5),
-    "Trajectory": lambda s: td.trajectory(s, 2).positions([1.0]),
-    "Transmission": lambda s: td.transmission(s, "vertical_hop", 1).frame(),
+    "a mistake": lambda s: _refused(),
     "animate": lambda s: td.animate(td.trajectory(s, 2), _file("gif")),
     "areas": lambda s: td.areas(s),
-    "cost": lambda s: td.cost(s, 1e-3).frame(),
+    "cost": lambda s: (
+        str(td.cost(s)),
+        td.cost(s, 1e-3).frame(),
+        td.cost(s).prices[0].seconds(0.1),
+    ),
     "diffusion": lambda s: td.diffusion(td.Scene(**SCENE, periodic="x"), [0.1], 8),
     "exact": lambda s: td.exact(s),
     "exact_table": lambda s: td.exact_table(1.5, 1.0, [0.2]),
     "free_energy": lambda s: td.free_energy(s),
-    "intervals": lambda s: td.intervals(s, "vertical_hop", 100),
+    "intervals": lambda s: td.intervals(s, "vertical_hop", 100).frame(),
     "load": lambda s: td.load(EXPECTED)["errata"],
     "load_result": lambda s: td.load_result(_saved(td.sample(s, 1))).more(2),
     "mean_times": lambda s: td.mean_times(s),
-    "observe": lambda s: td.observe(s, _speed, [0.1], 8),
+    "observe": lambda s: td.observe(s, _speed, [0.1], 8).frame(),
     "plot": lambda s: td.plot(td.trajectory(s, 2), _file("pdf")),
     "pressure": lambda s: td.pressure(s),
     "rate": lambda s: td.rate(s, "vertical_hop"),
-    "sample": lambda s: td.sample(s, 1, cores=2, progress=True),
-    "scan": lambda s: td.scan(1.5, 1.0, [0.2], 0.5, cores=2),
-    "simulate": lambda s: td.simulate(s, 0.5, progress=True),
+    "sample": lambda s: td.sample(s, 1, cores=2, progress=True)["volume"].u,
+    "scan": lambda s: td.scan(1.5, 1.0, [0.2], 0.5, cores=2).frame(),
+    "simulate": lambda s: td.simulate(s, 0.5, progress=True).frame(),
     "starts": lambda s: td.starts(s, 2),
-    "trajectory": lambda s: td.trajectory(s, 2),
-    "transmission": lambda s: td.transmission(s, "vertical_hop", 1),
+    "trajectory": lambda s: td.trajectory(s, 2).positions([1.0]),
+    "transmission": lambda s: td.transmission(s, "vertical_hop", 1).frame(),
     "volume": lambda s: td.volume(s),
 }
 
@@ -193,7 +184,7 @@ def test_a_process_is_left_as_it_was():
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
-    assert {*found} == {*td.__all__}
+    assert {*found} > {name for name in td.__all__ if isfunction(getattr(td, name))}
     assert {name: changed for name, changed in found.items() if changed != [[], []]} == {}
 
 
