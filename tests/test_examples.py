@@ -4,7 +4,6 @@ A page shows commands in indented blocks, or after ``$`` in console blocks, foll
 their output; scenes in blocks of YAML. ``twodiscs`` is run, ``snakemake`` and ``make`` dry.
 """
 
-import argparse
 import csv
 import json
 import math
@@ -20,6 +19,7 @@ import pytest
 import yaml
 from checkout import REPOSITORY, fresh
 from commands import command
+from snakemake.cli import get_argument_parser
 
 import twodiscs
 from twodiscs import cli
@@ -209,18 +209,11 @@ def test_make_knows_what_to_do(example):
 
 def targets():
     """Return {options that matter: targets} of all snakemake commands; without any, it is all."""
-    found, options = {}, argparse.ArgumentParser(exit_on_error=False)
-    for name in ("cores", "configfile", "profile", "seconds-between-status-checks"):
-        options.add_argument(f"--{name}")
-    for name in ("dry-run", "touch"):
-        options.add_argument(f"--{name}", action="store_true")
-    for name in ("groups", "group-components"):
-        options.add_argument(f"--{name}", nargs="+")
-    options.add_argument("targets", nargs="*")
+    found = {}
     for example in commands("snakemake"):
-        given = options.parse_args(shlex.split(example)[1:])
-        assert given.profile is None or (REPOSITORY / given.profile / "config.yaml").is_file()
-        chosen = ("--configfile", given.configfile) if given.configfile else ()
+        given = get_argument_parser().parse_args(shlex.split(example)[1:])
+        assert all((REPOSITORY / name / "config.yaml").is_file() for name in given.profile or ())
+        chosen = ("--configfile", str(given.configfile[0])) if given.configfile else ()
         found.setdefault(chosen, set()).update(given.targets or ["all"])
     return found
 
