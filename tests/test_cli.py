@@ -347,25 +347,38 @@ def test_a_build_ends_with_the_files_of_its_targets(tmp_path):
     assert lines == "pressure: a.pdf, a.png\nexplorer: e.html\n"
 
 
-@pytest.mark.parametrize(
-    ("line", "proposed"),
-    [
-        ("twodiscs si", ["simulate"]),
-        ("twodiscs simulate --ev", ["--events"]),
-        ("twodiscs simulate --events vert", ["vertical_hop"]),
-        ("twodiscs exact --periodic x y", ["y"]),
-        ("twodiscs run config/d", ["config/draft.yaml"]),
-        ("twodiscs run LICEN", []),
-        ("twodiscs run my.yaml volu", ["volume"]),
-    ],
-)
-def test_a_shell_completes(tmp_path, line, proposed):
-    path, program = tmp_path / "proposed", "from twodiscs.cli import main; main()"
+#: {line: what a shell proposes}.
+COMPLETED = {
+    "twodiscs si": "simulate",
+    "twodiscs simulate --ev": "--events",
+    "twodiscs simulate --events vert": "vertical_hop",
+    "twodiscs exact --periodic x y": "y",
+    "twodiscs run config/d": "config/draft.yaml",
+    "twodiscs run LICEN": "",
+    "twodiscs run my.yaml volu": "volume",
+}
+
+#: Completes each line in a copy of the process.
+COMPLETE = """
+import os, sys
+from twodiscs.cli import main
+
+for line in sys.argv[2:]:
+    if not os.fork():
+        os.environ |= {"COMP_LINE": line, "COMP_POINT": str(len(line))}
+        main()
+    os.wait()
+    with open(sys.argv[1]) as proposed:
+        print(*proposed)
+"""
+
+
+def test_a_shell_completes(tmp_path):
     shell = {
-        "_ARGCOMPLETE": "1", "_ARGCOMPLETE_IFS": "\n", "_ARGCOMPLETE_STDOUT_FILENAME": str(path),
-        "_ARGCOMPLETE_SUPPRESS_SPACE": "1", "COMP_LINE": line, "COMP_POINT": str(len(line)),
-        "COMP_TYPE": "9",
+        "_ARGCOMPLETE": "1", "_ARGCOMPLETE_IFS": "\n", "_ARGCOMPLETE_SUPPRESS_SPACE": "1",
+        "_ARGCOMPLETE_STDOUT_FILENAME": str(tmp_path / "proposed"), "COMP_TYPE": "9",
     }  # fmt: skip
-    where = {"env": {**os.environ, **shell}, "cwd": REPOSITORY}
-    subprocess.run([sys.executable, "-c", program], timeout=60, **where)
-    assert path.read_text().splitlines() == proposed
+    words = [sys.executable, "-c", COMPLETE, tmp_path / "proposed", *COMPLETED]
+    where = {"env": {**os.environ, **shell}, "cwd": REPOSITORY, "text": True}
+    found = subprocess.check_output(words, timeout=60, **where)
+    assert found.splitlines() == [*COMPLETED.values()]
