@@ -8,7 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 from factory import counts_point
-from scipy.stats import linregress, sem
+from scipy.stats import sem
 
 from twodiscs.comparison import scores
 from twodiscs.comparison.check import sum_rule
@@ -124,14 +124,6 @@ X = np.array([1.0, 2.0, 4.0, 5.0, 9.0])
 Y = 0.3 - 2 * X + np.array([0.1, -0.2, 0.05, 0.0, 0.1])
 
 
-def test_a_line_without_errors_is_that_of_scipy():
-    line, expected = LinearFit(X, Y), linregress(X, Y)
-    assert line.slope.value == pytest.approx(expected.slope, rel=1e-13)
-    assert line.slope.stderr == pytest.approx(expected.stderr, rel=1e-12)
-    assert line.constant == pytest.approx(expected.intercept, rel=1e-12)
-    assert (line.slope.n, line.chi2) == (5, None)
-
-
 def test_a_line_with_errors_is_that_of_the_normal_equations():
     errors = np.array([0.1, 0.2, 0.1, 0.4, 0.3])
     line, w = LinearFit(X, Y, errors), errors**-2
@@ -143,22 +135,6 @@ def test_a_line_with_errors_is_that_of_the_normal_equations():
     assert line.constant == pytest.approx(mean_y - slope * mean_x, rel=1e-11)
     residuals = (Y - mean_y - slope * (X - mean_x)) / errors
     assert line.chi2 == pytest.approx(residuals @ residuals, rel=1e-11)
-
-
-def test_one_error_for_all_changes_the_error_of_the_slope_only():
-    line, same = LinearFit(X, Y, 0.1), LinearFit(X, Y, [0.1] * 5)
-    assert line.slope.value == pytest.approx(LinearFit(X, Y).slope.value, rel=1e-13)
-    assert line.slope.stderr == pytest.approx(0.1 / math.sqrt(5 * X.var()), rel=1e-13)
-    assert (line.slope, line.constant, line.chi2) == (same.slope, same.constant, same.chi2)
-
-
-def test_two_points_have_a_line_whose_error_needs_theirs():
-    line = LinearFit([1.0, 3.0], [2.0, 6.0])
-    assert line.slope.value == pytest.approx(2.0, rel=1e-14)
-    assert line.slope.stderr == 0
-    line = LinearFit([1.0, 3.0], [2.0, 6.0], 0.5)
-    assert line.slope.stderr == pytest.approx(0.5 * math.sqrt(2) / 2, rel=1e-13)
-    assert line.chi2 == pytest.approx(0, abs=1e-20)
 
 
 # Counts ---------------------------------------------------------------------------------------

@@ -23,13 +23,11 @@ from twodiscs.points import estimates
 from twodiscs.sampling.starts import draw_states, start_sampler
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact, laws
-from twodiscs_paper import benchmark
 from twodiscs_paper.configuration.load import load, read
 from twodiscs_paper.studies.effects import cost, figure
 from twodiscs_paper.studies.effects import measure as effects
 from twodiscs_paper.studies.effects.study import (
     SCENES,
-    Benchmark,
     Effects,
     EffectsCost,
     EffectsCurves,
@@ -277,18 +275,3 @@ def test_the_package_without_effects_counts_the_same_and_has_none():
     assert cost.instructions(lambda: cost.lockstep(1, bare=name), name) == counted
     with pytest.raises(NumbaError):
         bare.run_blocks(ROUGH, EVENTS, 1, 0, 1, 1.0)
-
-
-def test_the_power_of_the_number_of_discs_is_that_of_the_times():
-    """Times ∝ N^p with p of 1.5 and 2.5 in two turns have the mean 2 and the error 1/2."""
-    speeds = {
-        name.format(n): [n**-1.5, n**-2.5]
-        for name in (benchmark.WITH_HOPS, benchmark.WITHOUT_HOPS)
-        for n in (*benchmark.FEW, *benchmark.LARGE)
-    }
-    rows = [Benchmark.empty(**row) for row in benchmark.exponent_rows(speeds)]
-    assert {row["variant"] for row in rows} == {
-        "few_discs", "many_discs", "many_discs_without_hops",
-    }  # fmt: skip
-    for row in rows:
-        assert (row["value"], row["stderr"]) == pytest.approx((2, 0.5))

@@ -28,19 +28,13 @@ def mean_of(values):
 class LinearFit:
     """The straight line through values ``y`` over ``x``, by least squares.
 
-    ``errors`` are the standard errors of ``y``, one for all or one for each. Without them the
-    scatter about the line gives one error for all. ``slope`` is an ``Estimate``, ``constant`` the
-    value at x = 0, ``chi2`` the sum of squared residuals in units of the errors (None without
-    them). If the error of the slope is not known, for two points without errors, it is 0.0.
+    ``errors`` are the standard errors of ``y``. ``slope`` is an ``Estimate``, ``constant`` the
+    value at x = 0, ``chi2`` the sum of squared residuals in units of the errors.
     """
 
-    def __init__(self, x, y, errors=None):
-        x, y = np.asarray(x, float), np.asarray(y, float)
-        weights = np.broadcast_to(1.0 if errors is None else 1 / np.asarray(errors, float), x.shape)
+    def __init__(self, x, y, errors):
+        x, y, weights = np.asarray(x, float), np.asarray(y, float), 1 / np.asarray(errors, float)
         (slope, self.constant), covariance = np.polyfit(x, y, 1, w=weights, cov="unscaled")
         residuals = weights * (y - self.constant - slope * x)
-        self.chi2 = None if errors is None else float(residuals @ residuals)
-        scatter = 1.0
-        if errors is None:
-            scatter = float(residuals @ residuals) / (x.size - 2) if x.size > 2 else 0.0
-        self.slope = Estimate(float(slope), math.sqrt(covariance[0, 0] * scatter), x.size)
+        self.chi2 = float(residuals @ residuals)
+        self.slope = Estimate(float(slope), math.sqrt(covariance[0, 0]), x.size)

@@ -85,46 +85,48 @@ class Method(NamedTuple):
 # Mean times: each method estimates the rate of the hop --------------------------------------------
 
 
+def _by_counts(name, scene, events, replicas, block, **more):
+    """Return the ``Method`` whose ``block`` counts ``events`` of a number of ``replicas``."""
+    hop = events.index(HOP)
+    expected = exact.rate(scene, HOP) * runs.replica_duration(scene) * replicas
+
+    def estimate(sums, blocks):
+        return sums[hop] / (blocks * expected)
+
+    return Method(name, f"{HOP}_time", scene, block, estimate, **more)
+
+
 def by_lockstep(scene, seed, blocks=1):
     """Return the ``Method`` of the engine: all events, ``blocks`` blocks as one."""
-    duration, hop = runs.replica_duration(scene), EVENTS.index(HOP)
-    expected = exact.rate(scene, HOP) * duration * REPLICAS * blocks
+    duration = runs.replica_duration(scene)
 
     def block(i):
-        first = i * blocks
-        return runs.run_blocks(scene, EVENTS, seed, first, first + blocks, duration)[0]
+        return runs.run_blocks(scene, EVENTS, seed, i * blocks, (i + 1) * blocks, duration)[0]
 
-    return Method(
-        "lockstep", f"{HOP}_time", scene, block, lambda sums, n: sums[hop] / (n * expected)
-    )
+    return _by_counts("lockstep", scene, EVENTS, blocks * REPLICAS, block)
 
 
 def by_scalar(scene, seed):
     """Return the ``Method`` of one trajectory after the other."""
-    duration, hop = runs.replica_duration(scene), scalar.COUNTED.index(HOP)
-    expected = exact.rate(scene, HOP) * duration * FEW_REPLICAS
-    given = FEW_REPLICAS, duration, scene.contact_distance, separation_sampler(scene), (0, 0)
+    given = FEW_REPLICAS, runs.replica_duration(scene), scene.contact_distance
+    given += separation_sampler(scene), (0, 0)
 
     def block(i):
         return scalar.count_blocks(np.uint64(seed), i, i + 1, *given)[0]
 
-    return Method("scalar", f"{HOP}_time", scene, block, lambda sums, n: sums[hop] / (n * expected))
+    return _by_counts("scalar", scene, scalar.COUNTED, FEW_REPLICAS, block)
 
 
 def by_steps(scene, seed, step):
     """Return the ``Method`` of looking for overlaps every ``step``, a power of two."""
-    duration, hop = runs.replica_duration(scene), scalar.COUNTED.index(HOP)
-    expected = exact.rate(scene, HOP) * duration * FEW_REPLICAS
-    given = FEW_REPLICAS, LANES, round(duration / step), step, scene.contact_distance
-    draw = separation_sampler(scene)
+    steps = round(runs.replica_duration(scene) / step)
+    given = FEW_REPLICAS, LANES, steps, step, scene.contact_distance, separation_sampler(scene)
 
     def block(i):
-        return timestepping.step_blocks(np.uint64(seed), i, i + 1, *given, draw)
+        return timestepping.step_blocks(np.uint64(seed), i, i + 1, *given)
 
-    return Method(
-        "time_step", f"{HOP}_time", scene, block, lambda sums, n: sums[hop] / (n * expected),
-        bias=None, setting=step,
-    )  # fmt: skip
+    more = {"bias": None, "setting": step}
+    return _by_counts("time_step", scene, scalar.COUNTED, FEW_REPLICAS, block, **more)
 
 
 def by_strip(scene, seed, blocks=8):

@@ -10,10 +10,8 @@ the ensemble, and treats discs, not polygons.
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import LANES, REPLICAS
 from twodiscs.dynamics.law import crosses
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.separations import separation_sampler
 from twodiscs.sampling.starts import draw_starts
 from twodiscs.sampling.streams import open_stream
 from twodiscs_paper.studies.accuracy_cost.scalar import N
@@ -94,15 +92,3 @@ def step_blocks(seed, first, stop, replicas, lanes, steps, step, sigma, draw):
     for e in range(N):
         sums[e] = counts[e].sum()
     return sums
-
-
-def run_blocks(scene, seed, first, stop, duration, step):
-    """Count all events as ``runs.run_blocks`` does, but by steps of ``step``.
-
-    The ``duration`` is rounded to whole steps. Returns Σ N_e, in the order of ``COUNTED``.
-    """
-    steps = max(1, round(duration / step))
-    return step_blocks(
-        np.uint64(seed), first, stop, REPLICAS, LANES, steps, step, scene.contact_distance,
-        separation_sampler(scene),
-    )  # fmt: skip

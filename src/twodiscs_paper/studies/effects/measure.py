@@ -73,7 +73,7 @@ def survivors(scene, times, blocks, seed):
 #: The columns that effects.csv takes from mean_times.csv.
 KEPT = (
     "radius", "exact", "estimate", "stderr", "z", "count", "replicas", "duration", "status", "test",
-    "starts", "share", "copies",
+    "starts", "share",
 )  # fmt: skip
 
 
@@ -136,7 +136,6 @@ def share_rows(start, scene, seed, blocks):
             status="sampled" if enough else "too-few" if count else "none-seen",
             starts="invariant",
             share=1.0,
-            copies=1,
         )
 
 

@@ -51,7 +51,6 @@ class Effects(Table):
         "test": TEST,
         "starts": TEXT("where initial states come from, as in mean_times.csv"),
         "share": NUMBER("share of configuration space from which initial states are drawn"),
-        "copies": COUNT("events that count as one, as in mean_times.csv"),
     }
 
     @staticmethod
@@ -98,7 +97,7 @@ class EffectsCost(Table):
         ),
         "value": Column(float, "see unit", "median over the repetitions"),
         "unit": TEXT("unit of the value"),
-        "ratio": NUMBER("how many times better than the baseline of the same run; empty for a fit"),
+        "ratio": NUMBER("how many times better than the baseline of the same run"),
         "instructions": COUNT("effects: machine instructions of the compiled kernel"),
     }
 
@@ -112,10 +111,6 @@ class EffectsCost(Table):
 
 class Benchmark(EffectsCost):
     """One row per benchmark and variant, all variants of a benchmark measured in one run."""
-
-    columns = EffectsCost.columns | {
-        "stderr": Column(float, "as value", "standard error of a fit; empty for a median"),
-    }
 
 
 #: The files of config/scenes, a scene each.

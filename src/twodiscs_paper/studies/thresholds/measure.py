@@ -31,10 +31,7 @@ FEWEST = 3
 
 #: The columns that a fit uses, and those that tell one fit from another.
 COLUMNS = ("radius", "estimate", "stderr", "exact")
-OF_FIT = (
-    "scene", "width", "height", "event", "quantity", "form", "limit_radius", "points", "nearest",
-    "farthest",
-)  # fmt: skip
+OF_FIT = ("scene", "width", "height", "event", "quantity", "form", "points")
 
 
 class Law(NamedTuple):
@@ -71,11 +68,8 @@ def fits(start, law, quantity, radii, times, errors, exact):
         return
     radii, times, errors, exact = (np.array(v, float) for v in (radii, times, errors, exact))
     x, relative = np.log(law.limit - radii), errors / times
-    regular, deltas = np.log(exact / law(radii)), np.exp(x)
-    start = start | {
-        "quantity": quantity, "limit_radius": law.limit, "points": len(x),
-        "nearest": float(deltas.min()), "farthest": float(deltas.max()),
-    }  # fmt: skip
+    regular = np.log(exact / law(radii))
+    start = start | {"quantity": quantity, "points": len(x)}
     for form, factor in (("plain", np.zeros(len(x))), ("reduced", regular)):
         y, curve = np.log(times) - factor, None
         if quantity == "mean_time":

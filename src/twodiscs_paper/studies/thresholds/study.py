@@ -3,7 +3,6 @@
 from twodiscs.comparison.table import (
     COUNT,
     HEIGHT,
-    LENGTH,
     NUMBER,
     SCENE,
     TEXT,
@@ -31,10 +30,7 @@ class Thresholds(Table):
             "plain: times as measured; reduced: over the regular factor τ_exact/(C δ^p), which "
             "tends to 1 at r_c"
         ),
-        "limit_radius": LENGTH("r_c: w/4 or h/4 of hops, or the largest radius"),
         "points": COUNT("radii fitted: all within 0.2 r_c and beyond other limits"),
-        "nearest": LENGTH("smallest δ of the fit"),
-        "farthest": LENGTH("largest δ of the fit"),
         "parameter": TEXT(
             "exponent p, or coefficient C at the exact exponent; strips: the share of the fitted "
             "mean times whose initial states lie in strips"
