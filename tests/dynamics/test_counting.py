@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from dynamics.rates import check_rates
+from effect_scenes import SCENES
 from factory import all_reached
 
 from twodiscs.dynamics import runs
@@ -27,8 +28,9 @@ PLAIN = [PAPER.with_radius(radius) for radius in RADII] + [
 ]
 
 
-@pytest.mark.parametrize("scene", PLAIN, ids=repr)
+@pytest.mark.parametrize("scene", [*PLAIN, SCENES["field"]], ids=repr)
 def test_counts_have_the_exact_rates(scene):
+    """In a field the floor is hit more often than the top."""
     check_rates(scene, seed=1, blocks=16)
 
 

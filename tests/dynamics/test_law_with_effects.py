@@ -138,7 +138,7 @@ counted_scene = pytest.mark.parametrize(
         "friction",
         *(
             pytest.param(name, marks=pytest.mark.slow)
-            for name in ("unequal", "field", "all", "all, friction")
+            for name in ("unequal", "all", "all, friction")
         ),
     ],
 )

@@ -31,11 +31,11 @@ SHORT = [
 ]
 
 
-#: Few rough discs, which only the other kernel follows; and kicks.
+#: Few rough discs, which only the other kernel follows.
 ROUGH = Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.3)
-KICKED = Scene(8.75, 0.6, 0.18, discs=20, friction=4.0)
-#: Its kernels take seconds to compile.
+#: Their kernels take seconds to compile.
 ROUGH_TOO = pytest.param(BORDER[4], marks=pytest.mark.slow)
+KICKED_TOO = pytest.param(Scene(8.75, 0.6, 0.18, discs=20, friction=4.0), marks=pytest.mark.slow)
 
 
 #: Few discs have as few cells as there may be.
@@ -93,7 +93,7 @@ def test_advanced_states_are_those_of_the_other_kernel(scene):
     assert states == pytest.approx(start, abs=1e-7 * scene.width)
 
 
-@pytest.mark.parametrize("scene", [BORDER[0], BORDER[3], *SHORT, ROUGH_TOO, KICKED], ids=repr)
+@pytest.mark.parametrize("scene", [BORDER[0], BORDER[3], *SHORT, ROUGH_TOO, KICKED_TOO], ids=repr)
 def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
     """In the same order, hops as well, before roundings have grown; also past a full log."""
     state = initial.states(scene, 1, 1)[:, 0]
@@ -173,8 +173,8 @@ STAYING = {
 @pytest.mark.parametrize(
     ("name", "events"),
     [
-        *((name, 1e5) for name in STAYING),
-        *(pytest.param(name, 2e7, marks=pytest.mark.slow) for name in ("three", "many")),
+        *((name, 1e5) for name in [*STAYING][:-1]),
+        *(pytest.param(name, 2e7, marks=pytest.mark.slow) for name in ("three", "many", "rough")),
     ],
 )
 def test_nothing_overlaps_or_drifts(name, events):

@@ -67,6 +67,7 @@ def test_velocities_and_spins_are_on_a_sphere(scene, friction):
         assert_uniform_on_sphere(unit)
 
 
+@pytest.mark.slow
 def test_rough_walls_take_the_momentum_along_a_ring():
     """It is 0 only in the mean, and forgotten; the one of smooth discs stays 0."""
     n, replicas = RING.discs, 512
@@ -109,7 +110,9 @@ CHANNEL = Scene(8.75, 0.6, 0.18, discs=20, friction=4.0)
 KICKED = Scene(3.0, 1.0, 0.15, discs=3, periodic="x", friction=4.0)
 
 
-@pytest.mark.parametrize("scene", [FEW, KICKED], ids=["few", "ring"])
+@pytest.mark.parametrize(
+    "scene", [pytest.param(FEW, marks=pytest.mark.slow), KICKED], ids=["few", "ring"]
+)
 def test_a_kick_keeps_places_energy_and_momentum(scene):
     """Kicks are rows of a trajectory, and their number is that of a Poisson process."""
     time = 32.0

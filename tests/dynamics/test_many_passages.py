@@ -27,7 +27,7 @@ HOP = "horizontal_hop"
         (HOP, {}),
         pytest.param(HOP, {"friction": 20.0}, marks=pytest.mark.slow),
         ("vertical_hop", {}),
-        (HOP, {"moment_of_inertia": 0.5}),
+        pytest.param(HOP, {"moment_of_inertia": 0.5}, marks=pytest.mark.slow),
         pytest.param(HOP, {"moment_of_inertia": 0.5, "friction": 1.0}, marks=pytest.mark.slow),
     ],
 )

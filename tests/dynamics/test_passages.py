@@ -104,7 +104,7 @@ def test_both_estimates_of_effects_agree(name):
     "effects",
     [
         {},
-        {"moment_of_inertia": 0.5},
+        pytest.param({"moment_of_inertia": 0.5}, marks=pytest.mark.slow),
         pytest.param({"field": 0.8}, marks=pytest.mark.slow),
     ],
 )
