@@ -39,8 +39,8 @@ def results(tmp_path):
     for radius in ("0.1", "0.24"):
         content = POINT | {"radius": float(radius), "seconds": 3.25, "sha256": "0"}
         write(folder / f"small/points/dynamics/{radius}.json", json.dumps(content))
-    configuration = {"seed": 1, "scenes": [{"name": "small"}], "accuracy_cost": {"seconds": 5}}
-    write(folder / "configuration.json", json.dumps(configuration))
+    keys = {"seed": 1, "scenes": [{"name": "small"}], "accuracy_cost": {"seconds": 5}}
+    write(folder / "configuration.json", json.dumps(keys))
     return folder
 
 
@@ -138,21 +138,15 @@ def test_a_point_is_compared_value_by_value(results, expected, old, new, sentenc
     assert found(results, expected) == ({name: sentence} if sentence else {})
 
 
-def test_missing_files_are_found(results, expected):
+def test_missing_files_and_another_configuration_are_named(results, expected):
     names = "agreement.csv", "small/points/dynamics/0.1.json"
     for name in names:
         (results / name).unlink()
+    replace(results / "configuration.json", '"seconds": 5', '"seconds": 20')
     assert found(results, expected) == dict.fromkeys(names, "is missing")
-
-
-def test_another_configuration_is_named(results, expected):
-    path = results / "configuration.json"
-    replace(path, '"seconds": 5', '"seconds": 20')
-    assert found(results, expected) == {}
-    replace(path, "small", "large")
-    assert found(results, expected) == {
-        "configuration.json": "scenes 0 name is 'large', expected 'small'"
-    }
+    replace(results / "configuration.json", "small", "large")
+    sentence = found(results, expected)["configuration.json"]
+    assert sentence == "scenes 0 name is 'large', expected 'small'"
 
 
 def test_nothing_expected_is_no_pass(results, tmp_path):
