@@ -103,18 +103,15 @@ HOPS = {
 
 def test_hops_of_a_disc_come_more_often_in_a_longer_file():
     """Those of another program within three errors: six have a false alarm in 2 % of the seeds."""
-    found = [
-        (row["discs"], value, error)
-        for row in of(kept_files()[3], quantity="rate", distance=1 / 8)
-        for value, error in [
-            [row[name] * math.sqrt(2 * row["discs"] - 1) for name in ("estimate", "stderr")]
-        ]
-    ]
-    assert {discs for discs, *_ in found} == {*HOPS}
-    for discs, value, error in found:
-        due, spread = HOPS[discs]
+    found = {}
+    for row in of(kept_files()[3], quantity="rate", distance=1 / 8):
+        unit = math.sqrt(2 * row["discs"] - 1)
+        found[row["discs"]] = unit * row["estimate"], unit * row["stderr"]
+    assert found.keys() == HOPS.keys()
+    for discs, (due, spread) in HOPS.items():
+        value, error = found[discs]
         assert abs(value - due) < 3 * math.hypot(error, spread), discs
-    values = [value for _, value, _ in sorted(found)]
+    values = [found[discs] for discs in sorted(found)]
     assert values == sorted(values)
 
 
@@ -167,19 +164,31 @@ def test_displacements_of_the_build_are_among_those_of_the_long_run():
     assert compared == 3
 
 
-def test_passages_agree_with_those_of_the_build():
-    _, found = kept("passages", Passages)
-    expected = of(Passages.read(PAPER / "expected" / "passages.csv"), scene="paper")
+@pytest.mark.parametrize(
+    ("name", "table", "quantity", "keys", "fewest"),
+    [
+        ("passages", Passages, "coefficient", ("distance", "moment_of_inertia", "time"), 4),
+        ("tails", Tails, "survival", ("radius", "method"), 10),
+    ],
+)
+def test_long_runs_agree_with_the_build(name, table, quantity, keys, fewest):
+    _, found = kept(name, table)
+    rows = of(table.read(PAPER / "expected" / f"{name}.csv"), quantity=quantity)
+    expected = [row for row in rows if row.get("scene", "paper") == "paper"]
     compared = 0
-    for row in of(found, quantity="coefficient"):
-        where = {k: row[k] for k in ("quantity", "event", "distance", "moment_of_inertia", "time")}
-        for other in of(expected, **where):
-            assert deviation(row, other) < 5
-            compared += 1
-    assert compared >= 4
-    once, twice = of(found, scene="pause", quantity="coefficient")
+    for row in of(found, quantity=quantity):
+        for other in of(expected, **{key: row[key] for key in ("event", *keys)}):
+            if other["time"] == pytest.approx(row["time"]) and other["stderr"]:
+                assert deviation(row, other) < 5
+                compared += 1
+    assert compared >= fewest
+
+
+def test_later_hops_undo_passages():
+    """A pause twice as long, from the same states."""
+    once, twice = of(kept("passages", Passages)[1], scene="pause", quantity="coefficient")
     assert twice["time"] == 2 * once["time"]
-    assert twice["estimate"] < once["estimate"]  # the same states: later hops undo passages
+    assert twice["estimate"] < once["estimate"]
 
 
 def test_a_small_run_counts_every_hop_once():
@@ -199,9 +208,8 @@ def test_the_rows_of_tails_follow_from_the_probabilities():
     configuration, found = kept("tails", Tails)
     replicas = configuration["counted"]["replicas"] * configuration["counted"]["runs"]
     counted = of(found, quantity="survival", method="counted")
-    assert [round(row["time"] / row["exact_mean"]) for row in counted] == configuration["counted"][
-        "times"
-    ]
+    times = [round(row["time"] / row["exact_mean"]) for row in counted]
+    assert times == configuration["counted"]["times"]
     for row in counted:
         number = row["estimate"] * 8 * replicas
         assert number == pytest.approx(round(number), abs=1e-3)
@@ -213,18 +221,6 @@ def test_the_rows_of_tails_follow_from_the_probabilities():
     for row, one in zip(of(found, quantity="approach"), weighted, strict=True):
         excess = one["estimate"] / one["law"] - 1
         assert row["estimate"] == pytest.approx(excess * (one["time"] / one["exact_mean"]) ** 0.5)
-
-
-def test_tails_agree_with_those_of_the_build():
-    _, found = kept("tails", Tails)
-    expected = Tails.read(PAPER / "expected" / "tails.csv")
-    compared = 0
-    for row in of(found, quantity="survival"):
-        for other in of(expected, **{k: row[k] for k in ("event", "radius", "quantity", "method")}):
-            if other["time"] == pytest.approx(row["time"]) and other["stderr"]:
-                assert deviation(row, other) < 5
-                compared += 1
-    assert compared >= 10
 
 
 def test_errors_of_joined_runs_are_those_of_as_many_replicas():
