@@ -89,10 +89,6 @@ def _residuals(axes, rows, radii):
         }  # fmt: skip
         label = "virial theorem" if event == "virial" else None
         axes.plot(x, [row["z"] for row in own], ls="", label=label, **style)
-    axes.axhline(0, color=GREY, lw=0.5, zorder=0)
-    for size, dashes in panels.GUIDES.items():
-        for z in (-size, size):
-            axes.axhline(z, color=GREY, lw=0.5, ls=dashes, zorder=0)
+    panels.scale_residuals(axes)
     axes.set(ylim=(-panels.LARGEST_RESIDUAL, 8.5), ylabel="residual $z$")
-    axes.set_yticks([-5, -2, 0, 2, 5])
     axes.legend(loc="upper right", borderpad=0.1)

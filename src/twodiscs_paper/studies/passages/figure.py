@@ -8,6 +8,7 @@ from twodiscs.figures.style import BLACK, BLUE, GREEN, PURPLE, SIZES, SKY, VERMI
 from twodiscs.model.box import Box
 from twodiscs.theory import exact, laws
 from twodiscs_paper.studies.passages.measure import ONE_INERTIA, thresholds
+from twodiscs_paper.study import select
 
 #: Halvings of the distance at which κ(t) is shown, for smooth discs and for rough discs.
 SHOWN = {None: (3, 5, 7, 9, 12), ONE_INERTIA: (3, 5, 7)}
@@ -56,11 +57,6 @@ def first_scene(rows, box):
     first = next((row["scene"] for row in rows if row["scene"]), None)
     own = [row for row in rows if first and row["scene"] == first]
     return (Box(own[0]["width"], own[0]["height"]) if own else box), own
-
-
-def select(rows, **wanted):
-    """Return the ``rows`` that have these values."""
-    return [row for row in rows if all(row[k] == v for k, v in wanted.items())]
 
 
 def columns(rows, *names):

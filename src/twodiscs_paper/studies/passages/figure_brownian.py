@@ -6,7 +6,8 @@ import numpy as np
 
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import BLACK, BLUE, GREEN, GREY, PURPLE, VERMILLION
-from twodiscs_paper.studies.passages.figure import columns, points, select
+from twodiscs_paper.studies.passages.figure import columns, points
+from twodiscs_paper.study import select
 
 #: {program: (colour, its name)}.
 LOOKS = {

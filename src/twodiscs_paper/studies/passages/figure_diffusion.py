@@ -9,9 +9,9 @@ from twodiscs_paper.studies.passages.figure import (
     is_empty,
     points,
     residuals,
-    select,
 )
 from twodiscs_paper.studies.passages.measure import ONE_INERTIA
+from twodiscs_paper.study import select
 
 #: The distances that are shown, from the threshold.
 SHOWN = (0.01, 0.2)

@@ -7,9 +7,10 @@ import numpy as np
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import BLACK, BLUE, GREY, PURPLE, VERMILLION
 from twodiscs.model.scene import Scene
-from twodiscs_paper.studies.passages.figure import columns, points, select
+from twodiscs_paper.studies.passages.figure import columns, points
 from twodiscs_paper.studies.passages.figure_diffusion import KICKED_FILE, SMOOTH_FILE
 from twodiscs_paper.studies.passages.models import file
+from twodiscs_paper.study import select
 
 #: Rough discs in a long file.
 ROUGH_FILE = (VERMILLION, "s")

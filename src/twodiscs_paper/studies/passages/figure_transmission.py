@@ -15,8 +15,8 @@ from twodiscs_paper.studies.passages.figure import (
     points,
     residuals,
     scale,
-    select,
 )
+from twodiscs_paper.study import select
 
 #: Colour and marker of further boxes and hops of smooth discs.
 OTHERS = ((SKY, "P"), (BLACK, "D"))
