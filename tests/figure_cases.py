@@ -31,6 +31,15 @@ BOXES = {
 }
 PAPER = BOXES["paper"]
 
+#: With effects, as many as a figure has to name with three digits each, and with many discs.
+OTHERS = {
+    "effects": Box(
+        1.55, 1.05,
+        {"periodic": "x", "radius_ratio": 0.625, "mass_ratio": 0.125, "moment_of_inertia": 0.375},
+    ),
+    "five": Box(1.5, 1.0, discs=5),
+}  # fmt: skip
+
 
 def draw(name, box, tables):
     """Draw a figure of the catalogue as its job does, with the table that it reads."""
@@ -43,32 +52,35 @@ def draw(name, box, tables):
 
 @cache
 def tables_of(name):
-    """Return {name: rows} of all tables that figures of one of ``BOXES`` read.
+    """Return {name: rows} of all tables that figures of one of ``BOXES`` or ``OTHERS`` read.
 
-    They are exact values with Gaussian noise. Hops that take too long are cut off as the engine
-    does: too few for an error, or none at all.
+    They are exact values with Gaussian noise, or numbers near one if no exact value is known. Hops
+    that take too long are cut off as the engine does: too few for an error, or none at all.
     """
-    rng, box, relative = np.random.default_rng(20), BOXES[name], 3e-3
+    rng, box, relative = np.random.default_rng(20), (BOXES | OTHERS)[name], 3e-3
     found = {name: [] for name in ("volume", "areas", "mean_times", "hop_histogram")}
-    for radius in radii(box.width, box.height, 0.02 * box.shortest, 18):
-        scene = box.scene(radius)
+    grid = radii(box.width, box.height, 0.02 * box.shortest, 18)
+    for scene in map(box.scene, filter(box.fits, grid)):
+        radius = scene.radius
         found["volume"].append(sampled(rng, radius, "volume", exact.volume(scene), relative))
-        for event, area in exact.areas(scene).items():
-            found["areas"].append(sampled(rng, radius, f"{event}_area", area, relative))
-        for event, time in exact.mean_times(scene).items():
-            found["mean_times"].append(simulated(rng, scene, event, time, relative))
-        if scene.vertical_hops and len({row["radius"] for row in found["hop_histogram"]}) < 4:
+        areas, times = exact.areas(scene), exact.mean_times(scene)
+        for event in scene.events:
+            found["areas"].append(sampled(rng, radius, f"{event}_area", areas[event], relative))
+            found["mean_times"].append(simulated(rng, scene, event, times[event], relative))
+        known = {row["radius"] for row in found["hop_histogram"]}
+        if scene.is_possible("vertical_hop") and len(known) < 4:
             found["hop_histogram"] += histogram(rng, scene)
-    found["trajectory"] = trajectory(rng, box.shortest)
+    found["trajectory"] = trajectory(rng, box)
     for table, rows in found.items():
-        assert all(row.keys() == SCENE_TABLES[table].columns.keys() for row in rows)
+        assert all(row.keys() >= SCENE_TABLES[table].columns.keys() for row in rows)
     return found
 
 
 def noisy(rng, exact, relative):
-    """Return estimate, standard error, z."""
-    z = rng.standard_normal()
-    return {"estimate": exact * (1 + relative * z), "stderr": exact * relative, "z": z}
+    """Return estimate, standard error, z; the estimate is near 1 if no exact value is known."""
+    z, value = rng.standard_normal(), rng.uniform(0.3, 3) if exact is None else exact
+    found = {"estimate": value * (1 + relative * z), "stderr": value * relative}
+    return found | {"z": None if exact is None else z}
 
 
 def sampled(rng, radius, quantity, exact, relative):
@@ -88,25 +100,26 @@ def simulated(rng, scene, event, exact, relative):
     row |= {"ergodic_components": scene.ergodic_components, "relative_stderr": relative}
     row |= {"starts": "invariant", "share": 1.0, "copies": scene.copies(event)}
     nothing = {"estimate": None, "stderr": None, "relative_stderr": None, "count": 0}
-    if exact is None:
+    if not scene.is_possible(event):
         return row | nothing | {"z": 0.0, "status": "impossible", "test": "certain"}
-    if exact > 1e5:
+    if (exact or 0) > 1e5:
         bound = {"bound": exact / 2, "z": None, "status": "none-seen", "test": None}
         return row | nothing | bound
     row |= noisy(rng, exact, relative) | {"status": "reached", "test": "normal"}
-    if exact > 1e4:
+    if (exact or 0) > 1e4:
         row |= {"stderr": None, "relative_stderr": None, "status": "too-few"}
     return row
 
 
 def histogram(rng, scene, intervals=10**6, bins=512):
     """Return the rows of hop_histogram.csv of one radius, with exponential intervals."""
-    mean = exact.mean_times(scene)["vertical_hop"]
+    known = exact.mean_times(scene)["vertical_hop"]
+    mean = known or 1.0
     edges = mean / 16 * np.arange(bins + 1)
     chances = -np.diff(np.exp(-edges / mean))
     counts = rng.multinomial(intervals, [*chances, 1 - chances.sum()])
     row = {"radius": scene.radius, "event": "vertical_hop", "intervals": intervals}
-    row |= {"exact_mean": mean, "mean": mean, "mean_stderr": mean / 1000, "z": 0.0}
+    row |= {"exact_mean": known, "mean": mean, "mean_stderr": mean / 1000, "z": 0.0}
     return [
         row
         | {"bins": name, "left": float(edges[i]), "right": float(edges[j]), "count": n}
@@ -117,12 +130,13 @@ def histogram(rng, scene, intervals=10**6, bins=512):
     ]
 
 
-def trajectory(rng, unit, events=400):
+def trajectory(rng, box, events=400):
     """Return rows of a trajectory that stays on one side and hops now and then.
 
-    Its lengths are below half a ``unit``, and so are its times apart.
+    Its lengths are below half of the shortest side, and so are its times apart.
     """
-    others = dict.fromkeys(("z1", "z2", "first", "second"))
+    unit, more = box.shortest, [f"{axis}{n}" for n in range(3, box.discs + 1) for axis in "xy"]
+    others = dict.fromkeys(("z1", "z2", "first", "second")) | dict.fromkeys(more, 0.1 * unit)
     side = np.where(np.arange(events) // 90 % 2, 1, -1)
     rows = []
     for i, x in enumerate(side * unit * rng.uniform(0.1, 0.4, events)):

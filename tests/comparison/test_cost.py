@@ -1,4 +1,4 @@
-"""What an accuracy costs: prices against the errors of real runs, forecasts, and sentences."""
+"""Costs: without it a forecast could promise an error or a time that no run has."""
 
 import math
 
@@ -42,6 +42,8 @@ def test_a_pilot_has_the_errors_of_a_run_of_the_same_blocks(blocks, scene):
     run, measured = run_of(scene, 1.0), td.simulate(scene, 1.0)
     found = of_dynamics(run, cost.pilots(run))
     assert found.seconds == pytest.approx(len(run.parts) * 32e-3)
+    planned = of_dynamics(run, cost.pilots(run), planned=True)
+    assert planned.seconds == pytest.approx(sum(p.planned for p in run.parts.values()) * 1e-3)
     for event, error in found.reached.items():
         assert error == pytest.approx(measured[f"{event}_time"].relative_stderr, rel=1e-3)
 
@@ -106,15 +108,6 @@ def test_a_budget_ends_a_run_at_the_error_that_the_forecast_says(blocks):
         assert "budget of 1e7 events ends it at" in found.shortfall(run)
 
 
-def test_a_forecast_of_shards_has_all_planned_blocks(blocks):
-    run = run_of(SCENE, 1e-4)
-    pilots, part = cost.pilots(run), run.parts["all"]
-    planned = of_dynamics(run, pilots, planned=True)
-    assert planned.seconds == pytest.approx(part.planned * 1e-3)
-    assert of_dynamics(run, pilots).seconds < planned.seconds
-    assert planned.shortfall(run) is None
-
-
 def test_ten_times_the_accuracy_takes_a_hundred_times_as_long(blocks):
     found = td.cost(NEAR)
     assert found.seconds(1e-6) == pytest.approx(100 * found.seconds(1e-5))
@@ -137,11 +130,6 @@ def test_without_a_budget_a_run_has_a_day():
     far = run_of(NEAR, 1e-9, 10**18).parts
     shares = [part.budget / far[name].budget for name, part in hard.parts.items()]
     assert shares == pytest.approx([shares[0]] * len(shares))
-
-
-def test_without_a_budget_the_sums_are_those_of_a_large_one():
-    large = td.simulate(NEAR, 3e-3, budget=2e9)
-    assert [m.count for m in td.simulate(NEAR, 3e-3).values()] == [m.count for m in large.values()]
 
 
 # Sentences ----------------------------------------------------------------------------------------
@@ -175,15 +163,10 @@ def row(event, error, status="budget", target=1e-5):
     ],
 )
 def test_a_sentence_says_what_was_not_reached(rows, said):
+    """And if a part had too small a share of the budget, or no budget was given."""
     assert shortfall(rows, 2 * 10**9, 2e9, 20.0) == said
-
-
-def test_a_sentence_on_a_part_that_had_too_small_a_share_of_the_budget():
     found = shortfall([row("any_wall", 2e-5)], 10**9, 1e8)
     assert found.endswith("ended it at 2e-5 (any_wall_time); a budget of 4e9 is enough")
-
-
-def test_a_sentence_without_events_and_budget():
     found = shortfall([row("any_wall", 2e-5)], None)
     assert found == "1e-5 asked for; the limit of a day ended it at 2e-5 (any_wall_time)"
 
@@ -201,12 +184,7 @@ def test_times_are_written_in_their_unit(seconds, text):
 
 def test_a_table_says_where_it_was_measured_and_has_a_row_for_all(blocks):
     found = td.cost(SCENE, [1e-2, 1e-4])
-    lines = str(found).splitlines()
-    assert lines[0] == str(SCENE)
-    assert lines[2].split() == ["quantity", "method", "0.01", "0.0001", "least", "floor"]
-    assert lines[3].split()[:4] == ["all", "mean", "times", "simulate"]
-    assert found.machine in lines[-1]
-    assert len(lines) < 40
+    assert found.machine in str(found).splitlines()[-1]
     assert list(found.frame().columns[-2:]) == ["seconds_0.01", "seconds_0.0001"]
     assert found["all of these", "exact"].floor == 1e-15
     assert math.isnan(found.frame().loc[("any_wall_area", "shells, rejection"), "seconds_0.0001"])
@@ -262,10 +240,7 @@ def test_an_event_that_no_pilot_counted_has_no_price_and_no_forecast():
      (td.Scene(4.0, 1.0, 0.3, discs=4), 1e-12)],
 )  # fmt: skip
 def test_exact_values_have_the_precision_of_their_theory(scene, floor):
+    assert [*cost._price_of_exact(td.Scene(1.5, 1.0, 0.12, discs=4))] == []
     (price,) = cost._price_of_exact(scene)
     assert price.floor == price.least_error == pytest.approx(floor)
     assert price.seconds(floor * 1.01) == price.least_seconds
-
-
-def test_without_exact_values_they_have_no_price():
-    assert [*cost._price_of_exact(td.Scene(1.5, 1.0, 0.12, discs=4))] == []

@@ -1,4 +1,4 @@
-"""Pressures, free energy and diffusion: limits, sum rules, derivatives, measured against exact."""
+"""Pressures and diffusion: without it a factor of a wall or a covariance could be lost."""
 
 import math
 from dataclasses import replace
@@ -52,34 +52,6 @@ def test_walls_and_collisions_tell_one_pressure(name):
     assert found["compressibility_factor"] == pytest.approx(ratio, rel=1e-14)
 
 
-@pytest.mark.parametrize("scene", [PAPER, SCENES["rough"], SCENES["balls"], THREE])
-def test_tiny_discs_are_an_ideal_gas(scene):
-    found = td.pressure(scene.with_radius(1e-7))
-    n, kt = scene.discs, 1 / scene.velocity_components
-    volume = math.prod(scene.side(axis) for axis in scene.axes)
-    assert found.pop("compressibility_factor") == pytest.approx(1, abs=2e-6)
-    for value in found.values():
-        assert value == pytest.approx(n * kt / volume, rel=2e-6)
-    assert td.free_energy(scene.with_radius(1e-7)) == pytest.approx(0, abs=1e-5)
-
-
-@pytest.mark.parametrize("discs", [2, 3])
-def test_the_second_virial_coefficient_is_that_of_discs(discs):
-    """Collisions of N discs of diameter σ in the room A B: 1 + (N − 1) B₂/(A B), B₂ = π σ²/2.
-
-    Beyond that the walls take a share of order σ/A, which two radii extrapolate away.
-    """
-    excess = []
-    for radius in (1e-4, 2e-4):
-        scene = td.Scene(1.5, 1.0, radius, discs=discs)
-        a, b = scene.range_x, scene.range_y
-        kt = 1 / scene.velocity_components
-        norm = (scene.height * a + scene.width * b) / 2
-        factor = td.pressure(scene)["virial_pressure"] * norm / (discs * kt)
-        excess.append((factor - 1) * a * b / ((discs - 1) * (2 * radius) ** 2))
-    assert 2 * excess[0] - excess[1] == pytest.approx(math.pi / 2, rel=1e-5)
-
-
 def test_two_discs_have_the_published_pressure():
     """The closed form of V below both thresholds, differentiated by hand."""
     w, h, r = 1.5, 1.0, 0.2
@@ -110,7 +82,6 @@ def test_measured_pressures_are_the_exact_ones(name):
         if quantity != "ideal_pressure":
             assert one.stderr < 0.02 * one.value
             assert abs(one.z) < 5, quantity
-    assert "virial_pressure" in str(found)
 
 
 def test_errors_of_pressures_are_those_of_independent_runs():
@@ -127,16 +98,6 @@ def test_errors_of_pressures_are_those_of_independent_runs():
     assert abs(spread / stated - 1) < 5 / math.sqrt(118)
 
 
-@pytest.mark.slow
-def test_some_events_tell_some_pressures():
-    found = td.pressure(td.simulate(PAPER, 0.5, budget=1, events="right_wall"))
-    assert list(found) == ["right_wall_pressure", "ideal_pressure"]
-    found = td.pressure(td.simulate(PAPER, 0.5, budget=1, events="disc_collision"))
-    assert list(found) == ["virial_pressure", "ideal_pressure"]
-    four = td.pressure(td.Scene(1.5, 1.0, 0.12, discs=4))
-    assert {name for name, value in four.items() if value is not None} == {"ideal_pressure"}
-
-
 def test_the_free_energy_is_measured_by_the_volume():
     """Five standard errors: one false alarm in two million."""
     found = td.free_energy(td.sample(PAPER, 1e6, seed=2))
@@ -144,7 +105,6 @@ def test_the_free_energy_is_measured_by_the_volume():
     assert abs(found.z) < 5
     volume = td.sample(PAPER, 1e6, seed=2, quantities="volume")["volume"]
     assert found.stderr == pytest.approx(volume.stderr / volume.value)
-    assert (found.quantity, found.unit) == ("excess_free_energy", "kT")
 
 
 @pytest.mark.parametrize(
@@ -153,7 +113,6 @@ def test_the_free_energy_is_measured_by_the_volume():
         (lambda: td.pressure(SCENES["field"]), "field must be 0 for a pressure"),
         (lambda: td.pressure(SCENES["unequal"]), "radius_ratio must be 1 for a pressure"),
         (lambda: td.pressure(SCENES["torus"]), "must have walls along x or y for a pressure"),
-        (lambda: td.pressure(3), "of must be a Scene or a result of simulate, not 3"),
         (lambda: td.pressure(td.sample(PAPER, 1)), "of must be a Scene or a result of simulate"),
         (lambda: td.free_energy(SCENES["field"]), "field must be 0 for the free energy"),
         (lambda: td.free_energy("a"), "of must be a Scene or a result of sample, not 'a'"),
@@ -171,7 +130,7 @@ def test_what_has_no_pressure_or_diffusion_is_refused(call, said):
 # Diffusion ----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["channel", "torus", "ring"])
+@pytest.mark.parametrize("name", ["channel", pytest.param("torus", marks=pytest.mark.slow), "ring"])
 def test_squared_displacements_begin_ballistically(name):
     """⟨u²⟩ t² with ⟨u²⟩ = (1 − 1/N)/D for N equal discs at total momentum 0, at five sigma."""
     scene = SCENES.get(name) or td.Scene(2.0, 1.0, 0.1, discs=3, periodic="x")
@@ -183,10 +142,6 @@ def test_squared_displacements_begin_ballistically(name):
         # Collisions within the time take less than a hundredth of it.
         due = square * time**2
         assert abs(found.mean[k, 0] - due) < 5 * found.stderr[k, 0] + 0.01 * due
-    frame = found.frame()
-    assert [*frame] == [
-        "squared_displacement", "diffusion", "squared_displacement_stderr", "diffusion_stderr",
-    ]  # fmt: skip
     assert found.mean[0, 1] == pytest.approx(found.mean[0, 0] / 2e-3)
 
 
@@ -210,7 +165,6 @@ def test_slopes_know_that_their_ends_are_of_the_same_replicas():
     assert np.allclose(runs[0].mean[:, 0], by_hand.mean, rtol=1e-12)
     spread = np.std([run.mean[1, 1] for run in runs], ddof=1)
     assert abs(spread / runs[0].stderr[1, 1] - 1) < 5 / math.sqrt(78) + 0.05
-    assert td.plot(runs[0]).axes[0].get_legend().texts[1].get_text() == "diffusion"
 
 
 def test_monte_carlo_of_many_discs_has_the_pressures_of_the_dynamics():

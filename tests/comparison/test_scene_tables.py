@@ -1,4 +1,4 @@
-"""Rows have the numbers of the points, for plain scenes and for scenes with effects."""
+"""Rows of a scene: without it a number of a point could be lost, or an error be made up."""
 
 import math
 from dataclasses import replace
@@ -10,32 +10,31 @@ from factory import (
     BOX,
     RADII,
     Laws,
-    bins_point,
     counts_point,
     hits_point,
     rows_of,
     scenes,
     theory_rows,
 )
+from scipy.special import ndtri, stdtr
 
+import twodiscs as td
 from twodiscs.comparison.scene_tables import (
     Areas,
-    Cost,
-    Grid,
     HopHistogram,
     MeanTimes,
     Theory,
     Volume,
     _sampled_row,
 )
+from twodiscs.dynamics.many import engine
 from twodiscs.model.box import Box
-from twodiscs.model.events import EVENTS
+from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.dynamics import StripCount
 from twodiscs.points.intervals import Bins
 from twodiscs.sampling import montecarlo
-from twodiscs.theory import exact
-from twodiscs.theory.exact import rate
+from twodiscs.theory.exact import rate, replicas_needed
 
 
 @pytest.fixture(scope="module")
@@ -48,65 +47,7 @@ def laws():
     return [Laws(scene) for scene in scenes()]
 
 
-def test_an_exact_value_that_is_not_there_is_named(theory, laws):
-    point = laws[0].monte_carlo(np.random.default_rng(1), 1000)
-    with pytest.raises(ValueError, match=r"theory\.csv has no volume at radius 0\.11"):
-        Volume.rows(theory, {"monte_carlo": [replace(point, radius=0.11)]})
-
-
-# Exact rows -------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("box", [BOX, Box(1.5, 1.0, {"periodic": "x", "field": 0.3})])
-def test_exact_rows_are_the_exact_numbers_radius_by_radius(box, tmp_path):
-    radii = (0.3, 0.1)
-    found = Theory.rows(box, radii)
-    Theory.write(tmp_path / "theory.csv", found)
-    assert Theory.read(tmp_path / "theory.csv") == found
-    values = iter(found)
-    for radius in radii:
-        numbers = exact.exact(box.scene(radius))
-        expected = [("volume", numbers["volume"])]
-        expected += [(f"{event}_area", numbers["areas"][event]) for event in EVENTS]
-        expected += [(f"{event}_time", numbers["mean_times"][event]) for event in EVENTS]
-        for quantity, value in expected:
-            assert next(values) == {"radius": radius, "quantity": quantity, "exact": value}
-    assert next(values, None) is None
-
-
-def test_rows_of_the_grid_say_what_is_open_where(tmp_path):
-    found = Grid.rows(BOX, RADII)
-    Grid.write(tmp_path / "grid.csv", found)
-    assert [row["radius"] for row in found] == list(RADII)
-    regimes = {row["radius"]: (row["regime"], row["ergodic_components"]) for row in found}
-    assert regimes[0.2] == ("all-hops", 1)
-    assert regimes[0.3] == ("vertical-hops", 2)
-    assert regimes[0.38] == ("no-hops", 4)
-    assert {row["largest_radius"] for row in found} == {BOX.largest_radius}
-
-
 # Monte Carlo ----------------------------------------------------------------------------------
-
-
-def test_rows_of_monte_carlo(theory, laws):
-    rng = np.random.default_rng(1)
-    points = [law.monte_carlo(rng, 10**8) for law in laws]
-    volume = Volume.rows(theory, {"monte_carlo": points[::-1]})
-    assert [row["radius"] for row in volume] == list(RADII)
-    areas = Areas.rows(BOX, theory, {"monte_carlo": points[::-1]})
-    assert [(row["radius"], row["quantity"]) for row in areas] == [
-        (radius, f"{event}_area") for radius in RADII for event in EVENTS
-    ]
-    for row in volume + areas:
-        if row["status"] == "sampled":
-            assert row["estimate"] == pytest.approx(row["expectation"], abs=6 * row["stderr"])
-            assert abs(row["z"]) < 6
-        assert row["bias"] == row["expectation"] - row["exact"]
-    for row in areas:
-        blocked = row["exact"] == 0
-        assert (row["status"] == "impossible") == blocked
-        hop = row["quantity"].removesuffix("_area")
-        assert blocked == (not BOX.scene(row["radius"]).is_possible(hop))
 
 
 def test_the_whole_wall_area_is_four_times_right_and_top(theory, laws):
@@ -167,30 +108,6 @@ def time_row(total=0, squares=0, exact=50.0, radius=0.37, **given):
     theory = rows_of({(radius, "vertical_hop_time"): exact})
     (row,) = MeanTimes.rows(BOX, theory, {"dynamics": [point]})
     return row
-
-
-def test_rows_of_mean_times(theory, laws):
-    rng = np.random.default_rng(3)
-    points = [law.dynamics(rng) for law in laws]
-    found = MeanTimes.rows(BOX, theory, {"dynamics": points[::-1]})
-    assert [(row["radius"], row["event"]) for row in found] == [
-        (r, e) for r in RADII for e in EVENTS
-    ]
-    for row in found:
-        scene = BOX.scene(row["radius"])
-        assert row["ergodic_components"] == scene.ergodic_components
-        if scene.is_possible(row["event"]):
-            assert row["status"] == "reached"
-            assert row["estimate"] == pytest.approx(row["exact"], abs=6 * row["stderr"])
-            assert row["relative_stderr"] == pytest.approx(row["stderr"] / row["estimate"])
-            assert row["relative_stderr"] < 4e-4
-            assert row["bound"] is None
-            t = (row["estimate"] - row["exact"]) / row["stderr"]
-            assert row["z"] == pytest.approx(t, abs=0.03)  # Student's law, and the count's side
-        else:
-            assert row["status"] == "impossible"
-            assert row["z"] == row["count"] == 0
-            assert row["estimate"] is row["stderr"] is row["exact"] is None
 
 
 def test_walls_that_symmetry_makes_equal_have_one_row(theory, laws):
@@ -260,15 +177,7 @@ def test_too_few_events_show_no_error():
     assert row["test"] == "cluster-bound"
     assert row["stderr"] > 0
     assert time_row(2000, 3000)["test"] == "normal"
-
-
-def test_few_replicas_show_no_error():
     assert time_row(10**6, 2 * 10**10, replicas=99)["status"] == "too-few"
-
-
-def test_a_blocked_hop_that_is_seen_has_an_infinite_score():
-    row = time_row(1, 1, None, 0.38)
-    assert (row["status"], row["z"], row["count"]) == ("impossible", -math.inf, 1)
 
 
 def test_where_no_exact_value_is_known_what_is_seen_stands():
@@ -309,25 +218,6 @@ def test_rows_of_the_histogram(theory, laws):
     assert few[0]["z"] is few[0]["mean_stderr"] is None
 
 
-# The time of jobs -----------------------------------------------------------------------------
-
-
-def test_cost_is_by_stage_and_radius():
-    points = {
-        "monte_carlo": [hits_point(0.1, 3)],
-        "dynamics": [counts_point(0.2, events=5), counts_point(0.1, events=7)],
-        "intervals": [bins_point(0.1, intervals=11)],
-    }
-    jobs = [(stage, point.radius) for stage, some in points.items() for point in some]
-    rows = Cost.rows(points, dict.fromkeys(jobs[1:], 0.5))
-    assert [tuple(row.values()) for row in rows] == [
-        ("dynamics", 0.1, 7, 0.5),
-        ("dynamics", 0.2, 5, 0.5),
-        ("intervals", 0.1, 11, 0.5),
-        ("monte_carlo", 0.1, 3, None),
-    ]
-
-
 # With effects -----------------------------------------------------------------------------------
 
 
@@ -338,14 +228,14 @@ def exact_of(*scenes):
 
 
 #: Each compiles a kernel of its own.
-SLOW = ("unequal", "channel", "field", "rough")
+SLOW = ("unequal", "channel", "field", "rough", "friction", "balls")
 
 
 @pytest.mark.parametrize(
     "name",
     [pytest.param(name, marks=[pytest.mark.slow] if name in SLOW else []) for name in SCENES],
 )
-def test_monte_carlo_becomes_rows_that_agree(name, tmp_path):
+def test_monte_carlo_becomes_rows_that_agree(name):
     scene = SCENES[name]
     quantities = ["volume", *(f"{event}_area" for event in scene.events)]
     scenes = [scene.with_radius(radius) for radius in (0.1, scene.radius)]
@@ -353,14 +243,13 @@ def test_monte_carlo_becomes_rows_that_agree(name, tmp_path):
     theory = exact_of(*scenes)
     volume = Volume.rows(theory, {"monte_carlo": points[::-1]})
     areas = Areas.rows(Box.of(scene), theory, {"monte_carlo": points[::-1]})
-    Volume.write(tmp_path / "volume.csv", volume)
-    Areas.write(tmp_path / "areas.csv", areas)
     assert [row["radius"] for row in volume] == [s.radius for s in scenes]
     assert [(row["radius"], row["quantity"]) for row in areas] == [
         (s.radius, f"{event}_area") for s in scenes for event in scene.events
     ]
     for row in volume + areas:
         possible = row["exact"] != 0
+        assert row["bias"] == row["expectation"] - row["exact"]
         assert row["status"] == ("sampled" if possible else "impossible")
         # Five sigma, two-sided: a false alarm in 1.7 million comparisons.
         assert abs(row["z"]) <= 5
@@ -368,21 +257,78 @@ def test_monte_carlo_becomes_rows_that_agree(name, tmp_path):
             assert abs(row["estimate"] - row["expectation"]) <= 6 * row["stderr"]
 
 
-def test_all_walls_have_counts_of_their_own():
-    scene = SCENES["unequal"]
-    point = montecarlo.SamplingRun(scene, ["any_wall_area"], 1, 0.1, 7).run()
-    (row,) = Areas.rows(Box.of(scene), exact_of(scene), {"monte_carlo": [point]}, ("any_wall",))
-    part = point.quantities["any_wall_area"]
-    assert (row["hits"], row["epsilon"]) == (part.hits, part.epsilon)
-    assert row["estimate"] == part.measure * part.hits / point.samples
-    watched = Areas.rows(Box.of(scene), exact_of(scene), {"monte_carlo": [point]}, ("right_wall",))
-    assert watched == []
+def test_the_bound_of_a_wall_never_hit_counts_no_copy_twice():
+    """The walls that are one by symmetry are hit together: no more is known than of one event.
+
+    Without an event in R replicas of length T the bound is R T/(4 ln 20).
+    """
+    scene = BOX.scene(0.3)
+    point = Laws(scene).dynamics(np.random.default_rng(1))
+    none = {name: dict.fromkeys(getattr(point, name), 0) for name in ("counts", "products")}
+    point = replace(point, **none)
+    rows = MeanTimes.rows(BOX, theory_rows([0.3]), {"dynamics": [point]})
+    possible = [row for row in rows if row["status"] != "impossible"]
+    assert {row["copies"] for row in possible} == {1, 2, 4}
+    due = point.replicas * point.duration / (4 * math.log(20))
+    for row in possible:
+        assert row["status"] == "none-seen"
+        assert row["bound"] == pytest.approx(due, rel=1e-12), row["event"]
 
 
-def test_plain_points_keep_to_right_and_top():
-    """All walls of a plain scene join two shells, which its point holds."""
-    plain = BOX.scene(0.2)
-    point = montecarlo.SamplingRun(plain, ["any_wall_area"], 1, 0.1, 7).run()
-    assert "any_wall_area" not in point.quantities
-    (row,) = Areas.rows(Box.of(plain), exact_of(plain), {"monte_carlo": [point]}, ("any_wall",))
-    assert row["epsilon"] is None
+@pytest.mark.parametrize(("replicas", "status"), [(2**15, "too-few"), (2**16, "reached")])
+def test_an_error_smaller_than_asked_needs_its_own_initial_states(replicas, status):
+    """Half of the mean time needs 119 states of rough discs, the error of these counts 45411."""
+    scene, event = Scene(1.5, 1.0, 0.245, moment_of_inertia=0.5), "disc_collision"
+    assert replicas_needed(scene, event, 0.5) < replicas
+    total = 1000 * replicas
+    point = counts_point(
+        scene.radius, event, total, 1010 * total,
+        replicas=replicas, target={event: 0.5},
+    )  # fmt: skip
+    theory = rows_of({(scene.radius, f"{event}_time"): 1.0})
+    (row,) = MeanTimes.rows(Box.of(scene), theory, {"dynamics": [point]})
+    assert row["status"] == status
+    assert (row["stderr"] is None) == (status == "too-few")
+
+
+@pytest.mark.parametrize("chains", [100, 150])
+def test_the_mean_of_a_histogram_is_tested_over_chains(chains):
+    """Student's t with as many degrees of freedom as chains less one, whatever their intervals."""
+    laws = Laws(BOX.scene(0.2))
+    point = laws.intervals(np.random.default_rng(2), chains)
+    exact = laws.times["vertical_hop"]
+    point = replace(point, mean=exact - 5 * point.stderr)
+    (z,) = {row["z"] for row in HopHistogram.rows(theory_rows([0.2]), {"intervals": [point]})}
+    assert z == pytest.approx(ndtri(stdtr(chains - 1, -5.0)), abs=2e-3)
+    assert abs(z - ndtri(stdtr(point.intervals - 1, -5.0))) > 0.1
+
+
+CORNERS = [
+    (td.Scene(1.5, 1, 1e-4, discs=3), 2**16, 1908),
+    (td.Scene(1.5, 1, 1e-4, discs=4), 2**16, 1908),
+    (td.Scene(5.8658211593466785, 1.0, 0.48719834881192786, discs=6, periodic="x"), 2**17, 23),
+]
+
+
+@pytest.mark.parametrize(("scene", "samples", "seed"), CORNERS)
+def test_insertions_that_all_fit_or_hardly_ever_have_no_error(scene, samples, seed):
+    """As two discs have it: too few hits, or too few misses."""
+    for row in td.sample(scene, samples, seed=seed).values():
+        assert row.status in ("too-few", "none-seen")
+        assert row.stderr is None
+        assert row.interval() is None
+        assert row.z is None
+        assert (row.value is None) == (row.status == "none-seen")
+
+
+DENSE = [
+    CORNERS[-1][0],
+    td.Scene(1.0, 1.4280527786758892, 0.15449468266455402, discs=10),
+    td.Scene(3.6810167765300044, 1.0, 0.20987490024520206, discs=14, periodic="x"),
+]
+
+
+@pytest.mark.parametrize("scene", DENSE)
+def test_rates_that_insertions_do_not_see_are_guessed(scene):
+    assert 0 < engine.expected_event_rate(scene) < math.inf
+    assert engine.expected_rates(scene)["disc_collision"] > 0

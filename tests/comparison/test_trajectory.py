@@ -1,6 +1,4 @@
-"""A trajectory by other names, as arrays, and as a file of other programs."""
-
-import re
+"""Trajectories: without it another program could read other positions, cells or masses."""
 
 import numpy as np
 import pandas as pd
@@ -42,42 +40,6 @@ def test_positions_and_velocities_are_arrays(path):
         path[["time", "event"]].positions()
 
 
-def frames(text):
-    """Read an extended XYZ file by the rules of the format: [(fields of the comment, rows)]."""
-    lines, found = text.splitlines(), []
-    while lines:
-        number, comment, *lines = lines
-        fields = dict(re.findall(r'(\w+)=("[^"]*"|\S+)', comment))
-        rows, lines = lines[: int(number)], lines[int(number) :]
-        found.append(({k: v.strip('"') for k, v in fields.items()}, [row.split() for row in rows]))
-    return found
-
-
-@pytest.mark.parametrize("times", [None, [0.0, 2.5, 1.25]])
-def test_a_file_of_extended_xyz_has_all_states(path, times, tmp_path):
-    scene = path.scene
-    path.to_xyz(tmp_path / "a.xyz", times)
-    found = frames((tmp_path / "a.xyz").read_text(encoding="utf-8"))
-    at = [*path["time"]] if times is None else times
-    assert [float(fields["Time"]) for fields, _ in found] == at
-    corner = np.array([scene.side(axis) / 2 for axis in scene.axes])
-    masses = scene.masses if scene.discs == 2 else (1.0,) * 3
-    for k, (fields, rows) in enumerate(found):
-        lattice = np.array(fields["Lattice"].split(), float).reshape(3, 3)
-        assert np.array_equal(lattice, np.diag(np.diag(lattice)))
-        assert [*np.diag(lattice)[: len(scene.axes)]] == [scene.side(axis) for axis in scene.axes]
-        assert fields["pbc"].split() == ["T" if axis in scene.periodic else "F" for axis in "xyz"]
-        columns = re.findall(r"(\w+):([SRI]):(\d)", fields["Properties"])
-        assert [sum(int(n) for *_, n in columns)] * len(rows) == [len(row) for row in rows]
-        numbers = np.array([row[1:] for row in rows], float)
-        places, mass, momenta = numbers[:, :3], numbers[:, 3], numbers[:, 4:7]
-        axes = len(scene.axes)
-        assert np.allclose(places[:, :axes] - corner, path.positions(times)[k], atol=1e-15)
-        assert np.allclose(momenta[:, :axes] / mass[:, None], path.velocities(times)[k], atol=1e-15)
-        assert tuple(mass) == masses
-        assert [*numbers[:, 8]] == [*range(1, scene.discs + 1)]
-
-
 def test_ase_reads_it(path, tmp_path):
     read = pytest.importorskip("ase.io", reason="ASE comes with requirements.lock").read
     path.to_xyz(tmp_path / "a.xyz", [0.0, 2.5])
@@ -88,6 +50,10 @@ def test_ase_reads_it(path, tmp_path):
     assert np.allclose(first.get_velocities()[:, :axes], path.velocities([0.0])[0], atol=1e-15)
     assert [*first.cell.lengths()[:axes]] == [scene.side(axis) for axis in scene.axes]
     assert [*first.pbc] == [axis in scene.periodic for axis in "xyz"]
+    assert (*first.get_masses(),) == (scene.masses if scene.discs == 2 else (1.0,) * 3)
+    path.to_xyz(tmp_path / "all.xyz")
+    frames = read(tmp_path / "all.xyz", ":", format="extxyz")
+    assert [frame.info["Time"] for frame in frames] == [*path["time"]]
     assert first.get_kinetic_energy() == pytest.approx(0.5) or scene.field
     assert second.info["Time"] == 2.5
 

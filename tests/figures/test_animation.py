@@ -1,9 +1,7 @@
-"""The animation: it shows the trajectory, stops at the hop, and is the same bytes every time."""
+"""The animation: without it discs could be drawn where they never were, or a hop be missed."""
 
 import json
-import os
 import re
-import subprocess
 import sys
 from base64 import b64decode
 from io import BytesIO
@@ -11,12 +9,11 @@ from io import BytesIO
 import numpy as np
 import pytest
 from figure_cases import unclear
-from matplotlib.patches import Circle
 from PIL import Image
 
 import twodiscs as td
 from twodiscs.comparison.scene_tables import Trajectory
-from twodiscs.figures import animation, drawing, style
+from twodiscs.figures import animation, style
 from twodiscs.figures.animation import AFTER, BEFORE, FRAME, HOP, LAST, MARKED
 from twodiscs.model.box import Box
 
@@ -37,35 +34,22 @@ def stage(rows):
 
 @pytest.fixture(scope="module")
 def frames(rows, tmp_path_factory):
-    """Return (path, [(milliseconds, pixels)]) of a GIF that shows the same as the PNG beside it."""
+    """Return [(milliseconds, pixels)] of a GIF; a PNG and a page beside it show the same."""
     folder = tmp_path_factory.mktemp("animation")
-    paths = [folder / "a.gif", folder / "a.png"]
+    paths = [folder / "a.gif", folder / "a.png", folder / "a.html"]
     with style.context():
         animation.animate(BOX, RADIUS, rows, paths)
-    gif, png = map(unpacked, paths)
-    for ours, theirs in zip(gif, png, strict=True):
-        assert ours[0] == theirs[0]
-        np.testing.assert_array_equal(ours[1], theirs[1])
-    return paths[0], gif
-
-
-@pytest.mark.parametrize("discs", [3, 8])
-def test_every_disc_keeps_its_colour(discs, tmp_path):
-    box = Box(0.75 * discs, 1.0, discs=discs)
-    rows = Trajectory.rows(box, 0.15, 1)[:40]
-    with style.context():
-        animation.animate(box, 0.15, rows, [tmp_path / "a.png"])
-        stage = animation.StageOfMany(box, 0.15, rows)
-    fills = {
-        tuple(np.multiply(artist.get_facecolor(), 255).astype(int))
-        for artist in stage.moving.values()
-        if isinstance(artist, Circle) and artist.get_fill()
-    }
-    assert len(fills) == discs
-    with Image.open(tmp_path / "a.png") as image:
-        shown = [colour for _, colour in image.convert("RGB").getcolors(1 << 24)]
-    for fill in fills:
-        assert any(np.abs(np.subtract(fill[:3], c)).sum() < 9 for c in shown), fill
+    gif, png = map(unpacked, paths[:2])
+    text = paths[2].read_text(encoding="utf-8")
+    assert "http" not in text
+    pictures, times = re.search(r"pictures = (\[.*\]), milliseconds = (\[.*\]);", text).groups()
+    shown = [Image.open(BytesIO(b64decode(one))).convert("RGB") for one in json.loads(pictures)]
+    page = [*zip(json.loads(times), (np.asarray(image, int) for image in shown), strict=True)]
+    for others in (png, page):
+        for ours, theirs in zip(gif, others, strict=True):
+            assert ours[0] == theirs[0]
+            np.testing.assert_array_equal(ours[1], theirs[1])
+    return gif
 
 
 def unpacked(path):
@@ -96,14 +80,12 @@ def test_the_first_lone_hop_of_the_rarer_kind_is_shown():
     assert times.tolist() == list(range(400 - BEFORE, 400 + AFTER + 1))
 
 
-def test_many_discs_are_shown_from_the_start_for_as_long_as_a_hop_of_two():
+def test_hops_that_are_never_alone_and_trajectories_that_are_too_short():
+    """Many discs are shown from the start, for as long as a hop of two."""
     rows = at((300.0, "vertical_hop"), (400.0, "disc_collision"))
     times, hop, start = animation.frame_times(rows, 1.0, discs=3)
     assert (hop, start) == (None, 0.0)
     assert times.tolist() == list(range(BEFORE + AFTER + 1))
-
-
-def test_hops_that_are_never_alone_and_trajectories_that_are_too_short():
     times, hop, centre = animation.frame_times(
         at((3.0, "vertical_hop"), (4.0, "vertical_hop")), 1.0
     )
@@ -125,106 +107,73 @@ def test_hops_that_are_never_alone_and_trajectories_that_are_too_short():
 # Content of the frames ---------------------------------------------------------------------------
 
 
-def test_discs_stay_in_the_box_and_apart(stage):
-    first, second = (stage.places(disc, stage.times) for disc in (1, 2))
-    edge = np.array([BOX.width, BOX.height]) / 2 - RADIUS
-    assert (np.abs([first, second]) <= edge + 1e-12).all()
-    assert np.hypot(*(first - second).T).min() >= 2 * RADIUS - 1e-12
-
-
 def test_the_hop_is_a_frame_and_the_only_one_that_stops(stage, rows, frames):
     assert stage.hop == "horizontal_hop"
     assert stage.centre in [row["time"] for row in rows if row["event"] == stage.hop]
     assert abs(stage.apart([stage.centre])[0]) < 1e-12
     assert stage.apart([stage.times[0]])[0] * stage.apart([stage.times[-1]])[0] < 0
-    shown = [milliseconds for milliseconds, _ in frames[1]]
+    shown = [milliseconds for milliseconds, _ in frames]
     assert shown == [*([FRAME] * BEFORE), HOP, *([FRAME] * (AFTER - 1)), LAST]
     orange = np.array([0xE6, 0x9F, 0x00])
-    marked = [k for k, (_, pixels) in enumerate(frames[1]) if (pixels == orange).all(2).any()]
+    marked = [k for k, (_, pixels) in enumerate(frames) if (pixels == orange).all(2).any()]
     assert marked == list(range(BEFORE, BEFORE + MARKED))
 
 
-def test_pixels_are_those_of_the_discs(stage, frames):
-    """The colour of a disc is inside its rim, except for traces and numbers, and not outside."""
-    stage.box.figure.canvas.draw()
-    up = frames[1][0][1].shape[0]
-    angles = np.linspace(0, 2 * np.pi, 36, endpoint=False)
-    around = np.column_stack([np.cos(angles), np.sin(angles)]) * RADIUS
-    for k in (0, 40, BEFORE, BEFORE + 30):
-        for disc, (face, _) in enumerate(drawing.DISCS, 1):
-            ((x, y),) = stage.places(disc, stage.times[k : k + 1])
-            colour = np.array([int(face[i : i + 2], 16) for i in (1, 3, 5)])
-            for share, least, most in ((0.9, 0.75, 1), (1.1, 0, 0.1)):
-                across, high = stage.box.transData.transform(share * around + (x, y)).T.astype(int)
-                found = frames[1][k][1][up - 1 - high, across]
-                alike = (np.abs(found - colour).sum(axis=1) < 8).mean()
-                assert least <= alike <= most, (k, disc, share)
+#: Effects that bend paths, go on beyond the box, or need a long heading.
+EFFECTS = [
+    {},
+    {"field": 1.5},
+    {"periodic": "x", "mass_ratio": 3.0},
+    {"depth": 1.2},
+    {"radius_ratio": 0.625, "mass_ratio": 0.125, "moment_of_inertia": 0.375},
+]
 
 
-# Files -------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("box", [Box(1.0, 1.5), Box(40.0, 1.0)], ids=str)
-def test_other_boxes(box, tmp_path):
-    found = Trajectory.rows(box, RADIUS, 3)
+@pytest.mark.parametrize("effects", EFFECTS, ids=str)
+def test_discs_are_where_the_trajectory_has_them(effects):
+    """On a periodic axis they go on beyond the box; what is drawn is folded into it."""
+    scene = td.Scene(1.5, 1.0, 0.2, **effects)
+    path = td.trajectory(scene, duration=60)
     with style.context():
-        animation.animate(box, RADIUS, found, [tmp_path / "a.gif"])
-    assert (tmp_path / "a.gif").stat().st_size < 600_000
-
-
-ANIMATE = f"""
-import sys
-from base64 import b64decode
-from io import BytesIO
-import twodiscs as td
-from twodiscs.comparison.scene_tables import Trajectory
-from twodiscs.figures import style
-from twodiscs.figures.animation import animate
-from twodiscs.model.box import Box
-with style.context():
-    animate({BOX!r}, {RADIUS}, Trajectory.read(sys.argv[1]), sys.argv[2:])
-"""
-
-
-@pytest.mark.slow
-def test_same_bytes_whatever_the_machine_is_set_to(rows, frames, tmp_path):
-    table, style_file = tmp_path / "trajectory.csv", tmp_path / "matplotlibrc"
-    Trajectory.write(table, rows)
-    style_file.write_text("font.size: 20\nlines.linewidth: 7\n")
-    outputs = [tmp_path / "b.gif", tmp_path / "b.png"]
-    run = subprocess.run(
-        [sys.executable, "-c", ANIMATE, table, *outputs],
-        env=os.environ | {"PYTHONHASHSEED": "2", "MATPLOTLIBRC": str(style_file)},
-        capture_output=True,
-        text=True,
-    )
-    assert (run.returncode, run.stdout + run.stderr) == (0, "")
-    for path in outputs:
-        assert path.read_bytes() == frames[0].with_name(f"a{path.suffix}").read_bytes()
-        assert path.stat().st_size < 600_000
+        stage = animation.Stage(Box.of(scene), scene.radius, path.to_dict("records"))
+    times = np.linspace(0, 60, 50)
+    states = path.states_at(times)
+    for disc in (1, 2):
+        due = np.column_stack([states[f"x{disc}"], states[f"y{disc}"]])
+        places = stage.places(disc, times)
+        np.testing.assert_allclose(places, due, atol=1e-12)
+        assert (np.abs(stage.folded(places)) <= [0.7501, 0.5001]).all()
+    for time in stage.times[::20]:
+        stage.show(time)
+        for disc in (1, 2):
+            (due,) = stage.folded(stage.places(disc, [time]))
+            assert stage.moving[f"disc {disc}"].center == pytest.approx(tuple(due))
+    assert (np.abs(path["x1"] - path["x2"]).max() > 1.5) == ("x" in scene.periodic)
 
 
 @pytest.mark.parametrize(
-    "effects", [{"periodic": "x"}, {"periodic": "x", "mass_ratio": 3.0}, {"field": 1.5}]
+    ("box", "radius"),
+    [
+        (Box(1.0, 4.0, EFFECTS[-1]), 0.125),
+        (Box(3.0, 1.0, EFFECTS[-1]), 0.125),
+        (Box(12.0, 1.0), 0.2),
+        (Box(50.0, 1.0), 0.2),
+        (Box(1e-5, 3e-6), 6e-7),
+        (Box(1.5e5, 1e5), 2.4e4),
+    ],
+    ids=str,
 )
-def test_paths_with_effects_are_those_of_the_dynamics(effects):
-    """Between events discs fall with the field; on a periodic axis nothing jumps."""
-    box = Box(1.5, 1.0, effects)
-    rows = Trajectory.rows(box, 0.1, 1)
+def test_headings_numbers_and_the_sign_of_a_hop_stand_clear(box, radius):
+    """Discs are where they are: beside each other their numbers may meet."""
+    rows = Trajectory.rows(box, radius, 1908)
     with style.context():
-        stage = animation.Stage(box, 0.1, rows)
-    times = np.linspace(stage.times[0], stage.times[-1], 20001)
-    for disc in (1, 2):
-        places = stage.places(disc, times)
-        # No disc is faster than if it had all of the energy.
-        speed = 1.0001 * (1 + 2 * effects.get("field", 0)) ** 0.5
-        assert np.abs(np.diff(places, axis=0)).max() < speed * (times[1] - times[0])
-        if "field" in effects:
-            bent = np.diff(places[:, 1], 2) / (times[1] - times[0]) ** 2
-            assert np.median(bent) == pytest.approx(-1.5, rel=1e-3)
-        inside = stage.folded(places)
-        assert (np.abs(inside).max(axis=0) < [0.7501, 0.5001]).all()
-    stage.show(stage.centre)
+        stage = animation.Stage(box, radius, rows)
+        for time in [*stage.times[::40], stage.centre]:
+            stage.show(time)
+            assert [pair for pair in unclear(stage.figure) if {*pair} != {"1", "2"}] == []
+
+
+# Files -------------------------------------------------------------------------------------------
 
 
 def test_paths_end_where_they_are_asked_to_whatever_the_width_of_the_box():
@@ -263,61 +212,34 @@ def test_what_leaves_a_ring_comes_in_at_the_other_end():
     assert beyond
 
 
-@pytest.mark.parametrize("sides", [(1.0, 2.0), (3.0, 1.0), (1.0, 4.0)], ids=str)
-@pytest.mark.parametrize(
-    "effects", [{}, {"radius_ratio": 0.625, "mass_ratio": 0.125, "moment_of_inertia": 0.375}]
-)
-def test_the_heading_of_many_effects_is_within_the_picture(sides, effects):
-    """And clear of the sign of a hop."""
-    box = Box(*sides, effects)
-    rows = Trajectory.rows(box, 0.125, 1908)
-    with style.context():
-        stage = animation.Stage(box, 0.125, rows)
-        stage.show(stage.centre)
-        assert unclear(stage.figure) == []
-
-
-@pytest.mark.parametrize("width", [12.0, 20.0, 50.0])
-def test_the_numbers_of_small_discs_keep_clear_of_the_heading(width):
-    box = Box(width, 1.0)
-    rows = Trajectory.rows(box, 0.2, 1)
-    with style.context():
-        stage = animation.Stage(box, 0.2, rows)
-        for time in stage.times[::10]:
-            stage.show(time)
-            # Discs are where they are: beside each other their numbers may meet.
-            met = [pair for pair in unclear(stage.figure) if {*pair} != {"1", "2"}]
-            assert met == []
-
-
 # Effects and other files --------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
-    ("kind", "discs"), [(animation.Stage, 2), (animation.StageOfMany, 3)], ids=["two", "three"]
+    ("kind", "effects"),
+    [
+        (animation.Stage, EFFECTS[-1]),
+        pytest.param(
+            animation.StageOfMany,
+            {"discs": 3, "moment_of_inertia": 0.5},
+            marks=pytest.mark.slow,
+        ),
+    ],
+    ids=["two", "three"],
 )
-def test_marks_of_rough_discs_turn_with_them(kind, discs):
-    """Angles against the times between rows; the sign by what walls do to spin and velocity."""
-    scene = td.Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5, discs=discs)
+def test_marks_of_rough_discs_turn_with_them(kind, effects):
+    """Angles against the times between rows."""
+    scene = td.Scene(1.5, 1.0, 0.2, **effects)
     path = td.trajectory(scene, 200, seed=1)
-    for wall in ("wall_y1", "wall_y2"):
-        disc = wall[-1]
-        u, s, y = (path[f"{name}{disc}"].to_numpy() for name in "usy")
-        (hits,) = np.nonzero((path["event"] == wall).to_numpy())
-        # A disc that turns counterclockwise has the velocity u + s at its lowest point.
-        surface = np.where(y[hits] < 0, s[hits], -s[hits])
-        before = np.where(y[hits] < 0, s[hits - 1], -s[hits - 1])
-        assert len(hits) > 20
-        assert np.allclose(u[hits] + surface, -(u[hits - 1] + before), atol=1e-9)
     with style.context():
         stage = kind(Box.of(scene), 0.2, path.to_dict("records"))
     for time in stage.times[::20]:
         stage.show(time)
-        for disc in range(1, discs + 1):
+        for disc, radius in enumerate(scene.radii, 1):
             (x1, x2), (y1, y2) = stage.moving[f"spin {disc}"].get_data()
             after = np.append(path["time"].to_numpy()[1:], np.inf)
             elapsed = np.clip(np.minimum(after, time) - path["time"], 0, None)
-            angle = (path[f"s{disc}"] * elapsed).sum() / 0.2
+            angle = (path[f"s{disc}"] * elapsed).sum() / radius
             turned = np.arctan2(y2 - y1, x2 - x1) - angle
             assert np.cos(turned) == pytest.approx(1, abs=1e-9)
 
@@ -335,21 +257,6 @@ def test_the_nearer_ball_is_in_front():
         assert len(drawn) == len(stage.moving)
         nearer.add(first > second)
     assert nearer == {True, False}
-
-
-def test_a_page_holds_the_frames_of_the_gif(rows, tmp_path):
-    gif, page = tmp_path / "a.gif", tmp_path / "a.html"
-    with style.context():
-        animation.animate(BOX, RADIUS, rows[:3], [gif, page])
-    text = page.read_text(encoding="utf-8")
-    assert "http" not in text
-    pictures, times = re.search(r"pictures = (\[.*\]), milliseconds = (\[.*\]);", text).groups()
-    shown = [Image.open(BytesIO(b64decode(one))).convert("RGB") for one in json.loads(pictures)]
-    frames = unpacked(gif)
-    assert len(frames) > 3
-    assert [milliseconds for milliseconds, _ in frames] == json.loads(times)
-    for image, (_, pixels) in zip(shown, frames, strict=True):
-        np.testing.assert_array_equal(np.asarray(image, int), pixels)
 
 
 #: A program in place of ffmpeg: it keeps its arguments and its input.
@@ -388,15 +295,8 @@ def test_an_mp4_is_written_by_ffmpeg(rows, tmp_path, monkeypatch):
         animation.write_mp4(path, [image], [50])
     with pytest.raises(td.InputError, match="path must be a file to write"):
         animation.animate(BOX, RADIUS, rows, [tmp_path / "absent" / "a.mp4"])
-
-
-def test_a_colon_in_the_name_of_an_mp4_begins_no_protocol(tmp_path, monkeypatch):
-    """ffmpeg reads file:b.mp4 as the file b.mp4, which it would overwrite."""
-    program = tmp_path / "bin" / "ffmpeg"
-    program.parent.mkdir()
+    # ffmpeg reads file:b.mp4 as the file b.mp4, which it would overwrite.
     program.write_text(RECORDER.format(python=sys.executable, status=0))
-    program.chmod(0o755)
-    monkeypatch.setenv("PATH", str(program.parent))
     monkeypatch.chdir(tmp_path)
-    animation.write_mp4("file:b.mp4", [Image.new("RGB", (3, 2))], [50])
+    animation.write_mp4("file:b.mp4", [image], [50])
     assert json.loads((tmp_path / "file:b.mp4.json").read_text())[-1] == f"{tmp_path}/file:b.mp4"

@@ -1,4 +1,7 @@
-"""Drawings are to scale: discs touch, lines end and shells are as wide as the theory says."""
+"""Drawings: without it discs that should touch would not, or a hidden edge be drawn as one in view.
+
+They are to scale: lines end and shells are as wide as the theory says.
+"""
 
 import math
 
@@ -7,7 +10,7 @@ import pytest
 from figure_cases import BOXES, PAPER, draw
 from matplotlib.patches import Arc, Circle, Wedge
 
-from twodiscs.figures import style
+from twodiscs.figures import configuration_space, style
 from twodiscs.model.box import Box
 from twodiscs.theory import exact
 
@@ -85,10 +88,28 @@ def test_both_shells_are_equally_thick(box):
     assert shell.r - shell.width == pytest.approx(rim.r, rel=1e-12)
 
 
-def test_the_discs_of_the_model_are_apart_and_inside():
-    (axes,) = drawn("model", PAPER)
-    one, two = [patch for patch in axes.patches if isinstance(patch, Circle)]
-    assert math.dist(one.center, two.center) > 2 * one.radius == 2 * two.radius
-    for disc in (one, two):
-        assert abs(disc.center[0]) < PAPER.width / 2 - disc.radius
-        assert abs(disc.center[1]) < PAPER.height / 2 - disc.radius
+@pytest.mark.parametrize(("azimuth", "elevation"), [(-112.0, 24.0), (35.0, 60.0), (170.0, -10.0)])
+def test_a_prism_hides_three_edges_and_a_cylinder_its_other_half(monkeypatch, azimuth, elevation):
+    monkeypatch.setattr(configuration_space, "AZIMUTH", azimuth)
+    monkeypatch.setattr(configuration_space, "ELEVATION", elevation)
+    with style.context():
+        axes = configuration_space.draw(Box(1.5, 1.0)).axes[0]
+    edges = [line for line in axes.lines if len(line.get_xdata()) == 2]
+    assert len(edges) == 12
+    assert sum(line.is_dashed() for line in edges) == 3
+    strips = [patch for patch in axes.patches if len(patch.get_xy()) == 5]
+    assert abs(len(strips) - configuration_space.STRIPS / 2) <= 1
+    # An end of the cylinder lies in two faces each; three of the six faces are seen.
+    ends = [patch for patch in axes.patches if len(patch.get_xy()) > 5]
+    hidden = [line for line in axes.lines if len(line.get_xdata()) > 2]
+    assert len(ends) + len(hidden) == 4
+    assert len(ends) == 2
+
+
+def test_the_page_is_at_right_angles_to_the_view():
+    """Points along the line of sight coincide, and those on the page keep their distance."""
+    sight = np.array([configuration_space._towards(axis) for axis in np.eye(3)])
+    assert sight @ sight == pytest.approx(1)
+    assert configuration_space._seen(0.7 * sight) == pytest.approx((0, 0), abs=1e-12)
+    across = np.cross(sight, [0.3, -0.2, 0.9])
+    assert math.hypot(*configuration_space._seen(across)) == pytest.approx(np.linalg.norm(across))

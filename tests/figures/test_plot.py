@@ -1,29 +1,30 @@
-"""Figures of the face: no measured value is lost, in new axes or in the user's."""
+"""Plots of the face: without it a measured value could be lost, or the user's settings changed."""
 
 import copy
 import pickle
 import warnings
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 
 import matplotlib
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from figure_cases import bars, covered, points
+from figure_cases import bars, points
 from matplotlib.figure import Figure
 from PIL import Image
 
 import twodiscs as td
-from twodiscs.figures import animation, curves, panels, style
-from twodiscs.figures.style import LOOKS, name_of
+from twodiscs.figures import curves
+from twodiscs.figures.style import LOOKS
 from twodiscs.model.box import Box
 
 HOPS, COLLISIONS = "vertical_hop", "disc_collision"
 RADII = (0.1, 0.2, 0.24)
 
 
-def scan(*events, **effects):
-    return td.scan(1.5, 1.0, RADII, error=0.1, events=events, **effects)
+@cache
+def scan(*events, width=1.5):
+    return td.scan(width, 1.0, RADII, error=0.1, events=events)
 
 
 @pytest.mark.filterwarnings("error")
@@ -39,8 +40,9 @@ def test_all_events_of_a_scan_are_drawn_with_their_errors():
         assert len(due) == len(RADII)
         np.testing.assert_allclose(bars(main, *LOOKS[event]), due, rtol=1e-9)
         assert {(row["radius"], row["z"]) for row in own} <= points(lower, *LOOKS[event])
-    legend = [text.get_text() for text in main.get_legend().get_texts()]
-    assert legend == [name_of(HOPS), name_of(COLLISIONS)]
+    both = td.plot([scan(HOPS), scan(COLLISIONS)]).axes[0]
+    for event in (HOPS, COLLISIONS):
+        assert bars(both, *LOOKS[event]) == bars(main, *LOOKS[event])
 
 
 def test_a_warning_names_what_is_not_drawn():
@@ -53,16 +55,11 @@ def test_a_warning_names_what_is_not_drawn():
     assert td.plot(found, figure="areas").axes[0].get_ylabel() == "area $S$"
 
 
-@pytest.mark.parametrize("event", [HOPS, "horizontal_hop", COLLISIONS, "right_wall"])
-def test_the_legend_of_a_single_event_covers_nothing(event):
-    with style.context():
-        assert covered(td.plot(scan(event)).axes[0]) == []
-
-
 def test_two_boxes_are_drawn_in_axes_of_the_user(tmp_path):
-    axes = Figure().add_subplot()
-    one, two = scan(HOPS), scan(HOPS, field=1.0)
-    assert td.plot(one, ax=axes) is axes.figure
+    part = Figure().subfigures(1, 2)[0]
+    axes = part.add_subplot()
+    one, two = scan(HOPS), scan(HOPS, width=2.0)
+    assert td.plot(one, ax=axes) is part.get_figure(root=True)
     low = axes.get_ylim()
     td.plot(two, tmp_path / "two.pdf", ax=axes)
     assert (tmp_path / "two.pdf").stat().st_size > 5000
@@ -74,32 +71,31 @@ def test_two_boxes_are_drawn_in_axes_of_the_user(tmp_path):
         exact = curves.exact_curves(Box.of(found[0].scene))[1][f"{HOPS}_time"]
         drawn = [line.get_ydata() for line in axes.lines if line.get_color() == look[0]]
         assert any(np.array_equal(line, exact, equal_nan=True) for line in drawn)
-    names = [text.get_text() for text in axes.get_legend().get_texts()]
-    assert names == [f"vertical hops, {panels.heading(Box.of(f[0].scene))[0]}" for f in (one, two)]
 
 
-def test_scans_of_one_box_are_one_plot_and_of_two_boxes_a_sentence():
-    one, two = scan(HOPS), scan(COLLISIONS)
-    names = td.plot([one, two]).axes[0].get_legend().get_texts()
-    assert [text.get_text() for text in names] == [name_of(HOPS), name_of(COLLISIONS)]
-    with pytest.raises(td.InputError, match="for several boxes call plot with the same ax for"):
-        td.plot([one, scan(HOPS, field=1.0)])
-
-
-def test_only_results_over_the_radius_are_drawn_in_axes_of_the_user():
-    trajectory = td.trajectory(td.Scene(1.5, 1.0, 0.2), duration=2)
-    with pytest.raises(td.InputError, match="result must be over the radius to be drawn in ax"):
-        td.plot(trajectory, ax=Figure().add_subplot())
-
-
-@pytest.mark.parametrize("name", ["mean_times", "pressure", "mean_wall_time"])
-def test_the_figures_of_a_result_are_those_of_its_events(name):
-    found = scan("right_wall", COLLISIONS)
-    assert td.plot(found, figure=name).axes[0].get_label() == "main"
-    with pytest.raises(
-        td.InputError, match="figure must be one of mean_times, mean_collision_time"
-    ):
-        td.plot(found, figure="mean_hop_time")
+@pytest.mark.parametrize(
+    ("result", "options", "said"),
+    [
+        *(
+            (lambda: scan(HOPS), {"ax": axes}, "ax must be one plane Axes of matplotlib, not ")
+            for axes in (Figure().add_subplot(projection="3d"), Figure().subplots(2), "main")
+        ),
+        (lambda: scan(HOPS), {"figure": "pressure"}, "figure must be one of mean_"),
+        (
+            lambda: [scan(HOPS), scan(HOPS, width=2.0)],
+            {},
+            "for several boxes call plot with the same ax for",
+        ),
+        (
+            lambda: td.trajectory(td.Scene(1.5, 1.0, 0.2), 2),
+            {"ax": Figure().add_subplot()},
+            "result must be over the radius to be drawn in ax",
+        ),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused_in_a_sentence(result, options, said):
+    with pytest.raises(td.InputError, match=said):
+        td.plot(result(), **options)
 
 
 def test_what_a_transmission_leaves_falls_at_twice_its_rate():
@@ -150,54 +146,7 @@ def test_plots_in_threads_leave_the_settings_of_matplotlib_alone():
     assert all(figure._repr_png_() == expected for figure in figures)
 
 
-def test_axes_of_the_user_may_be_in_a_part_of_a_figure(tmp_path):
-    parts = Figure().subfigures(1, 2)
-    drawn = td.plot(scan(HOPS), tmp_path / "part.png", ax=parts[0].add_subplot())
-    assert drawn is parts[0].get_figure(root=True)
-    assert (tmp_path / "part.png").exists()
-
-
-@pytest.mark.parametrize(
-    "axes",
-    [Figure().add_subplot(projection="3d"), Figure().subplots(2), Figure(), "main"],
-    ids=["3d", "array", "figure", "text"],
-)
-def test_other_axes_are_refused(axes):
-    with pytest.raises(td.InputError, match="ax must be one plane Axes of matplotlib, not "):
-        td.plot(scan(HOPS), ax=axes)
-
-
 # Animations ---------------------------------------------------------------------------------------
-
-EFFECTS = [
-    {"field": 1.5},
-    {"periodic": "x"},
-    {"depth": 1.2, "periodic": "xz"},
-    {"moment_of_inertia": 0.5, "mass_ratio": 2.0},
-]
-
-
-@pytest.mark.parametrize("effects", EFFECTS, ids=str)
-def test_scenes_with_effects_are_animated(effects, tmp_path, monkeypatch):
-    monkeypatch.setattr(animation, "BEFORE", 1)
-    monkeypatch.setattr(animation, "AFTER", 1)
-    scene = td.Scene(1.5, 1.0, 0.2, **effects)
-    td.animate(td.trajectory(scene, duration=20), tmp_path / "two.gif")
-    assert Image.open(tmp_path / "two.gif").n_frames > 1
-
-
-def test_discs_are_where_the_trajectory_has_them_on_a_periodic_axis():
-    """Which goes on beyond the box, while a table keeps the separation within one period."""
-    scene = td.Scene(1.5, 1.0, 0.2, periodic="x")
-    found = td.trajectory(scene, duration=60)
-    assert np.abs(found["x1"] - found["x2"]).max() > 1.0
-    with style.context():
-        stage = animation.Stage(Box.of(scene), scene.radius, found.to_dict("records"))
-    times = np.linspace(0, 60, 50)
-    states = found.states_at(times)
-    for disc in (1, 2):
-        due = np.column_stack([states[f"x{disc}"], states[f"y{disc}"]])
-        np.testing.assert_allclose(stage.places(disc, times), due, atol=1e-12)
 
 
 def test_exact_values_alone_are_curves():
@@ -207,19 +156,12 @@ def test_exact_values_alone_are_curves():
         warnings.simplefilter("error")  # nothing was measured, so nothing is left out
         main, *others = td.plot(table).axes
         (volume,) = td.plot(table, figure="volume").axes
-        hops = td.plot(table, figure="mean_hop_time").axes
     assert not others
-    assert [axes.get_label() for axes in hops] == ["main", "beneath"]
     curves = [line for line in main.lines if len(line.get_xdata()) > 2]
     assert len(curves) == 6
     assert {line.get_marker() for line in curves} == {"None"}
-    assert [text.get_text() for text in volume.get_legend().get_texts()] == ["exact"]
     (curve,) = (line for line in volume.lines if len(line.get_xdata()) > 2)
     radii, values = curve.get_data()
     known = np.isfinite(radii)
     found = np.interp([0.1, 0.2], radii[known], values[known])
     np.testing.assert_allclose(found, table["volume"].iloc[:2], rtol=1e-3)
-    figure, own = plt.subplots()
-    td.plot(table, ax=own, figure="volume")
-    assert own.lines
-    plt.close(figure)

@@ -205,6 +205,8 @@ def test_thresholds_that_nearly_coincide(gap, ratio, sign):
 def test_points_crowd_on_both_sides_of_every_threshold():
     grid = radii(1.5, 1.0, 0.01, 46)
     typical = 0.38 / 46
+    assert [float(key(radius)) for radius in grid] == list(grid)
+    assert max(len(key(radius)) for radius in grid) <= len("0.37507")
     for threshold in (0.25, 0.375):
         for side in (-1, 1):
             distances = sorted(d for r in grid if (d := side * (r - threshold)) > 0)
@@ -215,23 +217,6 @@ def test_points_crowd_on_both_sides_of_every_threshold():
     room = [Box(1.5, 1.0).largest_radius - radius for radius in reversed(grid)]
     assert room[0] < typical / 50
     assert room[0] < room[1] - room[0] < room[3] - room[2]
-
-
-def test_keys_are_short_and_read_back():
-    grid = radii(1.5, 1.0, 0.01, 46)
-    keys = [key(radius) for radius in grid]
-    assert max(map(len, keys)) <= len("0.37507")
-    assert [float(text) for text in keys] == list(grid)
-    assert key(1) == "1.0"
-    assert key(0.2) == "0.2"
-
-
-def test_the_grid_scales_with_the_box():
-    # 2^10 is exact in binary; in decimals the rounding differs, so points agree within a gap.
-    small, large = (radii(1.5 * s, s, 0.01 * s, 30) for s in (1.0, 1024.0))
-    gaps = [b - a for a, b in itertools.pairwise(small)]
-    for i in range(1, 29):
-        assert abs(large[i] / 1024 - small[i]) < (gaps[i - 1] + gaps[i]) / 2
 
 
 def test_seeds_depend_on_each_part_and_on_nothing_else():

@@ -1,4 +1,7 @@
-"""Estimates and their errors: against enumeration, mpmath, numpy, scipy and seeded simulation."""
+"""Estimates: without it an error bar could be too small, or be there if a run could not know it.
+
+They are compared with enumeration, mpmath, numpy, scipy and seeded simulation.
+"""
 
 import math
 from fractions import Fraction
@@ -8,6 +11,7 @@ import mpmath
 import numpy as np
 import pytest
 from factory import counts_point
+from scipy.special import betainc
 from scipy.stats import sem
 
 from twodiscs.comparison import scores
@@ -15,7 +19,14 @@ from twodiscs.comparison.check import sum_rule
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
-from twodiscs.points.estimates import Estimate
+from twodiscs.points.estimates import (
+    LEAST_FRACTION,
+    PARTS,
+    Estimate,
+    fraction_below,
+    fractions_of_speeds,
+    stratified_mean,
+)
 from twodiscs_paper.reference import exact_numbers
 from twodiscs_paper.studies.distributions.measure import density_at_zero
 from twodiscs_paper.studies.estimates import LinearFit, mean_of
@@ -31,32 +42,6 @@ def test_estimate_gives_its_interval():
     assert not estimate.covers(3.0)
     assert estimate.relative_stderr == 0.25
     assert Estimate(0.0, 0.5, 10).relative_stderr == math.inf
-
-
-def test_coverage_of_normal_estimates_is_the_confidence():
-    rng = np.random.default_rng(1)
-    found = [Estimate(value, 2.0, 9) for value in 3 + 2 * rng.standard_normal(1600)]
-    for confidence in (0.5, 0.95):
-        covered = sum(one.covers(3.0, confidence) for one in found)
-        assert abs(covered - 1600 * confidence) <= 5 * math.sqrt(
-            1600 * confidence * (1 - confidence)
-        )
-
-
-def test_combination_agrees_with_the_replicas_themselves():
-    rng = np.random.default_rng(2)
-    n = 500
-    a = rng.poisson(40, n)
-    b = a // 2 + rng.poisson(20, n)
-    c = rng.poisson(7, n)
-    counts = {"a": a, "b": b, "c": c}
-    weights = {"a": -1.5, "b": 2.0, "c": 0.25}
-    totals = {x: int(counts[x].sum()) for x in counts}
-    products = {f"{x}*{y}": int((counts[x] * counts[y]).sum()) for x in counts for y in counts}
-    sample = sum(weights[x] * counts[x] for x in counts)
-    found = estimates.combination(weights, totals, products, n)
-    assert found.value == pytest.approx(sample.mean(), rel=1e-12)
-    assert found.stderr == pytest.approx(sample.std(ddof=1) / math.sqrt(n), rel=1e-12)
 
 
 def test_combination_keeps_its_digits_where_terms_cancel():
@@ -140,18 +125,15 @@ def test_a_line_with_errors_is_that_of_the_normal_equations():
 # Counts ---------------------------------------------------------------------------------------
 
 
-def test_binomial_estimate():
-    assert estimates.binomial_estimate(0, 100, 2.0) is None
-    found = estimates.binomial_estimate(25, 100, 2.0)
-    assert (found.value, found.n) == (0.5, 100)
-    assert found.stderr == pytest.approx(2 * math.sqrt(0.25 * 0.75 / 100))
-
-
 def moments(counts):
     return int(counts.sum()), int((counts**2).sum()), len(counts)
 
 
 def test_mean_time_agrees_with_the_replicas_themselves():
+    assert estimates.binomial_estimate(0, 100, 2.0) is None
+    found = estimates.binomial_estimate(25, 100, 2.0)
+    assert (found.value, found.n) == (0.5, 100)
+    assert found.stderr == pytest.approx(2 * math.sqrt(0.25 * 0.75 / 100))
     counts = np.random.default_rng(6).poisson(30, 400)
     found = estimates.mean_time(*moments(counts), 60.0)
     relative = counts.std(ddof=1) / math.sqrt(400) / counts.mean()
@@ -262,3 +244,91 @@ def test_the_density_at_zero_of_chains_is_that_of_counts_with_other_errors():
     )
     assert value == pytest.approx(constant)
     assert error == pytest.approx(math.sqrt(covariance[1, 1]))
+
+
+@pytest.mark.parametrize("components", range(2, 11))
+def test_the_share_of_directions_is_that_of_the_beta_law(components):
+    """The square of a component is of the beta law (1/2, (n − 1)/2)."""
+    for cosine in (0.0, 0.125, 0.5, 0.9, 1.0):
+        expected = betainc(0.5, (components - 1) / 2, cosine**2)
+        assert fraction_below(cosine, components) == pytest.approx(expected, rel=1e-13)
+
+
+@pytest.mark.parametrize("components", range(2, 11))
+def test_only_the_fastest_starts_are_taken_together(components):
+    shares = fractions_of_speeds(components)
+    assert math.fsum(shares) == pytest.approx(1, rel=1e-15)
+    assert shares[-1] >= LEAST_FRACTION
+    below = np.cumsum(shares)[:-1]
+    assert below == pytest.approx(
+        [fraction_below((part + 1) / PARTS, components) for part in range(below.size)], rel=1e-13
+    )
+    if len(shares) < PARTS:
+        assert 1 - fraction_below(len(shares) / PARTS, components) < LEAST_FRACTION
+
+
+SHARES = np.outer([0.1, 0.2, 0.3, 0.25, 0.15], [0.5, 0.3, 0.2])
+MEANS = np.outer([3.0, 2.0, 1.0, 0.5, 0.0], [0.2, 1.0, 2.0])
+TRUE = float(np.sum(SHARES * MEANS))
+
+
+def filled(rng, starts):
+    """Return numbers of starts by strata, as chance fills them."""
+    return rng.multinomial(starts, SHARES.ravel()).reshape(SHARES.shape)
+
+
+@pytest.mark.parametrize(("starts", "number"), [(60, 20_000), (700, 20_000), (3000, 100)])
+def test_means_have_no_bias(starts, number):
+    """Five sigma of 20,000 means, without scatter within strata: 1/28 of what scatter is left.
+
+    Of 700 starts 14 are expected in the smallest stratum: were strata joined by the starts they
+    have, chance would decide there, and the mean be off by 17 sigma.
+    """
+    rng = np.random.default_rng(starts)
+    fillings = [filled(rng, starts) for _ in range(number)]
+    off = (
+        np.array([stratified_mean(SHARES, n, n * MEANS, n * MEANS**2)[0] for n in fillings]) - TRUE
+    )
+    # With enough starts to keep all strata, the mean has no variance.
+    assert abs(off.mean()) <= 5 * off.std() / math.sqrt(off.size) + 1e-15
+
+
+@pytest.mark.parametrize("starts", [60, 400, 3000])
+def test_errors_are_honest(starts):
+    """Five sigma on the spread of 2000 means of Poisson counts."""
+    rng = np.random.default_rng(starts)
+    off, variances = [], []
+    for _ in range(2000):
+        n = filled(rng, starts)
+        values = [rng.poisson(mean, k) for mean, k in zip(MEANS.flat, n.flat, strict=True)]
+        counts, squares = (
+            np.reshape([int((v**power).sum()) for v in values], n.shape) for power in (1, 2)
+        )
+        mean, error = stratified_mean(SHARES, n, counts, squares)
+        off.append(mean - TRUE)
+        variances.append(error**2)
+    spread = np.array(off) ** 2 - variances
+    assert abs(spread.mean()) <= 5 * spread.std() / math.sqrt(spread.size)
+    # With enough starts only the variance within strata is left; the spread of 2000 means is known
+    # to 1.6 %, so that a tenth is six standard errors.
+    within = math.sqrt(TRUE / starts)
+    between = math.sqrt(float(np.sum(SHARES * (MEANS - TRUE) ** 2)) / starts)
+    if starts == 3000:
+        assert np.std(off) < 1.1 * within < 0.9 * math.hypot(within, between)
+
+
+def test_strata_of_few_starts_are_taken_together_and_one_start_has_no_error():
+    shares, counts = np.full((2, 3), 1 / 6), np.arange(6).reshape(2, 3)
+    # 16 are expected in each of 6 strata as soon as there are 96 starts, whatever there were.
+    for last, parts in ((21, 6), (20, 2)):
+        starts = np.array([[15, 15, 15], [15, 15, last]])
+        mean, _ = stratified_mean(shares, starts, counts, counts)
+        pairs = 2 / 3 * 8 / 60 + 1 / 3 * 7 / (15 + last)
+        assert mean == pytest.approx(pairs if parts == 2 else np.mean(counts / starts))
+    # A stratum that is almost empty has no separate mean.
+    starts = np.array([[99, 99, 99], [99, 99, 1]])
+    mean, _ = stratified_mean(shares, starts, counts, counts)
+    assert mean == pytest.approx(2 / 3 * 8 / 396 + 1 / 3 * 7 / 100)
+    one = np.zeros((2, 3), int)
+    one[1, 1] = 1
+    assert stratified_mean(shares, one, 3 * one, 9 * one) == (3.0, math.inf)

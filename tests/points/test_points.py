@@ -1,7 +1,8 @@
-"""Points as objects and as files: a written point is read unchanged, other files are errors."""
+"""Points: without it a file that was edited could be read, or a correlation be forgotten."""
 
 import json
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -9,8 +10,8 @@ import pytest
 from factory import BOX, POINTS, Laws, bins_point, counts_point, hits_point
 
 import twodiscs as td
-from twodiscs.comparison.table import by_radius
 from twodiscs.model.checks import InputError
+from twodiscs.points.base import KEY, read_json, write_json
 from twodiscs.points.dynamics import StripCount
 from twodiscs.points.intervals import Bins
 from twodiscs.points.monte_carlo import Hits, InsertionPoint, MonteCarloPoint, Weights
@@ -41,8 +42,9 @@ RESULTS = {
 }
 
 
-@pytest.mark.parametrize("name", SCENES)
-@pytest.mark.parametrize("stage", RESULTS)
+@pytest.mark.parametrize(
+    ("stage", "name"), [("dynamics", "plain"), ("monte_carlo", "three"), ("intervals", "plain")]
+)
 def test_a_saved_result_is_a_point_and_no_other_point(tmp_path, stage, name):
     result, path = RESULTS[stage](SCENES[name]), tmp_path / "a.json"
     result.save(path)
@@ -106,13 +108,6 @@ def test_a_point_gives_estimates_by_name():
             point.estimate("median")
 
 
-def test_points_are_sorted_and_a_radius_must_not_come_twice():
-    points = [counts_point(radius) for radius in (0.2, 0.1, 0.3)]
-    assert [point.radius for point in by_radius(points)] == [0.1, 0.2, 0.3]
-    with pytest.raises(ValueError, match=r"points must not contain radius 0\.02 twice"):
-        by_radius([counts_point(0.02)] * 2)
-
-
 def test_the_error_of_a_density_is_that_of_a_ratio_of_two_numbers_of_each_chain():
     """Chains with more intervals have more of them in a bin: the residuals have the error."""
     chains, width = 200, 0.25
@@ -159,3 +154,25 @@ def test_the_area_of_all_walls_is_as_sure_as_that_of_the_rarer_wall():
     hits = {"right_wall_area": Hits(5000, 1.0, 0.1), "top_wall_area": Hits(50, 1.0, 0.1)}
     point = MonteCarloPoint(0.1, "monte_carlo", 10**6, hits, right_and_top=1)
     assert point.all_walls(BOX.scene(0.1)).enough == 50
+
+
+CONTENT = {"radius": 0.1, "counts": {"hop": 2**62 + 1}, "mean": 0.1 + 0.2, "sums": [[1, 2], [3]]}
+SENTENCE = "is not what its job wrote; delete it, and it is made again"
+
+
+def test_what_is_written_is_read(tmp_path):
+    write_json(tmp_path / "a.json", CONTENT)
+    assert read_json(tmp_path / "a.json") == CONTENT
+    first = (tmp_path / "a.json").read_bytes()
+    write_json(tmp_path / "a.json", dict(reversed(CONTENT.items())))
+    assert (tmp_path / "a.json").read_bytes() == first
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "{", "[]", "1", "{}", '{"sha256": "0"}', json.dumps(CONTENT), json.dumps({KEY: None})],
+)
+def test_what_is_no_such_file_is_refused(tmp_path, text):
+    (tmp_path / "a.json").write_text(text)
+    with pytest.raises(InputError, match=re.escape(SENTENCE)):
+        read_json(tmp_path / "a.json")

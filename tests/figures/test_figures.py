@@ -1,0 +1,306 @@
+"""Figures of a scene: without it a symbol, an error bar or a curve could differ from its table.
+
+Every figure is drawn for many boxes; the numbers in its artists are compared with the rows, and
+texts upon each other are found.
+"""
+
+from functools import cache
+from itertools import groupby
+
+import numpy as np
+import pytest
+from figure_cases import BOXES, OTHERS, PAPER, bars, covered, draw, points, tables_of, unclear
+
+from twodiscs.comparison.table import quantity_of
+from twodiscs.figures import curves, panels, radius, style
+from twodiscs.figures.catalogue import FIGURES
+from twodiscs.model.box import Box
+from twodiscs.model.events import EVENTS
+from twodiscs.theory import exact, virial
+from twodiscs.theory.laws import small_radius_time
+from twodiscs_paper.studies.thresholds.measure import leading_law
+
+#: Boxes that differ most, boxes where labels could meet, and boxes of any size.
+QUICK = ("square", "paper", "long", *OTHERS)
+TABLED = (*QUICK, "ten", "nearly square", "tiny", "large")
+
+QUANTITIES = {quantity for entry in FIGURES.values() for quantity in entry.needs}
+
+
+def quantities(box):
+    """Return the quantities that scenes in a box have."""
+    absent = {*EVENTS} - {*box.tiny.events}
+    return {quantity for quantity in QUANTITIES if quantity.rpartition("_")[0] not in absent}
+
+
+def cases():
+    """Return the parameters (figure, box): drawings in all plain boxes, the others in some."""
+    return [
+        pytest.param(name, box, marks=[] if box in QUICK else pytest.mark.slow)
+        for name, entry in FIGURES.items()
+        for box in (TABLED if entry.tables else BOXES)
+        for sides in [(BOXES | OTHERS)[box]]
+        if entry.is_called(quantities(sides), sides.calls_for)
+    ]
+
+
+@cache
+def drawn(name, box):
+    """Return a figure of one of the boxes."""
+    with style.context():
+        return draw(name, (BOXES | OTHERS)[box], tables_of(box))
+
+
+@pytest.mark.parametrize(("name", "box"), [*cases(), ("wall_area", "tall")])
+def test_texts_stand_clear(name, box):
+    figure = drawn(name, box)
+    with style.context():
+        assert unclear(figure) == []
+        if name == "mean_collision_time":
+            assert covered(figure.axes[0]) == []
+    assert figure.get_size_inches()[0] == (radius.WIDE if name == "all_areas" else style.COLUMN)
+
+
+def test_what_would_not_be_clear_is_found():
+    with style.context():
+        figure = draw("model", PAPER, {})
+        figure.text(0.5, 0.5, "one")
+        figure.text(0.5, 0.5, "two")
+        figure.text(-0.5, 0.5, "beyond")
+        assert unclear(figure) == ["beyond", ("one", "two")]
+
+
+def of_quantity(rows, quantity, factor=None, rooted=False):
+    """Return (x, y, standard error, residual) of the rows of a quantity that have an error.
+
+    A ``factor`` of each row turns mean times to rates times this factor.
+    """
+    found = []
+    for row in rows:
+        if quantity_of(row) == quantity and row["stderr"]:
+            value, error, z = row["estimate"], row["stderr"] / row["estimate"], row["z"]
+            if factor:
+                value, z = factor(row) / value, z and -z
+            if rooted:
+                value, error = value**0.5, error / 2
+            found.append((row["radius"], value, value * error, z))
+    return found
+
+
+VIRIAL = ("right_wall", "top_wall", "disc_collision")
+
+
+def series(name, box, rows):
+    """Yield (panel, panel of residuals, quantity, numbers of the rows, exact curve)."""
+    radii, columns = curves.exact_curves(box)
+    if name == "all_areas":
+        for part in radius.AREAS:
+            for _, _, *of_part in series(part, box, rows):
+                yield part, f"residuals of {part}", *of_part
+    elif name == "pressure":
+        for panel, events, factor in (
+            ("main", ("right_wall", "top_wall"), virial.pressure_factor),
+            ("beneath", VIRIAL, lambda scene, event: abs(virial.weights(scene)[event])),
+        ):
+            known = panel == "main" or virial.weights(box.tiny) is not None
+            for event in [e for e in events if known and e in box.tiny.events]:
+
+                def of(r, factor=factor, event=event):
+                    scene = box.scene(float(r))
+                    return factor(scene, event) * scene.accessible_fraction(event)
+
+                times = columns[f"{event}_time"]
+                curve = [
+                    np.nan if np.isnan(time) else of(r) / time
+                    for r, time in zip(radii, times, strict=True)
+                ]
+                due = of_quantity(rows, f"{event}_time", lambda row, of=of: of(row["radius"]))
+                yield panel, panel == "main" and "residuals", event, due, np.array(curve)
+    else:
+        shown = radius.OVER_RADIUS[name]
+        for quantity in shown.names:
+            curve = columns[quantity] ** (0.5 if shown.rooted else 1)
+            due = of_quantity(rows, quantity, rooted=shown.rooted)
+            if any(quantity_of(row) == quantity for row in rows):
+                yield "main", "residuals", quantity, due, curve
+
+
+OVER_RADIUS = {*radius.OVER_RADIUS, "all_areas", "pressure"}
+
+
+@pytest.mark.parametrize(
+    ("name", "box"), [case for case in cases() if case.values[0] in OVER_RADIUS]
+)
+def test_numbers_over_the_radius_are_those_of_the_rows(name, box):
+    """Estimates with their errors, residuals, and exact curves, in the order of the quantities."""
+    rows = tables_of(box)[FIGURES[name].tables[0]]
+    panel = {axes.get_label(): axes for axes in drawn(name, box).axes}
+    found = [*series(name, (BOXES | OTHERS)[box], rows)]
+    assert found
+    for label, group in groupby(found, key=lambda one: one[0]):
+        for (_, lower, _, due, curve), look in zip(group, style.SERIES, strict=False):
+            shown = [bar for bar in bars(panel[label], *look) if bar[2]]
+            np.testing.assert_allclose(shown, np.array(due).reshape(-1, 4)[:, :3].astype(float))
+            if lower in panel:
+                assert {(x, z) for x, _, _, z in due} <= points(panel[lower], *look)
+            lines = [line.get_ydata() for line in panel[label].lines]
+            lines = [line for line in lines if len(line) == len(curve)]
+            assert any(np.allclose(line, curve, rtol=1e-9, equal_nan=True) for line in lines)
+
+
+@pytest.mark.parametrize("box", QUICK)
+def test_the_histogram_has_the_densities_of_its_bins(box):
+    """And marks exact densities at 0 in plain boxes, 3√2/(16 (h − 2r)) in units of the time."""
+    rows, sides = tables_of(box)["hop_histogram"], (BOXES | OTHERS)[box]
+    whole, short = drawn("hop_histogram", box).axes
+    exact_values = []
+    for i, (r, group) in enumerate(groupby(rows, key=lambda row: row["radius"])):
+        own = list(group)
+        mean = own[0]["exact_mean"] or own[0]["mean"]
+        exact_values.append(mean * 3 * 2**0.5 / (16 * (sides.height - 2 * r)))
+        for axes, bins in ((whole, "wide"), (short, "equal")):
+            due = [
+                ((r["left"] + r["right"]) / 2 / mean, r["density"] * mean, r["stderr"] * mean)
+                for r in own
+                if r["bins"] == bins
+            ]
+            shown = np.array(bars(axes, *style.SERIES[i]))
+            assert len(shown) > 5
+            for point in shown:
+                assert np.isclose(due, point, rtol=1e-9).all(axis=1).any()
+    marked = [line.get_ydata()[0] for line in short.lines if not line.get_clip_on()]
+    np.testing.assert_allclose(sorted(marked), sorted(exact_values) if sides.is_plain else [])
+
+
+# Which figures ------------------------------------------------------------------------------------
+
+
+def test_a_figure_is_made_for_what_it_shows():
+    called = {n for n, entry in FIGURES.items() if entry.is_called({"right_wall_time"})}
+    drawings = {n for n, entry in FIGURES.items() if not entry.tables}
+    assert called == drawings | {n for n, e in FIGURES.items() if "right_wall_time" in e.needs}
+    assert {"mean_wall_time", "pressure"} <= called
+    assert called.isdisjoint({"mean_hop_time", "volume", "wall_area", "hop_histogram"})
+    called = {n for n, entry in FIGURES.items() if entry.is_called(QUANTITIES, {"field": 1.5})}
+    assert called == {n for n, e in FIGURES.items() if e.tables and "field" not in e.without}
+
+
+def test_a_table_without_the_quantity_of_a_figure_is_named():
+    rows = [row for row in tables_of("paper")["mean_times"] if row["event"] == "horizontal_hop"]
+    assert [row["status"] for row in rows[-2:]] == ["impossible"] * 2
+    with style.context():
+        draw("mean_hop_time", PAPER, {"mean_times": rows[-2:]}).draw_without_rendering()
+        with pytest.raises(ValueError, match=r"mean_wall_time has no row of right_wall"):
+            draw("mean_wall_time", PAPER, {"mean_times": rows})
+
+
+# Laws and corners ---------------------------------------------------------------------------------
+
+
+def laws_in(axes):
+    """Return the dashed lines of the limiting laws, as (abscissae, ordinates)."""
+    return [line.get_data() for line in axes.lines if line.get_zorder() == 6]
+
+
+@pytest.mark.parametrize("box", OTHERS)
+def test_laws_of_plain_scenes_are_not_drawn_with_effects(box):
+    for name in ("mean_hop_time", "mean_collision_time", "mean_wall_time"):
+        assert not any(laws_in(axes) for axes in drawn(name, box).axes)
+        assert any(laws_in(axes) for axes in drawn(name, "paper").axes)
+
+
+def test_limiting_laws_run_into_the_curves():
+    """The law for small discs begins at the limit r → 0, and that of the end ends on the curve."""
+    small, last = laws_in(drawn("mean_collision_time", "paper").axes[0])
+    assert small[0][-1] == radius.SMALL * PAPER.largest_radius
+    assert small[1][0] == small_radius_time(PAPER, "disc_collision", small[0][0])
+    time = exact.mean_times(PAPER.scene(float(last[0][-1])))["disc_collision"]
+    assert last[1][-1] == pytest.approx(time, rel=1e-3)
+
+
+def test_times_approach_the_end_of_their_hop():
+    """The panel beneath: curves, estimates and laws over the distance from w/4 or h/4."""
+    lower = drawn("mean_hop_time", "paper").axes[2]
+    ends = {"vertical_hop": 0.375, "horizontal_hop": 0.25}
+    for (event, end), (distances, times) in zip(ends.items(), laws_in(lower), strict=True):
+        law = leading_law(PAPER, event)
+        np.testing.assert_allclose(times, law.coefficient * (end * distances) ** -2, rtol=1e-5)
+        assert distances.max() < radius.LAW
+    rows = [r for r in tables_of("paper")["mean_times"] if r["event"] == "horizontal_hop"]
+    shown = {x for line in lower.lines if line.get_marker() == "s" for x in line.get_xdata()}
+    assert shown == {1 - row["radius"] / 0.25 for row in rows if row["stderr"]}
+
+
+def test_blocked_hop_area_is_shown_as_zero():
+    axes = drawn("horizontal_hop_area", "paper").axes[0]
+    blocked = {r["radius"] for r in tables_of("paper")["volume"] if r["radius"] > 0.25}
+    shown = points(axes, *style.SERIES[0])
+    assert {(r, 0.0) for r in blocked} <= shown != set()
+
+
+def test_an_estimate_above_the_curve_is_in_the_picture():
+    first, *others = [
+        r for r in tables_of("paper")["areas"] if r["quantity"] == "vertical_hop_area"
+    ]
+    far = first | {"estimate": 1.2 * first["exact"], "stderr": 0.1 * first["exact"]}
+    with style.context():
+        main = draw("vertical_hop_area", PAPER, {"areas": [far, *others]}).axes[0]
+    assert main.get_ylim()[1] > (1.2 * first["exact"]) ** 0.5
+
+
+def test_curves_are_drawn_to_their_end_without_any_residual():
+    """Times from too few events for an error: a panel for them and one beneath."""
+    rows = [
+        row | {"stderr": None, "z": None, "status": "too-few"}
+        for row in tables_of("paper")["mean_times"]
+        if row["event"] in ("vertical_hop", "horizontal_hop") and row["estimate"]
+    ]
+    with style.context():
+        figure = draw("mean_hop_time", PAPER, {"mean_times": rows})
+    assert [axes.get_label() for axes in figure.axes] == ["main", "beneath"]
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("estimate", [1.4e-3, None])
+def test_a_single_value_has_an_ordinate_around_it(estimate):
+    """And there is one where nothing is known at all."""
+    alone = tables_of("paper")["volume"][0] | {"exact": None, "z": None, "estimate": estimate}
+    with style.context():
+        main = draw("volume", Box(3.0, 1.5, discs=8), {"volume": [alone]}).axes[0]
+    low, high = main.get_ylim()
+    assert low < (estimate or 1) < high
+    assert 2.9 < high / low < 10
+
+
+def test_every_status_has_its_symbol():
+    """A cross without an error, a caret for a bound, triangles for residuals beyond the panel."""
+    look, empty = style.SERIES[0], dict.fromkeys(("estimate", "stderr", "z", "bound"))
+    rows = [
+        {"radius": r, "test": "normal"} | empty | values
+        for r, values in {
+            0.1: {"estimate": 1.0, "stderr": 0.1, "z": 1.0},
+            0.15: {"estimate": 1.2, "z": -0.5},
+            0.2: {"bound": 3.0},
+            0.25: {"z": 0.0, "test": "certain"},
+            0.3: {"estimate": 2.0, "stderr": 0.1, "z": 9.0},
+            0.35: {"estimate": 2.0, "stderr": 0.1, "z": -40.0},
+        }.items()
+    ]
+    with style.context():
+        _, main, lower, _ = panels.over_radius(PAPER, "")
+        one = panels.Series("", rows, np.array([1.0, 1.0]))
+        panels.draw_series(main, lower, np.array([0.1, 0.2]), [one])
+    assert points(main, *look) == {(0.1, 1.0), (0.3, 2.0), (0.35, 2.0)}
+    assert points(main, look[0], "x") == {(0.15, 1.2)}
+    caret = [line for line in main.lines if not isinstance(line.get_marker(), str)]
+    assert [x for line in caret for x in line.get_xdata()] == [0.2]
+    assert points(lower, *look) == {(0.1, 1.0), (0.15, -0.5)}
+    assert points(lower, look[0], "^") == {(0.3, 0.97 * panels.LARGEST_RESIDUAL)}
+    assert points(lower, look[0], "v") == {(0.35, -0.97 * panels.LARGEST_RESIDUAL)}
+
+
+@pytest.mark.parametrize(
+    ("number", "text"), [(100.0, "100"), (3e-6, r"3\times10^{-6}"), (1e-5, "10^{-5}")]
+)
+def test_small_and_large_numbers_are_written_with_powers_of_ten(number, text):
+    assert panels.math_of(number) == text

@@ -1,0 +1,109 @@
+"""Figures of the motion: without it other hops, lines or bins could be shown than the table has."""
+
+import numpy as np
+import pytest
+from figure_cases import tables_of, unclear
+
+from twodiscs.comparison.scene_tables import Trajectory
+from twodiscs.figures import motion, style
+from twodiscs.model.box import Box
+
+BOX = Box(1.5, 1.0)
+
+
+def test_the_panels_beneath_show_most_hops_and_a_hop_that_is_not_undone():
+    hops = np.array([3.0, 40.0, 41.0, 42.0, 90.0])
+    assert motion._crowded(hops, 10.0, 0.0, 100.0) == (37.0, 47.0)
+    assert motion._crowded(hops[:1], 10.0, 0.0, 100.0) == (0.0, 10.0)
+    assert motion._crowded(hops[:0], 10.0, 0.0, 100.0) == (0.0, 10.0)
+    assert motion._lone(hops, 10.0, 0.0, 100.0) == 90
+    assert motion._lone(hops, 10.0, 0.0, 92.0) is None  # its stretch would go beyond the end
+    assert motion._lone(hops[1:4], 10.0, 0.0, 100.0) is None
+    assert motion._lone(hops[:1], 10.0, 0.0, 100.0) is None
+
+
+@pytest.mark.parametrize(
+    ("box", "axis"),
+    [
+        (BOX, "x"),
+        (Box(1.0, 1.0), "x"),
+        (Box(1.0, 1.5), "y"),
+        (Box(1.5, 1.0, {"periodic": "x"}), "y"),
+        (Box(1.0, 1.5, {"periodic": "y"}), "x"),
+        (Box(1.0, 1.5, {"periodic": "x"}), "y"),
+    ],
+    ids=str,
+)
+def test_the_longer_side_that_ends_at_walls_is_shown_with_its_hops(box, axis):
+    """The panel beneath enlarges a short trajectory too."""
+    rows = tables_of("paper")["trajectory"][:120]
+    with style.context():
+        figure = motion.draw_trajectory(box, rows, radius=0.24)
+        assert unclear(figure) == []
+    hop = "horizontal_hop" if axis == "x" else "vertical_hop"
+    times = [row["time"] for row in rows if row["event"] == hop]
+    for axes in figure.axes:
+        dots = next(line for line in axes.lines if line.get_marker() == "o")
+        assert list(dots.get_xdata()) == times
+        path = next(line.get_data() for line in axes.lines if line.get_color() == style.BLUE)
+        apart = [row[f"{axis}2"] - row[f"{axis}1"] for row in rows]
+        np.testing.assert_array_equal(path, [[row["time"] for row in rows], apart])
+    (start, end), (first, last) = (axes.get_xlim() for axes in figure.axes[:2])
+    assert last - first <= (end - start) / 3 * (1 + 1e-12)
+    assert start <= first < last <= end
+
+
+@pytest.mark.parametrize(("discs", "radius"), [(3, 0.2), (9, 0.1)])
+def test_lines_of_many_discs_are_those_of_the_trajectory(discs, radius):
+    """Few enough bends to follow. Hops are no bends: without them the lines are the same."""
+    rows = Trajectory.rows(Box(1.5, 1.0, discs=discs), radius, 1908)
+    with style.context():
+        figure = motion.draw_trajectory(Box(1.5, 1.0, discs=discs), rows, radius=radius)
+        assert unclear(figure) == []
+    whole, close = figure.axes
+    times = [row["time"] for row in rows if row["time"] <= whole.get_xlim()[1]]
+    for axes in figure.axes:
+        for disc, line in enumerate(axes.lines, 1):
+            assert len(line.get_xdata()) <= motion.BENDS * discs + 1 <= len(times)
+            places = [row[f"x{disc}"] for row in rows[: len(times)]]
+            assert np.interp(times, *line.get_data()) == pytest.approx(places, abs=1e-12)
+        assert len(axes.lines) == disc == discs
+    inside = close.lines[0].get_xdata() <= close.get_xlim()[1]
+    assert inside.sum() == motion.CLOSE_BENDS * discs + 1
+
+
+def test_of_very_many_discs_some_lines_are_drawn():
+    """They are spread evenly; the panel beneath is closer also if the trajectory is short."""
+    rng, box = np.random.default_rng(1), Box(9.0, 5.0, discs=50)
+    starts = np.sort(rng.uniform(-4.5, 4.5, 50))
+    places = {f"x{n}": x for n, x in enumerate(rng.permutation(starts), 1)}
+    rows = [{"time": float(t), "event": "disc_collision", **places} for t in range(400)]
+    with style.context():
+        whole, close = motion.draw_trajectory(box, rows).axes
+    assert close.get_xlim()[1] < whole.get_xlim()[1] / 2
+    drawn = np.sort([line.get_ydata()[0] for line in whole.lines])
+    assert len(drawn) == len(close.lines) == motion.LINES
+    assert (drawn[0], drawn[-1]) == (starts[0], starts[-1])
+    assert np.diff(np.searchsorted(starts, drawn)).max() <= 3
+
+
+def test_a_curve_ends_before_a_bin_that_holds_too_few():
+    rows = [
+        {"left": i / 4, "right": (i + 1) / 4, "count": n, "density": 2.0 * n, "stderr": 1.0 * n}
+        | {"exact_mean": 0.5}
+        for i, n in enumerate([500, 400, 9, 30])
+    ]
+    for fewest, shown in ((10, 2), (1, 4), (1000, 0)):
+        edges, density, errors = motion.curve(rows, fewest)
+        assert edges.tolist() == [i / 2 for i in range(shown + 1)]
+        assert density.tolist() == [row["count"] for row in rows[:shown]]
+        assert errors.tolist() == [row["count"] / 2 for row in rows[:shown]]
+
+
+def test_a_density_that_bins_are_too_wide_for_is_not_marked():
+    rows = [row for row in tables_of("paper")["hop_histogram"] if row["left"] == 0]
+    wide = [row | {"right": row["right"] + 0.2 * (i > 0)} for i, row in enumerate(rows)]
+    with style.context():
+        axes = [motion.draw_hop_histogram(BOX, r).axes[1] for r in (rows, wide)]
+    marked = [sum(not line.get_clip_on() for line in one.lines) for one in axes]
+    assert marked[0] > marked[1]
