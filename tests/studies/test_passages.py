@@ -123,18 +123,6 @@ def test_hops_in_a_file_are_those_of_monte_carlo(inertia):
     assert abs(hops.value - value) < 5 * math.hypot(hops.stderr, error)
 
 
-def test_hops_that_know_nothing_of_each_other_have_the_ratio_one(monkeypatch):
-    """Then a disc is displaced by 2 ν t ℓ² in the square, at ν hops in either direction."""
-    scene, hops = Scene(3.0, 1.0, 0.2, discs=4, periodic="x"), 24
-    way = scene.width / scene.discs * math.sqrt(hops / 2)  # in half of the time
-    ways = way * np.array([[0, 0, 0, 0], [1, -1, 1, -1], [2, -2, 0, 0]])
-    places = ways[:, :, None] + np.random.default_rng(1).random((4, 2))
-    monkeypatch.setattr(file, "recorded", lambda *given: (places, np.full(2, hops)))
-    moved, rate = walked(scene, 16.0, 2, 3)
-    assert moved.value == pytest.approx(1, rel=1e-12)
-    assert rate.value == pytest.approx(hops / 32, rel=1e-12)
-
-
 def test_discs_that_cannot_pass_stay_in_their_file():
     scene, replicas = Scene(2.25, 1.0, 0.26, discs=3, periodic="x"), 64
     states = file.initial.states(scene, replicas, 5)
