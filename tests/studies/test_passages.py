@@ -155,6 +155,9 @@ def test_damped_sound_has_its_limits():
     assert early == pytest.approx(root * 0.75 * 3, rel=0.03)
     late = 2 * 0.75 * root * math.sqrt(256 / (16 * math.pi))
     assert file.damped(scene, variance, 16 * speed, 256 / speed) == pytest.approx(late, rel=0.05)
+    # In squares of the length of the ring for a disc.
+    due = file.damped(scene, variance, speed, 9.0) / 0.75**2
+    assert file.law(scene, speed, 9.0, variance) == pytest.approx(due, rel=1e-12)
 
 
 def test_sound_comes_back_around_the_ring():
