@@ -165,7 +165,7 @@ def exact_table(
     """
     import pandas as pd
 
-    box = box_with(width, height, effects)
+    box = box_with(width, height, **effects)
     scenes, refused = scenes_of(box, radii)
     rows = [
         {
@@ -188,12 +188,9 @@ def exact_table(
     return frame
 
 
-def box_with(width, height, effects):
-    """Return the ``Box`` of sides, effects and ``discs``, which may be among the ``effects``."""
-    if not isinstance(effects, dict) or "discs" not in effects:
-        return Box(width, height, effects)
-    rest = {name: value for name, value in effects.items() if name != "discs"}
-    return Box(width, height, rest, effects["discs"])
+def box_with(width, height, discs=2, **effects):
+    """Return the ``Box`` of sides, ``discs`` and effects, which are all keywords here."""
+    return Box(width, height, effects, discs)
 
 
 def scenes_of(box, radii):

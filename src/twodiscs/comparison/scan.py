@@ -177,7 +177,7 @@ def scan(
     >>> [abs(part["any_wall_time"].z) < 5 for part in found]
     [True, True]
     """
-    box = box_with(width, height, effects)
+    box = box_with(width, height, **effects)
     scenes, refused = scenes_of(box, radii)
     if len({scene.radius for scene in scenes}) < len(scenes):
         raise InputError(

@@ -123,7 +123,10 @@ class Stage:
         above = {"xycoords": "axes fraction", "ha": "left", "va": "bottom", "fontsize": 9}
         text = ",\n".join(panels.heading(box, more))
         drawing.label(self.box, text, (0, 1), (-72 * spare, 5 + up), **above)
-        self._draw_strip()
+        self.strip = panels.add_panel(self.figure, BOTTOM, STRIP, LEFT, ACROSS - LEFT - RIGHT)
+        times = self.path(self.times[0], self.times[-1])
+        self.strip.set(xlim=(times[0], times[-1]), xlabel="time $t$")
+        self._draw_strip(times)
         self.moving = self._moving((-x, x, -y, y))
 
     def _more(self, rows):
@@ -200,14 +203,11 @@ class Stage:
         axis = "xy".index(self.axis)
         return self.folded(self.places(2, times) - self.places(1, times))[:, axis]
 
-    def _draw_strip(self):
+    def _draw_strip(self, times):
         """Draw the separation over the whole time, below the box."""
-        self.strip = panels.add_panel(self.figure, BOTTOM, STRIP, LEFT, ACROSS - LEFT - RIGHT)
-        times = self.path(self.times[0], self.times[-1])
         apart = self.apart(times)
         most = 1.1 * np.abs(apart).max()
-        self.strip.set(xlim=(times[0], times[-1]), ylim=(-most, most), xlabel="time $t$")
-        self.strip.set_ylabel(f"${self.axis}_2-{self.axis}_1$")
+        self.strip.set(ylim=(-most, most), ylabel=f"${self.axis}_2-{self.axis}_1$")
         self.strip.axhline(0, color=GREY, lw=0.5)
         self.strip.plot(times, apart, color="#C8C8C8", lw=0.8)
 
@@ -306,11 +306,9 @@ class StageOfMany(Stage):
         self.colours = motion.colours(box, rows[0])
         super().__init__(box, radius, rows)
 
-    def _draw_strip(self):
+    def _draw_strip(self, times):
         axis, side = motion.along(self.of), max(self.of.width, self.of.height)
-        self.strip = panels.add_panel(self.figure, BOTTOM, STRIP, LEFT, ACROSS - LEFT - RIGHT)
-        times = self.path(self.times[0], self.times[-1])
-        self.strip.set(xlim=(times[0], times[-1]), ylabel=f"${axis}$", xlabel="time $t$")
+        self.strip.set_ylabel(f"${axis}$")
         if axis not in self.scene.periodic:  # on it positions go on beyond the box
             self.strip.set_ylim(-side / 2, side / 2)
         for disc, colour in enumerate(self.colours, 1):
