@@ -108,13 +108,13 @@ def _pilot(run, name, seconds):
     replicas = engine.block_replicas(scene)
     sums, blocks, each = timed(part.work, seconds, -(-FEWEST_REPLICAS // replicas))
     if name == "all":
-        replicas_done = blocks * replicas
-        errors = dict(zip(EVENTS, relative_errors(*sums, replicas_done).tolist(), strict=True))
-        for event, count in zip(EVENTS, sums[0].tolist(), strict=True):
-            expected = engine.expected_rate(scene, event) * engine.replica_duration(scene)
-            if count < FEWEST_COUNTS and expected:
-                errors[event] = math.sqrt(CLUSTER / (expected * replicas_done))
-        errors = {event: errors[event] for event in run.target if scene.is_possible(event)}
+        number, errors = blocks * replicas, {}
+        measured = relative_errors(*sums, number).tolist()
+        for event, count, error in zip(EVENTS, sums[0].tolist(), measured, strict=True):
+            if event in run.target and scene.is_possible(event):
+                expected = engine.expected_rate(scene, event) * engine.replica_duration(scene)
+                few = count < FEWEST_COUNTS and expected
+                errors[event] = math.sqrt(CLUSTER / (expected * number)) if few else error
     else:
         error = float(part.excess_of(sums, blocks)[0])
         if not math.isfinite(error):
@@ -235,10 +235,20 @@ def _prices_of_samples(scene, shell):
 
 
 def variances(scene, sampler, sums, blocks):
-    """Return {quantity: (squared relative error of a block, floor)}, without those not known."""
-    if scene.discs > 2:
-        return _variances_of_weights(scene, sampler, sums, blocks)
-    return _variances_of_hits(scene, sampler.constants["quantities"], sampler.block)
+    """Return {quantity: (squared relative error of a block, floor)}, without those not known.
+
+    They follow from exact values for two discs, from the sums of the ``blocks`` for more.
+    """
+    if scene.discs == 2:
+        return _variances_of_hits(scene, sampler.constants["quantities"], sampler.block)
+    point = sampler.point({(0, blocks): (sums,)})
+    sampled = {quantity: point.sampled(quantity) for quantity in point.quantities}
+    sampled["any_wall_area"] = point.all_walls(scene)
+    return {
+        quantity: (one.estimate.relative_stderr**2 * blocks, 0.0)
+        for quantity, one in sampled.items()
+        if one is not None and one.estimate is not None
+    }
 
 
 def _variances_of_hits(scene, sampled, samples):
@@ -268,18 +278,6 @@ def _variances_of_hits(scene, sampled, samples):
         quantity: (variance / samples, abs(value / areas[quantity] - 1))
         for quantity, (variance, value) in expected.items()
         if areas[quantity]
-    }
-
-
-def _variances_of_weights(scene, sampler, sums, blocks):
-    """Return {quantity: (squared relative error of a block of insertions, 0)} from their sums."""
-    point = sampler.point({(0, blocks): (sums,)})
-    sampled = {quantity: point.sampled(quantity) for quantity in point.quantities}
-    sampled["any_wall_area"] = point.all_walls(scene)
-    return {
-        quantity: (one.estimate.relative_stderr**2 * blocks, 0.0)
-        for quantity, one in sampled.items()
-        if one is not None and one.estimate is not None
     }
 
 
