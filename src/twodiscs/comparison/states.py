@@ -8,9 +8,6 @@ from twodiscs.comparison.result import progress_bar, seed_of
 from twodiscs.model.checks import answering, check_count
 from twodiscs.model.scene import Scene, check_scene
 
-#: The velocity along each axis.
-VELOCITIES = {"x": "u", "y": "v", "z": "w"}
-
 
 @answering
 def starts(

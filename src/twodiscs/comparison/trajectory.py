@@ -10,7 +10,6 @@ import pandas as pd
 
 from twodiscs.comparison.result import progress_bar, seed_of
 from twodiscs.comparison.scene_tables import trajectory_columns
-from twodiscs.comparison.states import VELOCITIES
 from twodiscs.dynamics.trajectory import followed
 from twodiscs.model.box import parameters_of, scene_of
 from twodiscs.model.checks import InputError, answering, as_list, quote, writing_to
@@ -243,8 +242,8 @@ def _fly(scene, states, since):
 
 def _coordinates(scene):
     """Return (axis, name of the coordinate, name of its velocity) of all axes and discs."""
-    discs = range(1, scene.discs + 1)
-    return [(axis, f"{axis}{n}", f"{VELOCITIES[axis]}{n}") for axis in scene.axes for n in discs]
+    discs, axes = range(1, scene.discs + 1), zip(scene.axes, "uvw", strict=False)
+    return [(axis, f"{axis}{n}", f"{velocity}{n}") for axis, velocity in axes for n in discs]
 
 
 def require_all_rows(trajectory, scene):
