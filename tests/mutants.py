@@ -87,7 +87,7 @@ MUTANTS = [
     ("two blocks, one stream", "np.uint64(block) * MIX_2", "np.uint64(block // 2) * MIX_2"),
     ("law of the flux through a hop", "rest = largest_of(state, 3)", "rest = largest_of(state, 2)"),
     ("orders of x and y as one", "else (1 if bits & np.uint64(1 << 61) else -1)", "else (1 if bits & np.uint64(1 << 62) else -1)"),
-    ("power of the energy on a surface", "dx, dy, dz, prism.components - 1)", "dx, dy, dz, prism.components - 2)"),
+    ("power of the energy on a surface", "(2 if axis < 0 else 1)", "(2 if axis < 0 else 2)"),
     ("momentum not conserved", "= -relative * prism.fractions[1]\n            used", "= relative * prism.fractions[1]\n            used"),
     ("height of the wrong disc", "weights[1] * (y2 + half2)", "weights[1] * (y2 + half1)"),
     ("error of strata", "np.sum(shares**2 * variances)", "np.sum(shares * variances)"),

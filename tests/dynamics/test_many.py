@@ -174,18 +174,16 @@ def test_a_disc_at_rest_and_discs_that_touch():
     y = np.zeros((3, 2))
     u = np.array([[0.6, -0.6], [0.0, 0.0], [0.0, 0.0]])
     v = np.array([[0.0, 0.0], [0.0, 0.0], [0.8, 0.8]])
-    old_x, old_y = np.zeros((3, 2)), np.zeros((3, 2))
-    times, codes, speeds, counts = np.zeros(2), np.zeros(2), np.zeros(2), np.zeros((many.N, 2))
-    remaining = np.full(2, 100.0)
-    many.find_events(x, y, u, v, remaining, times, codes, speeds, law)
-    assert times[0] == 0.0
-    assert codes.tolist() == [7.0, 6.0]
-    assert times[1] == pytest.approx(4.5 / 0.8)
-    many.advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, True)
-    assert (u[0, 0], u[1, 0]) == (0.0, 0.6)
-    assert counts[:, 0].tolist() == [0.0, 0.0, 1.0, 0.0, 0.0]
-    assert counts[:, 1].tolist() == [0.0, 0.0, 0.0, 0.0, 1.0]
-    assert y[2, 1] == law.half_y
+    lanes = many.lanes_of(np.vstack([x, y, u, v]), np.full(2, 100.0), law)
+    many.find_events(lanes, law)
+    assert lanes.times[0] == 0.0
+    assert lanes.codes.tolist() == [7.0, 6.0]
+    assert lanes.times[1] == pytest.approx(4.5 / 0.8)
+    many.advance(lanes, law, True)
+    assert (lanes.u[0, 0], lanes.u[1, 0]) == (0.0, 0.6)
+    assert lanes.counts[:, 0].tolist() == [0.0, 0.0, 1.0, 0.0, 0.0]
+    assert lanes.counts[:, 1].tolist() == [0.0, 0.0, 0.0, 0.0, 1.0]
+    assert lanes.y[2, 1] == law.half_y
 
 
 @pytest.mark.parametrize(("width", "discs"), [(1.0, 3), (3.0, 8)])
@@ -198,6 +196,6 @@ def test_a_flight_on_a_ring_ends_before_a_third_image_comes_near(width, discs):
     x, y = np.zeros((discs, 1)), np.linspace(-0.35, 0.35, discs)[:, None].copy()
     u, v = np.zeros((discs, 1)), np.zeros((discs, 1))
     u[0], u[1] = 1 / fastest, -1 / fastest
-    left, times, codes, speeds = np.full(1, np.inf), np.zeros(1), np.zeros(1), np.zeros(1)
-    many.find_events(x, y, u, v, left, times, codes, speeds, law)
-    assert times[0] * fastest <= width / 2 * (1 + 1e-15)
+    lanes = many.lanes_of(np.vstack([x, y, u, v]), np.full(1, np.inf), law)
+    many.find_events(lanes, law)
+    assert lanes.times[0] * fastest <= width / 2 * (1 + 1e-15)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from twodiscs.dynamics.many import cells as many_cells
-from twodiscs.dynamics.many import engine, path
+from twodiscs.dynamics.many import engine
 from twodiscs.dynamics.many import lockstep as many
 from twodiscs.dynamics.many.engine import mean_interval
 from twodiscs.model.scene import Scene
@@ -102,9 +102,9 @@ def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
     # The rate that is guessed for short rings is far too high.
     duration = engine.duration_of(scene, (10 if scene in SHORT else 5) * scene.discs)
     monkeypatch.setattr(engine, "ENTRIES", 50)
-    found = [*path.events_of(scene, state, duration)]
-    monkeypatch.setattr(path, "large_grid", lambda scene: None)
-    other = [*path.events_of(scene, state, duration)]
+    found = [*engine.events_of(scene, state, duration)]
+    monkeypatch.setattr(engine, "large_grid", lambda scene: None)
+    other = [*engine.events_of(scene, state, duration)]
     assert len(found) > (2 if scene in SHORT else 5) * scene.discs
     assert [row[1:4] for row in found] == [row[1:4] for row in other]
     for (time, *_, now), (same, *_, then) in zip(found, other, strict=True):
@@ -180,7 +180,7 @@ STAYING = {
 def test_nothing_overlaps_or_drifts(name, events):
     """In each row, where discs are level at hops and touch at collisions; and for a long time."""
     scene, states = STAYING[name], initial.states(STAYING[name], 1, 1)
-    rows = path.events_of(scene, states[:, 0], engine.duration_of(scene, 2000))
+    rows = engine.events_of(scene, states[:, 0], engine.duration_of(scene, 2000))
     for _, event, first, second, state in itertools.islice(rows, 20_000 // scene.discs):
         check_state(scene, state, 1e-12)
         x, y, *_ = np.reshape(state, (-1, scene.discs))

@@ -14,7 +14,7 @@ from sampling.uniformity import assert_uniform_on_sphere
 
 import twodiscs as td
 from twodiscs.dynamics import trajectory
-from twodiscs.dynamics.many import engine, path
+from twodiscs.dynamics.many import engine
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial
 from twodiscs.theory.exact import replicas_needed
@@ -36,7 +36,7 @@ def test_two_discs_are_those_of_the_engine_of_two(periodic, inertia):
     start = initial.states(scene, 1, 5)[:, 0]
     # x1, x2, y1, y2, u1, u2, v1, v2, s1, s2 and x1, y1, x2, y2, u1, v1, u2, v2, s1, s2.
     order = [0, 2, 1, 3, 4, 6, 5, 7, 8, 9][: start.size]
-    found = [*path.events_of(scene, start, 12.0)]
+    found = [*engine.events_of(scene, start, 12.0)]
     other = [*trajectory.events_of(scene, tuple(start[order]), 12.0)]
     assert len(found) > 30
     for (time, *event, state), (due, *same, known) in zip(found, other, strict=True):
@@ -121,7 +121,7 @@ def test_a_kick_keeps_places_energy_and_momentum(scene):
         # Another momentum along the ring, which has to stay.
         start[2 * scene.discs : 3 * scene.discs] += 0.1
         start[2 * scene.discs :] /= np.linalg.norm(start[2 * scene.discs :])
-    rows = [*path.events_of(scene, start, time, seed=3)]
+    rows = [*engine.events_of(scene, start, time, seed=3)]
     names = Counter(row[1] for row in rows)
     assert abs(names["kick"] - scene.friction * time) <= 5 * math.sqrt(scene.friction * time)
     momentum = start[2 * scene.discs : 3 * scene.discs].sum()
@@ -135,7 +135,7 @@ def test_a_kick_keeps_places_energy_and_momentum(scene):
             old_x, old_y, old_u, _ = np.split(old, 4)
             assert x == pytest.approx(old_x + old_u * (now - before), abs=1e-9)
             assert y == pytest.approx(old_y + w * (now - before), abs=1e-9)
-    other = [*path.events_of(scene, start, time, seed=4)]
+    other = [*engine.events_of(scene, start, time, seed=4)]
     assert np.array_equal(other[0][-1], rows[0][-1])
     assert not np.array_equal(other[-1][-1], rows[-1][-1])
 

@@ -273,7 +273,7 @@ def parts_of(scene, hop, mean, gap, times, blocks, name, seed):
     seeds = {what: hop_seed(scene, hop, name, seed, what) for what in ("clusters", "times")}
     passages, engine = passages_of(scene), engine_of(scene)
     events = HOPS_OF_BLOCK * engine.expected_event_rate(scene)
-    work = engine.work_per_event(scene) * chains_of(scene).interval_cost(scene)
+    work = engine.work_per_event(scene) * chains_of(scene).cost_ratio(scene)
 
     def clusters(first, stop):
         sizes, _ = passages.cluster_sizes(scene, hop, gap, stop - first, seeds["clusters"], first)

@@ -20,7 +20,7 @@ from functools import cached_property
 import numpy as np
 
 from twodiscs.dynamics.ensemble import RETURNS, nearest_power_of_two
-from twodiscs.dynamics.two import strip
+from twodiscs.dynamics.two import lockstep, returns, strip
 from twodiscs.model.box import key, stream_seed
 from twodiscs.model.checks import (
     InputError,
@@ -33,7 +33,7 @@ from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.scene import Scene, check_scene, why_absent
 from twodiscs.points.dynamics import DynamicsPoint, simulated_events
 from twodiscs.points.intervals import BINS, GRAIN, IntervalsPoint, wide_edges
-from twodiscs.sampling.rounds import SequentialRun, all_in_rounds, fixed, on_grid
+from twodiscs.sampling.rounds import Run, SequentialRun, fixed, on_grid
 from twodiscs.sampling.starts import require_room
 from twodiscs.theory.exact import replicas_needed
 
@@ -69,10 +69,10 @@ def run_of(stage, scene, settings):
 
 def engine_of(scene):
     """Return the module that counts the events of a ``Scene``: of two discs, or of many."""
-    if check_scene(scene).discs > 2:
-        from twodiscs.dynamics.many import engine
-    else:
-        from twodiscs.dynamics.two import lockstep as engine
+    if check_scene(scene).discs == 2:
+        return lockstep
+    from twodiscs.dynamics.many import engine
+
     return engine
 
 
@@ -116,7 +116,7 @@ def count_events(scene, target, budget, seed):
 
 
 @dataclass(frozen=True)
-class CountingRun:
+class CountingRun(Run):
     """``count_events`` in blocks, with checked arguments."""
 
     scene: Scene
@@ -175,9 +175,7 @@ class CountingRun:
         most = min(1.0, budget / total)
         return {
             name: replace(
-                run,
-                budget=run.budget * events[name] / total,
-                planned=on_grid(run.planned * most),
+                run, budget=run.budget * events[name] / total, planned=on_grid(run.planned * most)
             )
             for name, run in runs.items()
         }
@@ -201,8 +199,9 @@ class CountingRun:
         needed = np.array([replicas_needed(scene, e, self.target[e]) for e in self._waited])
         needed = needed / each
         needed = np.ceil(np.where(needed * block_events <= budget, needed, 0.0))
-        planned = max(replicas, default=0.0) / each
-        planned = max([planned, *needed])
+        planned = max([max(replicas, default=0.0) / each, *needed])
+        if scene.discs > 2:  # rare hops of two discs have their own parts
+            planned = min(planned, budget / block_events)
 
         def excess_of(sums, blocks):
             errors = relative_errors(*sums, blocks * each)[index] / goals
@@ -214,7 +213,7 @@ class CountingRun:
             lambda sums: max(1, simulated_events(sums[0])),
             block_events,
             budget,
-            on_grid(engine.planned(planned, budget / block_events)),
+            on_grid(planned),
             engine.cost_ratio(scene),
         )
 
@@ -234,13 +233,6 @@ class CountingRun:
     @property
     def _target(self):
         return {event: self.target[event] for event in self._events}
-
-    def run(self, progress=None, cores=1, kept=None):
-        """Do all work in this process and return the ``DynamicsPoint``.
-
-        ``kept`` are the parts of an earlier run, which are not done again (see ``all_in_rounds``).
-        """
-        return self.point(all_in_rounds(self.parts, progress, cores, kept))
 
 
 def relative_variance(count):
@@ -300,15 +292,8 @@ class TimedRun(CountingRun):
         """The ``SequentialRun`` of all blocks, {"all": run}."""
         engine = engine_of(self.scene)
         each = engine.replica_duration(self.scene) * engine.block_replicas(self.scene)
-        blocks, waited = max(1, math.ceil(self.duration / each)), len(self._waited)
-        run = replace(
-            self._everything(self.most_events),
-            excess_of=lambda sums, blocks: np.zeros(waited),
-            budget=math.inf,
-            planned=blocks,
-            first_round=blocks,
-        )
-        return {"all": run}
+        blocks, run = max(1, math.ceil(self.duration / each)), self._everything(self.most_events)
+        return {"all": fixed(run.work, blocks, run.block_events, run.cost_ratio)}
 
 
 # Intervals --------------------------------------------------------------------------------------
@@ -316,11 +301,7 @@ class TimedRun(CountingRun):
 
 def chains_of(scene):
     """Return the module that records the intervals of a ``Scene``: of two discs, or of many."""
-    if scene.discs > 2:
-        from twodiscs.dynamics.many import engine as chains
-    else:
-        from twodiscs.dynamics.two import returns as chains
-    return chains
+    return returns if scene.discs == 2 else engine_of(scene)
 
 
 def recorded(scene, event, seed, first, stop, going):
@@ -356,7 +337,7 @@ def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
 
 
 @dataclass(frozen=True)
-class IntervalRun:
+class IntervalRun(Run):
     """``hop_intervals`` in blocks, with checked arguments."""
 
     scene: Scene
@@ -425,7 +406,7 @@ class IntervalRun:
                 moments += [joint, sum(n), sum(each * each for each in n)]
             return sums, np.array(moments, object)
 
-        ratio = chains_of(self.scene).interval_cost(self.scene)
+        ratio = chains_of(self.scene).cost_ratio(self.scene)
         return {"all": fixed(work, self._blocks, self._each * self._events, ratio)}
 
     def point(self, pieces):
@@ -440,12 +421,9 @@ class IntervalRun:
         return IntervalsPoint.of(self.scene.radius, {"all": part})
 
     def run(self, progress=None, cores=1, kept=None):
-        """Do all work in this process and return the ``IntervalsPoint``.
-
-        ``kept`` are the parts of an earlier run, which are not done again (see ``all_in_rounds``).
-        """
+        """Return the ``IntervalsPoint``; stop long kernels if nobody waits any more."""
         try:
-            return self.point(all_in_rounds(self.parts, progress, cores, kept))
+            return super().run(progress, cores, kept)
         except BaseException:
             self._going[0] = False
             raise

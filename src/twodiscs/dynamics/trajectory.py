@@ -1,16 +1,15 @@
-"""One trajectory, event by event: ``two.path`` follows two discs, ``many.path`` more."""
+"""One trajectory, event by event: ``two.path`` follows two discs, ``many.engine`` more."""
 
 from itertools import islice, repeat
 
-from twodiscs.model.checks import (
-    InputError,
-    check_integer,
-    check_length,
-    format_number,
-)
+import numpy as np
+
+from twodiscs.dynamics.two import path
+from twodiscs.model.checks import InputError, check_integer, check_length, format_number
 from twodiscs.model.scene import check_scene
+from twodiscs.model.two import ENERGY
 from twodiscs.sampling.rounds import in_threads
-from twodiscs.sampling.starts import MOST_NUMBERS, components, states
+from twodiscs.sampling.starts import MOST_NUMBERS, ROUNDING, components, given_state, states
 
 #: The most events of a trajectory, because all its rows are kept. Those of many discs have at most
 #: ``MOST_NUMBERS``.
@@ -30,11 +29,11 @@ def path_of(scene):
     block)`` returns the kicks of the states of a block, from the streams of ``seed``; they go on
     from one call to the next, and are None without friction.
     """
-    if check_scene(scene).discs > 2:
-        from twodiscs.dynamics.many import path
-    else:
-        from twodiscs.dynamics.two import path
-    return path
+    if check_scene(scene).discs == 2:
+        return path
+    from twodiscs.dynamics.many import engine
+
+    return engine
 
 
 def events_of(scene, state, duration, seed=0):
@@ -51,10 +50,43 @@ def state_of(scene, start):
     """Return ``start`` as a state of the ``Scene``, in the form that ``events_of`` takes.
 
     ``start`` is one of ``sampling.starts.records``, or as many numbers. On periodic axes any image
-    serves. Raises ``InputError`` for anything else, for discs that overlap or lie outside, and for
-    another energy than 1/2.
+    serves, and it stays. Raises ``InputError`` for anything else, for discs that overlap or lie
+    outside, and for another energy than 1/2.
     """
-    return path_of(scene).state_of(scene, start)
+    state = dict(zip(components(scene), given_state(scene, start), strict=True))
+
+    def of_discs(name):
+        return np.array([state[f"{name}{disc}"] for disc in range(1, scene.discs + 1)])
+
+    radii, masses, distances = np.array(scene.radii), np.array(scene.masses), 0.0
+    for axis in scene.axes:
+        side, centres = scene.side(axis), of_discs(axis)
+        apart = centres[:, None] - centres
+        if axis in scene.periodic:
+            apart -= side * np.round(apart / side)
+        distances = np.hypot(distances, apart)
+        most = side / 2 - radii
+        for disc in np.flatnonzero(np.abs(centres) > most + ROUNDING * side):
+            if axis in scene.walled:
+                raise InputError(
+                    f"start must have disc {disc + 1} inside the box, with {axis}{disc + 1} "
+                    f"between {-float(most[disc])!r} and {float(most[disc])!r}, not "
+                    f"{float(centres[disc])!r}"
+                )
+    distance, contact = distances[np.triu_indices(scene.discs, 1)].min(), scene.contact_distance
+    if distance < contact * (1 - ROUNDING):
+        raise InputError(
+            f"start must have the discs apart, with {contact!r} or more between their centres, not "
+            f"{float(distance)!r}"
+        )
+    energy = masses @ sum(of_discs(name) ** 2 for name in "uvw"[: len(scene.axes)]) / 2
+    if scene.moment_of_inertia is not None:
+        energy += scene.moment_of_inertia * (masses @ of_discs("s") ** 2) / 2
+    if scene.field:
+        energy += scene.field * (masses @ (of_discs("y") + scene.height / 2 - radii))
+    if abs(energy - ENERGY) > ROUNDING:
+        raise InputError(f"start must have a total energy of {ENERGY}, not {float(energy)!r}")
+    return tuple(state.values())
 
 
 def followed(scene, seed, start=None, duration=None, progress=None):

@@ -33,7 +33,7 @@ from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
 from twodiscs.model.scene import Scene, check_scene, check_two
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.prism import kinetic_fraction, power_chance, prism_of, propose_in_prism
-from twodiscs.sampling.rounds import Sampler, all_in_rounds, fixed
+from twodiscs.sampling.rounds import Run, Sampler, check_quantities, fixed
 from twodiscs.sampling.separations import propose_separation, separation_sampler
 from twodiscs.sampling.streams import GOLDEN, next_bits, open_stream, splitmix, uniform
 from twodiscs.theory import exact
@@ -251,8 +251,7 @@ def _drawn(sampler, samples):
 def in_prism(scene, quantities, shell, seed):
     """Return the ``Sampler`` of ``sample_point`` for a plain scene."""
     wanted, epsilon = _shells(scene, quantities, shell)
-    seed, sigma = check_integer("seed", seed, 0), scene.contact_distance
-    ranges = {"x": scene.range_x, "y": scene.range_y}
+    sigma, ranges = scene.contact_distance, {"x": scene.range_x, "y": scene.range_y}
 
     def first_grain(axis, side, thick):
         """Return the first grain in the shell of a wall, for a wall at the low side the last."""
@@ -260,17 +259,9 @@ def in_prism(scene, quantities, shell, seed):
         return first if side > 0 else 2**32 - 1 - first
 
     ends = shell_ends(epsilon, lambda thick: (sigma + thick) * (sigma + thick), first_grain)
-    shells, prism = True if any(epsilon) else None, (scene.range_x * scene.range_y) ** 2
-
-    def count(first, stop):
-        return sample_blocks(np.uint64(seed), first, stop, *ranges.values(), sigma, ends, shells)
-
-    return Sampler(
-        scene.radius,
-        BLOCK,
-        count,
-        _constants(scene, "monte_carlo", wanted, epsilon, BLOCK, prism),
-    )
+    arguments = *ranges.values(), sigma, ends, True if any(epsilon) else None
+    prism = (scene.range_x * scene.range_y) ** 2
+    return _sampler(scene, seed, wanted, epsilon, BLOCK, prism, sample_blocks, arguments)
 
 
 def _shelled(scene):
@@ -280,11 +271,7 @@ def _shelled(scene):
 
 def _shells(scene, quantities, shell):
     """Return (the set of "volume" and events to sample, ε for each event with a shell or 0)."""
-    allowed = ("volume", *(f"{event}_area" for event in check_scene(scene).events))
-    for quantity in quantities:
-        check_choice("quantity", quantity, allowed)
-    if not quantities:
-        raise InputError("quantities must name at least one quantity, but is empty")
+    check_quantities(scene, quantities)
     shell = check_fraction("shell", shell)
     wanted = {quantity.removesuffix("_area") for quantity in quantities}
     if "any_wall" in wanted and "any_wall" not in _shelled(scene):
@@ -293,12 +280,14 @@ def _shells(scene, quantities, shell):
     return wanted, thickness
 
 
-def _constants(scene, method, wanted, epsilon, block, measure):
-    """Return the constants of a ``MonteCarloPoint``; ``measure`` is the volume that samples fill.
+def _sampler(
+    scene, seed, wanted, epsilon, block, measure, kernel, arguments, method="monte_carlo", ratio=1.0
+):
+    """Return a ``Sampler`` whose blocks ``kernel(seed, first, stop, *arguments)`` counts.
 
-    A ``block`` has this number of samples.
+    A ``block`` has this number of samples; ``measure`` is the volume that they fill.
     """
-    sampled = {}
+    seed, sampled = np.uint64(check_integer("seed", seed, 0)), {}
     if "volume" in wanted:
         sampled["volume"] = {"place": 0, "measure": measure, "epsilon": None}
     # A hop's shell has two sides. For all walls, a sample looks at one disc and one of its walls.
@@ -311,7 +300,13 @@ def _constants(scene, method, wanted, epsilon, block, measure):
             }  # fmt: skip
     joined = {"right_wall", "top_wall"} <= wanted and "any_wall" not in _shelled(scene)
     both = SETS - 1 if joined else None
-    return {"method": method, "samples": block, "quantities": sampled, "right_and_top": both}
+    constants = {
+        "method": method, "samples": block, "quantities": sampled, "right_and_top": both,
+    }  # fmt: skip
+    return Sampler(
+        scene.radius, block, lambda first, stop: kernel(seed, first, stop, *arguments), constants,
+        ratio,
+    )  # fmt: skip
 
 
 @compiled
@@ -362,24 +357,17 @@ def conditioned_point(scene, quantities, samples, shell, seed):
 def conditioned(scene, quantities, shell, seed):
     """Return the ``Sampler`` of ``conditioned_point``."""
     wanted, epsilon = _shells(scene, quantities, shell)
-    seed, separations, sigma = (
-        check_integer("seed", seed, 0),
-        separation_sampler(scene),
-        scene.contact_distance,
-    )
+    separations, sigma = separation_sampler(scene), scene.contact_distance
     ranges = {"x": scene.range_x, "y": scene.range_y}
     ends = shell_ends(
         epsilon,
         lambda thick: thick * (2.0 * sigma + thick),
         lambda axis, side, thick: -thick if side > 0 else thick - ranges[axis],
     )
-    return Sampler(
-        scene.radius,
-        PROPOSALS,
-        lambda first, stop: propose_blocks(np.uint64(seed), first, stop, separations, ends),
-        _constants(scene, "conditioned", wanted, epsilon, PROPOSALS, 2 * separations.mass),
-        COST_RATIO,
-    )
+    return _sampler(
+        scene, seed, wanted, epsilon, PROPOSALS, 2 * separations.mass, propose_blocks,
+        (separations, ends), "conditioned", COST_RATIO,
+    )  # fmt: skip
 
 
 # Scenes with effects ----------------------------------------------------------------------------
@@ -401,10 +389,8 @@ def _weighted_collision(event):
 
 
 def _weighted_wall(event):
-    k = "xy".index(event.axis)
-    if event.side > 0:
-        return lambda state, prism, centre, apart, end: prism.half_1[k] - centre[k] <= end
-    return lambda state, prism, centre, apart, end: prism.half_1[k] + centre[k] <= end
+    k, side = "xy".index(event.axis), float(event.side)
+    return lambda state, prism, centre, apart, end: prism.half_1[k] - side * centre[k] <= end
 
 
 def _at_random_wall(state, prism, centre, separation, end):
@@ -517,16 +503,13 @@ def weighted(scene, quantities, shell, seed):
     """Return the ``Sampler`` of ``sample_point`` for a scene with effects."""
     wanted, epsilon = _shells(scene, quantities, shell)
     # Configuration space has no spins: without them there is one kernel less to compile.
-    seed, prism = check_integer("seed", seed, 0), prism_of(scene)._replace(inertia=None)
+    prism = prism_of(scene)._replace(inertia=None)
     ends, axes = weighted_ends(scene, epsilon), range(len(scene.axes))
     measure = math.prod(4 * prism.half_1[axis] * prism.half_2[axis] for axis in axes)
-    return Sampler(
-        scene.radius,
-        BLOCK,
-        lambda first, stop: weighted_blocks(np.uint64(seed), first, stop, prism, ends),
-        _constants(scene, "monte_carlo", wanted, epsilon, BLOCK, measure),
-        WEIGHTED_COST_RATIO,
-    )
+    return _sampler(
+        scene, seed, wanted, epsilon, BLOCK, measure, weighted_blocks, (prism, ends),
+        ratio=WEIGHTED_COST_RATIO,
+    )  # fmt: skip
 
 
 # The choice -------------------------------------------------------------------------------------
@@ -553,7 +536,7 @@ def plan(scene, samples):
 
 
 @dataclass(frozen=True)
-class SamplingRun:
+class SamplingRun(Run):
     """An estimate of the volume and areas of a ``Scene`` by the best sampler for it, in blocks.
 
     The sampler is ``sample_point`` for effects, and if a sample of the prism has no overlap with a
@@ -577,27 +560,16 @@ class SamplingRun:
     @cached_property
     def sampler(self):
         """The best ``Sampler`` for the scene."""
-        sampler, _ = plan(self.scene, self.samples)
-        return sampler(self.scene, self.quantities, self.shell, self.seed)
+        make, _ = plan(self.scene, self.samples)
+        return make(self.scene, self.quantities, self.shell, self.seed)
 
     @cached_property
     def parts(self):
         """The ``SequentialRun`` of all samples, {"all": run}."""
-        sampler, samples = self.sampler, plan(self.scene, self.samples)[1]
-        blocks = samples // sampler.block
-
-        def work(first, stop):
-            return (sampler.count(first, stop),)
-
-        return {"all": fixed(work, blocks, sampler.block, sampler.cost_ratio)}
+        _, block, count, _, ratio = self.sampler
+        blocks = plan(self.scene, self.samples)[1] // block
+        return {"all": fixed(lambda first, stop: (count(first, stop),), blocks, block, ratio)}
 
     def point(self, pieces):
         """Return the point, given {"all": pieces}."""
         return self.sampler.point(pieces["all"])
-
-    def run(self, progress=None, cores=1, kept=None):
-        """Do all samples in this process and return the point.
-
-        ``kept`` are the parts of an earlier run, which are not done again (see ``all_in_rounds``).
-        """
-        return self.point(all_in_rounds(self.parts, progress, cores, kept))

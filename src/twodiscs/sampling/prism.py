@@ -87,9 +87,7 @@ def prism_of(scene, hop=None, within=None):
         components=scene.velocity_components,
         weights=(2 * scene.field * m1, 2 * scene.field * m2) if scene.field else None,
         depth=None if scene.depth is None else True,
-        inertia=None
-        if inertia is None
-        else (1 / math.sqrt(inertia * m1), 1 / math.sqrt(inertia * m2)),
+        inertia=inertia and (1 / math.sqrt(inertia * m1), 1 / math.sqrt(inertia * m2)),
         neck=None if hop is None else neck_of(scene, hop, within),
     )
 
@@ -228,29 +226,20 @@ def fraction_if_accepted(state, prism, y1, dx, dy, dz, power):
 
 
 @compiled
-def draw_in_prism(state, prism):
-    """Return (x1, y1, z1, dx, dy, dz, kinetic fraction) from the invariant measure."""
-    while True:
-        x1, y1, z1, dx, dy, dz = propose_anywhere(state, prism, prism.neck)
-        fraction = fraction_if_accepted(state, prism, y1, dx, dy, dz, prism.components - 2)
-        if fraction >= 0.0:
-            return x1, y1, z1, dx, dy, dz, fraction
+def draw_in_prism(state, prism, axis=-1):
+    """Return (x1, y1, z1, dx, dy, dz, kinetic fraction) from the invariant measure.
 
-
-@compiled
-def draw_on_surface(state, prism, axis):
-    """Return the same on the surface of a hop along ``axis`` (0 for x, 1 for y).
-
-    The density there is ∝ (E − U)^((D − 1)/2), like the flux through the surface.
+    With an ``axis`` (0 for x, 1 for y) they are on the surface of a hop along it. The density there
+    is ∝ (E − U)^((D − 1)/2), like the flux through the surface.
     """
-    low = min(prism.half_1[axis], prism.half_2[axis])
+    power = prism.components - (2 if axis < 0 else 1)
     while True:
         x1, y1, z1, dx, dy, dz = propose_anywhere(state, prism, prism.neck)
         if axis == 0:
-            x1, dx = low * signed_uniform(state), 0.0
-        else:
-            y1, dy = low * signed_uniform(state), 0.0
-        fraction = fraction_if_accepted(state, prism, y1, dx, dy, dz, prism.components - 1)
+            x1, dx = min(prism.half_1[0], prism.half_2[0]) * signed_uniform(state), 0.0
+        elif axis == 1:
+            y1, dy = min(prism.half_1[1], prism.half_2[1]) * signed_uniform(state), 0.0
+        fraction = fraction_if_accepted(state, prism, y1, dx, dy, dz, power)
         if fraction >= 0.0:
             return x1, y1, z1, dx, dy, dz, fraction
 
@@ -305,15 +294,12 @@ def draw_velocities(state, prism, speed, normal_axis, direction, velocity):
     for axis in range(3):
         if axis == 2 and prism.depth is None:
             velocity[2], velocity[6] = 0.0, 0.0
-        elif axis == normal_axis and prism.conserved[axis]:
-            relative = speed * normal * root
-            velocity[axis] = relative * prism.fractions[0]
-            velocity[axis + 4] = -relative * prism.fractions[1]
         elif prism.conserved[axis]:
-            relative = speed * rest * direction[used] * root
+            along = axis == normal_axis
+            relative = (speed * normal if along else speed * rest * direction[used]) * root
             velocity[axis] = relative * prism.fractions[0]
             velocity[axis + 4] = -relative * prism.fractions[1]
-            used += 1
+            used += 0 if along else 1
         elif axis == normal_axis:
             # Unit vectors of the relative motion and of the centre of mass, in scaled velocities.
             along_1, along_2 = math.sqrt(prism.fractions[0]), math.sqrt(prism.fractions[1])

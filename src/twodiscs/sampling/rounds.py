@@ -23,7 +23,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.checks import InputError, check_integer
+from twodiscs.model.checks import InputError, check_choice, check_integer
+from twodiscs.model.scene import check_scene
 from twodiscs.points.base import added, reached
 from twodiscs.points.monte_carlo import MonteCarloPoint
 
@@ -95,8 +96,8 @@ def _done(run, stop, pieces, cores, progress):
         return sums
     step, new = max(1, int(CALL / run.block_work)), None
     calls = ((start, min(start + step, stop)) for start in range(first, stop, step))
-    for done, part in enumerate(in_threads(run.work, calls, cores, lambda: progress(None)), 1):
-        new = added(new, part)
+    for done, more in enumerate(in_threads(run.work, calls, cores, lambda: progress(None)), 1):
+        new = added(new, more)
         progress(min(first + done * step, stop))
     pieces[first, stop] = new
     return added(sums, new)
@@ -158,23 +159,43 @@ class Sampler(NamedTuple):
         return MonteCarloPoint.of(self.radius, {"all": self.constants | {"sums": pieces}})
 
 
+def check_quantities(scene, quantities):
+    """Raise ``InputError`` unless ``quantities`` are names of the volume and areas of a scene."""
+    allowed = ("volume", *(f"{event}_area" for event in check_scene(scene).events))
+    for quantity in quantities:
+        check_choice("quantity", quantity, allowed)
+    if not quantities:
+        raise InputError("quantities must name at least one quantity, but is empty")
+
+
 def all_in_rounds(parts, progress=None, cores=1, kept=None):
     """Return {name: pieces} of the runs in ``parts``, {name: run}, one after the other.
 
     ``progress`` is called with the work of all of them; ``kept`` are the parts of an earlier run.
     """
     kept = {} if kept is None else kept
-    found, work = {}, {name: run.planned * run.block_work for name, run in parts.items()}
+    done_parts, work = {}, {name: run.planned * run.block_work for name, run in parts.items()}
 
     def report(done, expected):
         work[name] = expected
         if progress is not None:
-            before = sum(work[earlier] for earlier in found)
+            before = sum(work[earlier] for earlier in done_parts)
             progress(done if done is None else before + done, sum(work.values()))
 
     for name, run in parts.items():
-        found[name] = in_rounds(run, report, cores, kept.get(name, {}).get("sums"))
-    return found
+        done_parts[name] = in_rounds(run, report, cores, kept.get(name, {}).get("sums"))
+    return done_parts
+
+
+class Run:
+    """Work in ``parts``, {name: SequentialRun}; ``point`` makes a result of {name: pieces}."""
+
+    def run(self, progress=None, cores=1, kept=None):
+        """Do all work in this process and return the point.
+
+        ``kept`` are the parts of an earlier run, which are not done again (see ``all_in_rounds``).
+        """
+        return self.point(all_in_rounds(self.parts, progress, cores, kept))
 
 
 # Pieces ------------------------------------------------------------------------------------------
@@ -261,6 +282,13 @@ def in_threads(work, arguments, cores=1, waiting=None):
             future.cancel()
         for _ in range(cores):
             calls.put(None)
+
+
+def draw_in_calls(work, calls, number, progress):
+    """Do ``work`` in ``calls``; ``progress``, if given, gets what each returns, and ``number``."""
+    for done in in_threads(work, calls, waiting=lambda: progress and progress(None, number)):
+        if progress is not None:
+            progress(done, number)
 
 
 def in_a_thread(work, *given):

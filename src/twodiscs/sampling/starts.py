@@ -15,12 +15,11 @@ from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.prism import (
     PrismSampler,
     draw_in_prism,
-    draw_on_surface,
     draw_velocities,
     kinetic_fraction,
     prism_of,
 )
-from twodiscs.sampling.rounds import in_a_thread, in_threads
+from twodiscs.sampling.rounds import draw_in_calls, in_a_thread
 from twodiscs.sampling.separations import (
     SeparationSampler,
     draw_configuration,
@@ -124,46 +123,36 @@ def start_sampler(scene, hop=None, within=None, order=(0, 0), surface=None):
 
 
 @inlined
-def state_in(initial_states, i):
-    """Return the plain state in column ``i`` of ``initial_states``."""
+def state_in(rows, i):
+    """Return the first eight numbers in column ``i`` of ``rows``: the whole state of a plain scene.
+
+    ``rows`` is an array of states, or a tuple of its rows.
+    """
     return (
-        initial_states[0, i], initial_states[1, i], initial_states[2, i], initial_states[3, i],
-        initial_states[4, i], initial_states[5, i], initial_states[6, i], initial_states[7, i],
+        rows[0][i], rows[1][i], rows[2][i], rows[3][i],
+        rows[4][i], rows[5][i], rows[6][i], rows[7][i],
     )  # fmt: skip
+
+
+@inlined
+def put_in(rows, i, state):
+    """Set the first eight numbers in column ``i`` of ``rows``."""
+    rows[0][i], rows[1][i], rows[2][i], rows[3][i] = state[0], state[1], state[2], state[3]
+    rows[4][i], rows[5][i], rows[6][i], rows[7][i] = state[4], state[5], state[6], state[7]
 
 
 @compiled
 def draw_starts(state, sampler, sign_x, sign_y, initial_states):
     """Fill the first 8 rows of ``initial_states`` with states of the invariant measure."""
     for i in range(initial_states.shape[1]):
-        x1, y1, x2, y2 = draw_configuration(state, sampler, sign_x, sign_y)
-        u1, v1, u2, v2 = draw_velocity(state)
-        initial_states[0, i], initial_states[1, i], initial_states[2, i], initial_states[3, i] = (
-            x1,
-            y1,
-            x2,
-            y2,
-        )
-        initial_states[4, i], initial_states[5, i], initial_states[6, i], initial_states[7, i] = (
-            u1,
-            v1,
-            u2,
-            v2,
-        )
+        centres = draw_configuration(state, sampler, sign_x, sign_y)
+        put_in(initial_states, i, centres + draw_velocity(state))
 
 
-def _anywhere(state, prism, direction, velocity, surface):
-    drawn = draw_in_prism(state, prism)
-    draw_velocities(state, prism, math.sqrt(drawn[6]), -1, direction, velocity)
-    return drawn
-
-
-@optional(_anywhere)
-def draw_state(state, prism, direction, velocity, surface):
-    """Return centres as ``draw_in_prism`` does, or on a ``surface``, and fill ``velocity``."""
-    drawn = draw_on_surface(state, prism, surface)
-    draw_velocities(state, prism, math.sqrt(drawn[6]), surface, direction, velocity)
-    return drawn
+@optional(lambda surface: -1)
+def axis_of(surface):
+    """Return the axis of the hops through a ``surface``, −1 for None."""
+    return surface
 
 
 @optional(lambda initial_states, i, k, a, b, present: None)
@@ -181,13 +170,8 @@ def draw_plain(stream, sampler, initial_states, surface):
     """Fill ``initial_states`` of a plain scene, on a ``surface`` unless it is None."""
     plain = sampler.separations
     for i in range(initial_states.shape[1]):
-        x1, y1, x2, y2, u1, v1, u2, v2 = draw_crossing(
-            stream, plain.half_x, plain.half_y, plain.beyond_x
-        )
-        initial_states[0, i], initial_states[1, i] = x1, y1
-        initial_states[2, i], initial_states[3, i] = x2, y2
-        initial_states[4, i], initial_states[5, i] = u1, v1
-        initial_states[6, i], initial_states[7, i] = u2, v2
+        state = draw_crossing(stream, plain.half_x, plain.half_y, plain.beyond_x)
+        put_in(initial_states, i, state)
 
 
 def _draw_without_prism(stream, sampler, initial_states, prism):
@@ -197,13 +181,12 @@ def _draw_without_prism(stream, sampler, initial_states, prism):
 @optional(_draw_without_prism)
 def draw_with(stream, sampler, initial_states, prism):
     """Fill ``initial_states`` by a ``prism``, or by separations if it is None."""
-    direction, velocity = np.empty(6), np.empty(8)
+    direction, velocity, axis = np.empty(6), np.empty(8), axis_of(sampler.surface)
     for i in range(initial_states.shape[1]):
-        x1, y1, z1, dx, dy, dz, _ = draw_state(stream, prism, direction, velocity, sampler.surface)
-        initial_states[0, i], initial_states[1, i] = x1, y1
-        initial_states[2, i], initial_states[3, i] = x1 - dx, y1 - dy
-        initial_states[4, i], initial_states[5, i] = velocity[0], velocity[1]
-        initial_states[6, i], initial_states[7, i] = velocity[4], velocity[5]
+        x1, y1, z1, dx, dy, dz, fraction = draw_in_prism(stream, prism, axis)
+        draw_velocities(stream, prism, math.sqrt(fraction), axis, direction, velocity)
+        centres = x1, y1, x1 - dx, y1 - dy
+        put_in(initial_states, i, (*centres, velocity[0], velocity[1], velocity[4], velocity[5]))
         set_pair(initial_states, i, 8, z1, z1 - dz, prism.depth)
         set_pair(initial_states, i, 10, velocity[2], velocity[6], prism.depth)
         set_pair(initial_states, i, 8, velocity[3], velocity[7], prism.inertia)
@@ -252,9 +235,7 @@ def states(scene, number, seed, block=0, order=(0, 0), progress=None):
 
     step = CALL if sampler.prism is None else max(1, int(CALL * exact.free_fraction(scene)))
     calls = ((first, min(first + step, number)) for first in range(0, number, step))
-    for done in in_threads(fill, calls, waiting=lambda: progress and progress(None, number)):
-        if progress is not None:
-            progress(done, number)
+    draw_in_calls(fill, calls, number, progress)
     return filled
 
 

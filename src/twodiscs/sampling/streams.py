@@ -19,8 +19,7 @@ UNIT = 2.0**-53
 @compiled
 def splitmix(counter):
     """Return the SplitMix64 output for ``counter``, a uint64 that steps by ``GOLDEN``."""
-    z = counter
-    z = (z ^ (z >> np.uint64(30))) * MIX_1
+    z = (counter ^ (counter >> np.uint64(30))) * MIX_1
     z = (z ^ (z >> np.uint64(27))) * MIX_2
     return z ^ (z >> np.uint64(31))
 

@@ -26,22 +26,8 @@ import numpy as np
 
 from twodiscs.dynamics.ensemble import before_kick, open_kicks
 from twodiscs.dynamics.law import NEVER, VANISHING, contact_quotient, crosses, crossing_time
-from twodiscs.dynamics.many.lockstep import (
-    ABOVE,
-    BESIDE,
-    COLLISIONS,
-    HORIZONTAL,
-    VERTICAL,
-    N,
-    add_hops,
-    discs_in,
-    nearest,
-    new_spins,
-    redraw,
-    rub,
-    rub_walls,
-    take_spins,
-)
+from twodiscs.dynamics.many import lockstep
+from twodiscs.dynamics.many.lockstep import ABOVE, BESIDE, COLLISIONS, HORIZONTAL, VERTICAL, N
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many.cells import (
     Places,
@@ -167,7 +153,7 @@ def new_motion(discs, grid, rough=None):
         np.zeros(discs), np.zeros(discs), np.zeros(discs), np.zeros(discs), np.zeros(discs),
         np.zeros(discs), np.zeros(discs), np.zeros(discs, np.bool_),
         np.zeros(discs, np.int64), np.zeros(discs, np.int64), np.zeros(discs, np.int64),
-        np.full(2 * leaves, NEVER), new_places(discs, grid), new_spins(1, discs, rough),
+        np.full(2 * leaves, NEVER), new_places(discs, grid), lockstep.new_spins(1, discs, rough),
     )  # fmt: skip
 
 
@@ -329,7 +315,7 @@ def fly(i, now, motion, counts, ring, log, hops, hops_x):
 @inlined
 def collide(i, j, motion, law):
     """Exchange the velocities of two discs along the line of their centres."""
-    dx, dy = nearest(motion.x[i] - motion.x[j], law.ring), motion.y[i] - motion.y[j]
+    dx, dy = lockstep.nearest(motion.x[i] - motion.x[j], law.ring), motion.y[i] - motion.y[j]
     du, dv = motion.u[i] - motion.u[j], motion.v[i] - motion.v[j]
     square = dx * dx + dy * dy
     exchange = (dx * du + dy * dv) / square if square > VANISHING else 0.0
@@ -337,29 +323,8 @@ def collide(i, j, motion, law):
     motion.v[i] -= exchange * dy
     motion.u[j] += exchange * dx
     motion.v[j] += exchange * dy
-    rub_pair(i, j, dx, dy, motion, law.rough)
-
-
-@optional(lambda i, j, dx, dy, motion, rough: None)
-def rub_pair(i, j, dx, dy, motion, rough):
-    """Reverse the velocity of the surfaces of two discs against each other."""
-    meets = dx * dx + dy * dy > VANISHING
-    u, v, s = motion.u, motion.v, motion.s
-    change_u, change_v, change_s = rub(
-        dx, dy, u[i] - u[j], v[i] - v[j], s[i, 0] + s[j, 0], meets, rough
-    )
-    u[i] += change_u
-    v[i] += change_v
-    u[j] -= change_u
-    v[j] -= change_v
-    s[i, 0] += change_s
-    s[j, 0] += change_s
-
-
-@optional(lambda i, upwards, motion, rough: None)
-def rub_wall(i, upwards, motion, rough):
-    """Reverse the velocity of a disc's surface along a wall of y, if ``upwards``, or of x."""
-    rub_walls(motion.u, motion.v, i, not upwards, upwards, motion.s[:, 0], rough)
+    discs = motion.u, motion.v, lockstep.only_lane(motion.s)
+    lockstep.rub_discs(discs, i, discs, j, dx, dy, square > VANISHING, law.rough)
 
 
 @optional(lambda i, column, columns, motion, laps, ring: column)
@@ -389,7 +354,7 @@ def start_from(states, replica, motion, grid, law):
         motion.time[i] = 0.0
         column, row = interval_of(motion.x[i], grid.x), interval_of(motion.y[i], grid.y)
         enter(i, column, row, motion.places, grid)
-    take_spins(states, replica, 0, motion.s)
+    lockstep.copy_spins(spins_in(states, discs, law.rough), replica, 0, motion.s)
     look_for_all(motion, grid, law)
 
 
@@ -400,13 +365,6 @@ def look_for_all(motion, grid, law):
         look_around(i, 0.0, motion, grid, law)
         find_border(i, motion, grid)
         enlist(i, motion)
-
-
-@optional(lambda spins, replica, s: None)
-def give_spins(spins, replica, s):
-    """Copy the spins of a motion to the column ``replica`` of ``spins``."""
-    for i in range(s.shape[0]):
-        spins[i, replica] = s[i, 0]
 
 
 @optional(lambda time, lane, kicks: False)
@@ -421,7 +379,7 @@ def kick_discs(motion, laps, grid, law, log, lane, kicks):
     """Draw the velocities of all discs anew, at the time 0 that all have come to."""
     discs = motion.x.size
     u, v = motion.u.reshape((discs, 1)), motion.v.reshape((discs, 1))
-    redraw(u, v, motion.s, 0, lane, law, kicks)
+    lockstep.redraw(u, v, motion.s, 0, lane, law, kicks)
     look_for_all(motion, grid, law)
     for i in range(discs):
         note_event(0.0, KICKS, i, i, motion, laps, law.ring, log)
@@ -477,7 +435,8 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
                 else:
                     x = grid.x[columns if step > 0 else 0]
                 put(i, x, y, now, motion, counts, law.ring, log, hops, hops_x)
-                rub_wall(i, upwards, motion, law.rough)
+                s = lockstep.only_lane(motion.s)
+                lockstep.rub_walls(motion.u, motion.v, i, not upwards, upwards, s, law.rough)
                 if upwards:
                     motion.v[i] = -motion.v[i]
                     counts[ABOVE] += 1
@@ -530,7 +489,7 @@ def count_events(states, seed, first, duration, epoch, law, grid, hops, hops_x, 
     Returns (sums, products) as ``lockstep.count_events`` does. ``hops`` and ``hops_x`` are None
     where hops in y or in x are not counted. ``kicks`` are those of one lane, None without friction.
     """
-    discs = discs_in(states, law.rough)
+    discs = lockstep.discs_in(states, law.rough)
     laps = np.zeros(discs)
     motion, count = new_motion(discs, grid, law.rough), np.zeros(N, np.int64)
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
@@ -542,10 +501,7 @@ def count_events(states, seed, first, duration, epoch, law, grid, hops, hops_x, 
         follow_discs(
             duration, epoch, motion, laps, grid, law, count, lane, kicks, None, hops, hops_x
         )
-        for e in range(N):
-            sums[e] += count[e]
-            for f in range(e, N):
-                products[e, f] += count[e] * count[f]
+        lockstep.add_counts(count, sums, products)
     return sums, products
 
 
@@ -567,10 +523,10 @@ def advance_all(states, laps, time, epoch, law, grid, kicks, hops_x):
             time, epoch, motion, rounds, grid, law, counts[:, 0], replica, kicks, None, None,
             hops_x,
         )  # fmt: skip
-        add_hops(counts, replica, hops_x)
+        lockstep.add_hops(counts, replica, hops_x)
         for i in range(discs):
             states[i, replica], states[discs + i, replica] = motion.x[i], motion.y[i]
             states[2 * discs + i, replica] = motion.u[i]
             states[3 * discs + i, replica] = motion.v[i]
             laps[i, replica] += rounds[i]
-        give_spins(spins, replica, motion.s)
+        lockstep.copy_spins(motion.s, 0, replica, spins)

@@ -1,4 +1,4 @@
-"""The experiments of more than two discs: counts and intervals, their durations and costs.
+"""More than two discs: counts, trajectories and intervals, their durations and costs.
 
 The kernels are ``lockstep`` for few discs and ``cells`` for ``LARGE`` numbers of them.
 """
@@ -8,23 +8,24 @@ from functools import lru_cache
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import LANES, REPLICAS, RETURNS, nearest_power_of_two, opened
+from twodiscs.dynamics.ensemble import (
+    LANES,
+    REPLICAS,
+    RETURNS,
+    before_kick,
+    nearest_power_of_two,
+    opened,
+)
+from twodiscs.dynamics.law import END_OF_TIME, crosses, crossing_time
 from twodiscs.dynamics.many import cells, lockstep
 from twodiscs.dynamics.many.lockstep import ABOVE, BESIDE, CLASSES, COLLISIONS, N, law_of, new_kicks
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import HOPS, by_kind
+from twodiscs.model.many import LARGE
 from twodiscs.sampling.many import insertions
 from twodiscs.sampling.many.cells import grid_of
 from twodiscs.sampling.many.chains import DENSEST, crowding
-from twodiscs.sampling.many.initial import (
-    LARGE,
-    draw_states,
-    initial_of,
-    large_grid,
-    method,
-    rows_of,
-    states_of,
-)
+from twodiscs.sampling.many.initial import draw_states, initial_of, large_grid, method, states_of
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import n_discs
 from twodiscs.theory.virial import bulk_derivatives, rates
@@ -67,6 +68,9 @@ KICK_COST, DRAW_COST = 0.45, 8.0
 #: The largest factor by which the window of ``LARGE`` numbers of discs is longer.
 LONGER = 64
 
+#: The wall and disc events of a trajectory, and the most rows, with hops, because rows are long.
+LONGEST_TRAJECTORY, MOST_ROWS = 1500, 2**13
+
 
 # Rates and durations ------------------------------------------------------------------------------
 
@@ -89,10 +93,10 @@ def expected_rates(scene):
         return guess
     by_class = rates(scene, known)
     summed = {event: sum(by_class[name] for name in parts) for event, parts in CLASSES_OF.items()}
-    found = guess | {e: rate for e, rate in summed.items() if rate and e in scene.events}
+    by_event = guess | {e: rate for e, rate in summed.items() if rate and e in scene.events}
     if scene.discs >= LARGE and crowding(scene) == DENSEST and not n_discs.exact_method(scene):
-        found |= {event: max(rate, found[event]) for event, rate in guess.items()}
-    return found
+        by_event |= {event: max(rate, by_event[event]) for event, rate in guess.items()}
+    return by_event
 
 
 def expected_event_rate(scene):
@@ -174,20 +178,20 @@ def run_classes(scene, seed, first, stop, duration, *, replicas=None, lanes=LANE
     replicas = replicas or block_replicas(scene)
     hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
     law, grid, initial = law_of(scene), large_grid(scene), initial_of(scene)
-    counts = None
+    counts = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
     for block in range(first, stop):
         states = states_of(initial, replicas, seed, block)
         given = states, np.uint64(seed), block * replicas
         if grid is None:
-            part = lockstep.count_events(
+            of_block = lockstep.count_events(
                 *given, lanes, duration, law, hops_x, new_kicks(scene, lanes)
             )
         else:
-            part = cells.count_events(
+            of_block = cells.count_events(
                 *given, duration, epoch_of(scene), law, grid, True if hops else None,
                 hops_x if hops else None, new_kicks(scene, 1),
             )  # fmt: skip
-        counts = part if counts is None else tuple(map(np.add, counts, part))
+        counts = tuple(map(np.add, counts, of_block))
     return counts
 
 
@@ -211,11 +215,6 @@ def simulated_events(sums):
 # Costs --------------------------------------------------------------------------------------------
 
 
-def planned(needed, affordable):
-    """Return the number of planned blocks, which the budget limits."""
-    return min(needed, affordable)
-
-
 def work_per_event(scene):
     """Return the cost of an event over the usual cost, with kicks.
 
@@ -233,11 +232,6 @@ def cost_ratio(scene):
         return EVENT_COST + DISC_COST * scene.discs
     pair = PAIR_COST if scene.moment_of_inertia is None else ROUGH_PAIR_COST
     return 1 + pair * scene.discs * (scene.discs - 1) / 2
-
-
-def interval_cost(scene):
-    """Return the time of an event over the time of an event of the plain ensemble."""
-    return cost_ratio(scene)
 
 
 # Trajectories -------------------------------------------------------------------------------------
@@ -269,7 +263,7 @@ class Followed:
         self.scene, self.law, self.grid = scene, law_of(scene), grid_of(scene)
         self.epoch, self.laps = epoch_of(scene), np.zeros(scene.discs)
         self.motion = cells.new_motion(scene.discs, self.grid, self.law.rough)
-        self.log = cells.new_log(scene.discs, ENTRIES, rows_of(scene) // scene.discs)
+        self.log = cells.new_log(scene.discs, ENTRIES, 4 if self.law.rough is None else 5)
         self.counts = np.zeros(N, np.int64)
         self.hops = [True if hop in counted else None for hop in ("vertical_hop", "horizontal_hop")]
 
@@ -288,6 +282,115 @@ class Followed:
                 0, self.kicks, self.log, *self.hops,
             )  # fmt: skip
             yield self.log, np.argsort(self.log.times[: self.log.size[0]], kind="stable")
+
+
+def new_wraps(scene, number):
+    """Return the rounds that ``number`` states have made on a ring, all 0."""
+    return np.zeros((scene.discs, number))
+
+
+def unwrap(scene, columns, wraps):
+    """Add the rounds that discs have made on a ring, see ``two.path.unwrap``."""
+    for disc, laps in enumerate(wraps, 1):
+        columns[f"x{disc}"] += scene.width * laps
+
+
+def trajectory_rate(scene):
+    """Return the rows of a trajectory per time: wall hits, collisions, hops and kicks."""
+    known = expected_rates(scene)
+    hops = sum(known.get(hop, 0.0) for hop in HOPS)
+    return expected_event_rate(scene) + hops + scene.friction
+
+
+def usual_duration(scene):
+    """Return the time of some ``LONGEST_TRAJECTORY`` events, a power of two."""
+    times = (LONGEST_TRAJECTORY / expected_event_rate(scene), MOST_ROWS / trajectory_rate(scene))
+    return nearest_power_of_two(min(times))
+
+
+def events_of(scene, state, duration, seed=0):
+    """Yield (time, event, first, second, state) of more than two discs.
+
+    ``state`` is a column of ``starts.states``; see ``trajectory.events_of``.
+    """
+    if large_grid(scene) is not None:
+        yield from _logged(scene, np.array(state), duration, seed)
+        return
+    n, law, time, kicks = scene.discs, law_of(scene), 0.0, kicks_of(scene, 1, seed)
+    lanes = lockstep.lanes_of(np.array(state)[:, None], np.full(1, float(duration)), law)
+    x, y, u, v, *s = (part for part in lanes[:5] if part is not None)
+    ring = law.ring[0] if law.ring else None
+    # The distance of centres beyond the cell in which the kernel keeps them.
+    beyond = ring * np.round(x / ring) if ring else np.zeros_like(x)
+    x -= beyond
+    pairs = [(j, i) for i in range(n) for j in range(i)]
+    along = ((n, "vertical_hop"), (0, "horizontal_hop"))
+    along = [(start, hop) for start, hop in along if hop in scene.events]
+    yield time, "start", None, None, np.ravel([x + beyond, y, u, v, *s])
+    while True:
+        before, speed = np.ravel([x + beyond, y]), np.ravel([u, v, *s])
+        is_kick = before_kick(lanes.remaining[0], 0, kicks) < lanes.remaining[0]
+        lockstep.find_events(lanes, law, kicks)
+        flight, code = float(lanes.times[0]), int(lanes.codes[0])
+        lockstep.advance(lanes, law, True)
+        lockstep.kick_lanes(lanes, law, kicks)
+        if ring:
+            beyond = ring * np.round(((before + flight * speed[: 2 * n])[:n, None] - x) / ring)
+        after, hops = np.ravel([x + beyond, y]), []
+        for start, name in along:
+            for i, j in pairs:
+                a, b = start + i, start + j
+                apart = before[a] - before[b]
+                if crosses(apart, after[a] - after[b]):
+                    hops.append((crossing_time(apart, speed[a] - speed[b]), name, i, j))
+        for until, name, i, j in sorted(hops):
+            then = before + until * speed[: 2 * n]
+            yield time + until, name, i + 1, j + 1, np.concatenate([then, speed])
+        time, now = time + flight, np.ravel([x + beyond, y, u, v, *s])
+        if code == int(END_OF_TIME) and is_kick:
+            yield time, "kick", None, None, now
+        elif code == int(END_OF_TIME):
+            yield float(duration), "end", None, None, now
+            return
+        if code > 2 * n:
+            i, j = pairs[code - 2 * n - 1]
+            yield time, "disc_collision", i + 1, j + 1, now
+        elif code > 0:
+            disc = (code - 1) // 2 + 1
+            yield time, f"wall_{'xy'[(code - 1) % 2]}{disc}", disc, None, now
+
+
+def _logged(scene, state, duration, seed):
+    """Yield ``events_of`` from the log of a path; a state is put together from all discs."""
+    path = Followed(scene, scene.events)
+    rounds = np.round(state[: scene.discs] / scene.width) if scene.periodic else 0.0
+    inside = state.copy()
+    inside[: scene.discs] -= rounds * scene.width
+    path.start(inside[:, None], seed)
+    path.laps[:] = rounds
+    # The last known place of each disc, and its time.
+    at, since = np.reshape(state, (-1, scene.discs)).copy(), np.zeros(scene.discs)
+    names = {lockstep.VERTICAL: "vertical_hop", lockstep.HORIZONTAL: "horizontal_hop"}
+    names |= {COLLISIONS: "disc_collision", cells.KICKS: "kick"}
+    yield 0.0, "start", None, None, state
+    for log, order in path.go_on(duration):
+        for k in order:
+            time, kind, (i, j) = float(log.times[k]), int(log.classes[k]), log.discs[k].tolist()
+            if kind not in (lockstep.VERTICAL, lockstep.HORIZONTAL):
+                at[:, i], at[:, j] = log.states[k]
+                since[[i, j]] = time
+            if kind == cells.KICKS and i < scene.discs - 1:
+                continue
+            first, second = min(i, j) + 1, max(i, j) + 1 if i != j else None
+            name = names.get(kind) or f"wall_{'x' if kind == BESIDE else 'y'}{first}"
+            first = None if kind == cells.KICKS else first
+            yield time, name, first, second, _then(at, time - since)
+    yield float(duration), "end", None, None, _then(at, duration - since)
+
+
+def _then(at, lag):
+    """Return the state of discs that were ``at`` (4 or 5, N) places ``lag`` (N,) ago."""
+    return np.concatenate([np.ravel(at[:2] + at[2:4] * lag), *at[2:]])
 
 
 # Intervals ----------------------------------------------------------------------------------------
@@ -341,8 +444,8 @@ def record_within(window, scene, hop, seed, first, stop, chains, bins, sums, goi
         initial, totals = initial_of(scene), []
         for block in range(first, stop):
             states = states_of(initial, chains, seed, block)
-            part = lockstep.record_intervals(states, np.uint64(seed), block * chains, *given)
-            totals.append(part)
+            seeds = np.uint64(seed), block * chains
+            totals.append(lockstep.record_intervals(states, *seeds, *given))
         return np.hstack(totals)
     (width, wide), path, initial = bins, Followed(scene, (hop,)), initial_of(scene)
     totals, state = np.zeros((2, (stop - first) * chains)), np.zeros((initial.rows, 1))

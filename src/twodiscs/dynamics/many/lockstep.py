@@ -35,6 +35,7 @@ from twodiscs.dynamics.law import (
     crosses,
     divided,
     rough_wall_collision,
+    snap_to_wall,
     wall_quotient,
 )
 from twodiscs.sampling.jit import compiled, inlined, optional
@@ -59,7 +60,7 @@ class ManyLaw(NamedTuple):
     """The constants of the motion: half-ranges of the centres, σ, and those of effects.
 
     ``ring`` is (circumference, half of it, the longest flight); ``half_x`` is None then. ``rough``
-    is that of ``law.Law``, and √(1/κ). Both are None without the effect.
+    is that of ``law.Law``, ``spin`` is √(1/κ). They are None without the effect.
     """
 
     half_x: float | None
@@ -67,6 +68,39 @@ class ManyLaw(NamedTuple):
     sigma: float
     ring: tuple | None = None
     rough: tuple | None = None
+    spin: float | None = None
+
+
+class Lanes(NamedTuple):
+    """The discs of all lanes, arrays (N, lanes), and their flights, arrays (lanes,).
+
+    Flights began at (old_x, old_y). ``spins`` are None for smooth discs. ``counts`` (n, lanes) are
+    doubles, in the order of ``CLASSES``.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    u: np.ndarray
+    v: np.ndarray
+    spins: np.ndarray | None
+    old_x: np.ndarray
+    old_y: np.ndarray
+    remaining: np.ndarray
+    times: np.ndarray
+    codes: np.ndarray
+    speeds: np.ndarray
+    counts: np.ndarray
+
+
+@compiled
+def lanes_of(states, remaining, law):
+    """Return the ``Lanes`` that move the columns of ``states`` (rows, lanes) for these times."""
+    n, lanes = discs_in(states, law.rough), remaining.size
+    return Lanes(
+        states[:n], states[n : 2 * n], states[2 * n : 3 * n], states[3 * n : 4 * n],
+        spins_in(states, n, law.rough), np.zeros((n, lanes)), np.zeros((n, lanes)), remaining,
+        np.zeros(lanes), np.zeros(lanes), np.zeros(lanes), np.zeros((N, lanes)),
+    )  # fmt: skip
 
 
 def law_of(scene):
@@ -76,8 +110,10 @@ def law_of(scene):
         half_x, half = None, scene.width / 2
         ring = scene.width, half, half / math.sqrt(2)
     if scene.moment_of_inertia is not None:
-        rough = *divided(1.0, scene.moment_of_inertia, 1.0), spin_of(scene)
-    return ManyLaw(half_x, scene.range_y / 2, scene.contact_distance, ring, rough)
+        rough = divided(1.0, scene.moment_of_inertia, 1.0)
+    return ManyLaw(
+        half_x, scene.range_y / 2, scene.contact_distance, ring, rough, spin_of(scene)
+    )  # fmt: skip
 
 
 def new_kicks(scene, lanes):
@@ -91,22 +127,13 @@ def new_kicks(scene, lanes):
     return idle_kicks(lanes, scene.friction, cuts, velocities)
 
 
-@optional(lambda u, l, ring: 0.0)
-def drift(u, l, ring):
-    """Return the mean velocity along a ring in lane ``l``, which is conserved; 0 between walls."""
-    return np.sum(u[:, l]) / u.shape[0]
+@optional(lambda u, l, spin, ring: 0.0)
+def drift(u, l, spin, ring):
+    """Return the conserved mean velocity along a ring in lane ``l``.
 
-
-@optional(lambda u, l, ring, rough: drift(u, l, ring))
-def conserved_drift(u, l, ring, rough):
-    """Return ``drift``, or 0 for rough discs, whose walls take momentum."""
-    return 0.0
-
-
-@optional(lambda rough: None)
-def spin_scale(rough):
-    """Return √(1/κ) of rough discs, or None."""
-    return rough[2]
+    It is 0 between walls, and for rough discs, whose walls take momentum.
+    """
+    return np.sum(u[:, l]) / u.shape[0] if spin is None else 0.0
 
 
 @compiled
@@ -116,10 +143,8 @@ def redraw(u, v, spins, l, lane, law, kicks):
     They are uniform on the sphere of the energy 1/2 and, along a ring, of the same momentum. The
     ``spins`` of rough discs are drawn with them.
     """
-    discs, mean = u.shape[0], conserved_drift(u, l, law.ring, law.rough)
-    draw_velocities(
-        kicks.streams[lane], kicks.velocity, kicks.direction, law.ring, spin_scale(law.rough)
-    )  # fmt: skip
+    discs, mean = u.shape[0], drift(u, l, law.spin, law.ring)
+    draw_velocities(kicks.streams[lane], kicks.velocity, kicks.direction, law.ring, law.spin)
     put_spins(kicks.velocity, spins, l, law.rough)
     scale = math.sqrt(max(1.0 - discs * mean * mean, 0.0))
     for i in range(discs):
@@ -127,13 +152,13 @@ def redraw(u, v, spins, l, lane, law, kicks):
     renew_kicks(lane, kicks)
 
 
-@optional(lambda u, v, spins, times, law, kicks: None)
-def kick_lanes(u, v, spins, times, law, kicks):
-    """Kick the lanes whose kick is due after flights of ``times`` (lanes,)."""
-    for l in range(times.size):
-        kicks.waits[l] -= times[l]
+@optional(lambda lanes, law, kicks: None)
+def kick_lanes(lanes, law, kicks):
+    """Kick the lanes whose kick is due after their flights."""
+    for l in range(lanes.times.size):
+        kicks.waits[l] -= lanes.times[l]
         if kicks.waits[l] <= 0.0:
-            redraw(u, v, spins, l, l, law, kicks)
+            redraw(lanes.u, lanes.v, lanes.spins, l, l, law, kicks)
 
 
 # Rough discs: without them nothing is compiled ----------------------------------------------------
@@ -151,17 +176,23 @@ def discs_in(states, rough):
     return states.shape[0] // 5
 
 
-@optional(lambda states, k, l, spins: None)
-def take_spins(states, k, l, spins):
-    """Copy the spins in column ``k`` of ``states`` (5N, …) to column ``l`` of ``spins``."""
+@optional(lambda source, k, l, spins: None)
+def copy_spins(source, k, l, spins):
+    """Copy the spins in column ``k`` of ``source`` to column ``l`` of ``spins``."""
     for i in range(spins.shape[0]):
-        spins[i, l] = states[4 * spins.shape[0] + i, k]
+        spins[i, l] = source[i, k]
 
 
 @optional(lambda i, spins: None)
 def row(i, spins):
-    """Return the spins of disc ``i``."""
+    """Return the spins of disc ``i`` in all lanes."""
     return spins[i]
+
+
+@optional(lambda spins: None)
+def only_lane(spins):
+    """Return the ``spins`` (N, 1) of all discs in the only lane."""
+    return spins[:, 0]
 
 
 @inlined
@@ -177,18 +208,22 @@ def rub(dx, dy, du, dv, spin, meets, rough):
     return dy * push, -dx * push, slip * rough[1] if meets else 0.0
 
 
-@optional(lambda u, v, other_u, other_v, l, dx, dy, meets, s, other_s, rough: None)
-def rub_discs(u, v, other_u, other_v, l, dx, dy, meets, s, other_s, rough):
-    """Reverse the velocity of the surfaces of two discs against each other in a lane ``l``."""
+@optional(lambda first, i, second, j, dx, dy, meets, rough: None)
+def rub_discs(first, i, second, j, dx, dy, meets, rough):
+    """Reverse the velocity of the surfaces of two discs against each other.
+
+    ``first`` and ``second`` are arrays (u, v, s), in which the discs have the entries i and j.
+    """
+    (u, v, s), (other_u, other_v, other_s) = first, second
     change_u, change_v, change_s = rub(
-        dx, dy, u[l] - other_u[l], v[l] - other_v[l], s[l] + other_s[l], meets, rough
+        dx, dy, u[i] - other_u[j], v[i] - other_v[j], s[i] + other_s[j], meets, rough
     )
-    u[l] += change_u
-    v[l] += change_v
-    other_u[l] -= change_u
-    other_v[l] -= change_v
-    s[l] += change_s
-    other_s[l] += change_s
+    u[i] += change_u
+    v[i] += change_v
+    other_u[j] -= change_u
+    other_v[j] -= change_v
+    s[i] += change_s
+    other_s[j] += change_s
 
 
 @optional(lambda u, v, l, on_x, on_y, s, rough: None)
@@ -266,21 +301,17 @@ def soonest(limit, code, ring):
     return ring[2] if again else limit, LOOK_AGAIN if again else code
 
 
-@optional(lambda position, hit, half: position)
-def on_wall(position, hit, half):
-    """Return the position, put on the wall at ±``half`` exactly if it is ``hit``."""
-    return math.copysign(half, position) if hit else position
-
-
 @compiled
-def find_events(x, y, u, v, remaining, times, codes, speeds, law, kicks=None):
-    """Fill ``times`` and ``codes`` (lanes,) with the first event of each lane within its time.
+def find_events(all_lanes, law, kicks=None):
+    """Fill ``times`` and ``codes`` with the first event of each lane within its time.
 
     A flight that a kick ends has the code of the end of time, and ``kick_lanes`` has to follow.
     """
+    x, y, u, v = all_lanes.x, all_lanes.y, all_lanes.u, all_lanes.v
+    times, codes, speeds = all_lanes.times, all_lanes.codes, all_lanes.speeds
     discs, lanes = x.shape
     for l in range(lanes):
-        left = before_kick(remaining[l], l, kicks)
+        left = before_kick(all_lanes.remaining[l], l, kicks)
         times[l], codes[l] = soonest(left, END_OF_TIME, law.ring)
         speeds[l] = 1.0
     number = 1.0
@@ -316,11 +347,9 @@ def find_events(x, y, u, v, remaining, times, codes, speeds, law, kicks=None):
 
 
 @compiled
-def advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops_x, spins=None):
-    """Advance every lane by its event and count it in ``counts`` (n, lanes), doubles.
-
-    Rough discs have ``spins``.
-    """
+def advance(all_lanes, law, hops_x):
+    """Advance every lane by its event and count it; hops in x unless ``hops_x`` is None."""
+    x, y, u, v, spins, old_x, old_y, remaining, times, codes, _, counts = all_lanes
     discs, lanes = x.shape
     pairs = 1.0 + 2.0 * discs
     hops, across, hits, beside, above = counts[0], counts[1], counts[2], counts[3], counts[4]
@@ -333,8 +362,8 @@ def advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops
         for l in range(lanes):
             on_x, on_y = codes[l] == number, codes[l] == number + 1.0
             oxi[l], oyi[l] = xi[l], yi[l]
-            xi[l] = nearest(on_wall(xi[l] + ui[l] * times[l], on_x, law.half_x), law.ring)
-            yi[l] = on_wall(yi[l] + vi[l] * times[l], on_y, law.half_y)
+            xi[l] = nearest(snap_to_wall(xi[l] + ui[l] * times[l], on_x, law.half_x), law.ring)
+            yi[l] = snap_to_wall(yi[l] + vi[l] * times[l], on_y, law.half_y)
             rub_walls(ui, vi, l, on_x, on_y, si, law.rough)
             ui[l] = -ui[l] if on_x else ui[l]
             vi[l] = -vi[l] if on_y else vi[l]
@@ -361,8 +390,25 @@ def advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops
                 vi[l] -= exchange * dy
                 uj[l] += exchange * dx
                 vj[l] += exchange * dy
-                rub_discs(ui, vi, uj, vj, l, dx, dy, meets, si, sj, law.rough)
+                rub_discs((ui, vi, si), l, (uj, vj, sj), l, dx, dy, meets, law.rough)
             number += 1.0
+
+
+@inlined
+def sweep(lanes, law, hops_x, kicks):
+    """Advance every lane by one event, and kick it if that is due."""
+    find_events(lanes, law, kicks)
+    advance(lanes, law, hops_x)
+    kick_lanes(lanes, law, kicks)
+
+
+@inlined
+def add_counts(count, sums, products):
+    """Add the counts (n,) of a replica and their products, for e ≤ f."""
+    for e in range(N):
+        sums[e] += count[e]
+        for f in range(e, N):
+            products[e, f] += count[e] * count[f]
 
 
 @compiled
@@ -374,14 +420,9 @@ def count_events(states, seed, first, lanes, duration, law, hops_x, kicks):
     of the lanes, None without friction: the column k has the stream of ``seed`` for the replica
     ``first`` + k.
     """
-    discs, replicas = discs_in(states, law.rough), states.shape[1]
-    x, y = np.zeros((discs, lanes)), np.zeros((discs, lanes))
-    u, v = np.zeros((discs, lanes)), np.zeros((discs, lanes))
-    old_x, old_y = np.zeros((discs, lanes)), np.zeros((discs, lanes))
-    spins = new_spins(lanes, discs, law.rough)
-    remaining, times = np.zeros(lanes), np.zeros(lanes)
-    codes, speeds = np.zeros(lanes), np.zeros(lanes)
-    counts, busy = np.zeros((N, lanes)), np.zeros(lanes, np.bool_)
+    rows, replicas = states.shape
+    now, remaining, busy = np.zeros((rows, lanes)), np.zeros(lanes), np.zeros(lanes, np.bool_)
+    moving = lanes_of(now, remaining, law)
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
     count = np.zeros(N, np.int64)
     used, running = 0, 0
@@ -391,19 +432,14 @@ def count_events(states, seed, first, lanes, duration, law, hops_x, kicks):
                 continue
             if busy[l]:
                 for e in range(N):
-                    count[e] = np.int64(counts[e, l])
-                    counts[e, l] = 0.0
-                for e in range(N):
-                    sums[e] += count[e]
-                    for f in range(e, N):
-                        products[e, f] += count[e] * count[f]
+                    count[e] = np.int64(moving.counts[e, l])
+                    moving.counts[e, l] = 0.0
+                add_counts(count, sums, products)
                 busy[l] = False
                 running -= 1
             if used < replicas:
-                for i in range(discs):
-                    x[i, l], y[i, l] = states[i, used], states[discs + i, used]
-                    u[i, l], v[i, l] = states[2 * discs + i, used], states[3 * discs + i, used]
-                take_spins(states, used, l, spins)
+                for k in range(rows):
+                    now[k, l] = states[k, used]
                 open_kicks(l, seed, first + used, kicks)
                 remaining[l] = duration
                 busy[l] = True
@@ -412,19 +448,15 @@ def count_events(states, seed, first, lanes, duration, law, hops_x, kicks):
         if running == 0:
             return sums, products
         for _ in range(SWEEPS):
-            find_events(x, y, u, v, remaining, times, codes, speeds, law, kicks)
-            advance(
-                x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops_x, spins
-            )  # fmt: skip
-            kick_lanes(u, v, spins, times, law, kicks)
+            sweep(moving, law, hops_x, kicks)
 
 
-@optional(lambda laps, x, u, times, ring: None)
-def count_laps(laps, x, u, times, ring):
+@optional(lambda laps, lanes, ring: None)
+def count_laps(laps, lanes, ring):
     """Add to ``laps`` (N, lanes) the rounds that flights complete, as ``nearest`` undoes them."""
     for i in range(laps.shape[0]):
         for l in range(laps.shape[1]):
-            then = x[i, l] + u[i, l] * times[l]
+            then = lanes.x[i, l] + lanes.u[i, l] * lanes.times[l]
             laps[i, l] += (1.0 if then > ring[1] else 0.0) - (1.0 if then < -ring[1] else 0.0)
 
 
@@ -454,22 +486,17 @@ def advance_states(states, laps, time, law, kicks, hops, lanes=LANES):
     discs, replicas = laps.shape
     for first in range(0, replicas, lanes):
         stop = min(first + lanes, replicas)
-        some = states[:, first:stop].copy()
-        x, y = some[:discs], some[discs : 2 * discs]
-        u, v = some[2 * discs : 3 * discs], some[3 * discs : 4 * discs]
-        spins = spins_in(some, discs, law.rough)
-        old_x, old_y, rounds = np.zeros_like(x), np.zeros_like(y), np.zeros_like(x)
-        remaining, times = np.full(stop - first, time), np.zeros(stop - first)
-        codes, speeds = np.zeros(stop - first), np.zeros(stop - first)
-        counts, some_kicks = np.zeros((N, stop - first)), of_lanes(first, stop, kicks)
-        while np.max(remaining) > 0.0:
-            find_events(x, y, u, v, remaining, times, codes, speeds, law, some_kicks)
-            count_laps(rounds, x, u, times, law.ring)
-            advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops, spins)
-            kick_lanes(u, v, spins, times, law, some_kicks)
+        some, rounds = states[:, first:stop].copy(), np.zeros((discs, stop - first))
+        moving = lanes_of(some, np.full(stop - first, time), law)
+        some_kicks = of_lanes(first, stop, kicks)
+        while np.max(moving.remaining) > 0.0:
+            find_events(moving, law, some_kicks)
+            count_laps(rounds, moving, law.ring)
+            advance(moving, law, hops)
+            kick_lanes(moving, law, some_kicks)
         states[:, first:stop] = some
         laps[:, first:stop] += rounds
-        add_hops(counts, first, hops)
+        add_hops(moving.counts, first, hops)
 
 
 @compiled
@@ -504,37 +531,30 @@ def record_intervals(states, seed, first, window, law, hops_x, bins, sums, going
     (2, replicas) doubles. ``kicks`` are those of ``LANES`` lanes, with the streams of
     ``count_events``.
     """
-    discs, width, wide = discs_in(states, law.rough), bins[0], bins[1]
+    discs, (width, wide) = discs_in(states, law.rough), bins
     totals, per_width = np.zeros((2, states.shape[1])), 1.0 / width
     when = np.zeros(discs * (discs - 1) // 2)
     for start in range(0, states.shape[1], LANES):
-        some = states[:, start : start + LANES].copy()
-        x, y = some[:discs], some[discs : 2 * discs]
-        u, v = some[2 * discs : 3 * discs], some[3 * discs : 4 * discs]
-        spins = spins_in(some, discs, law.rough)
-        lanes, own = some.shape[1], totals[:, start:]
-        old_x, old_y, hits = np.zeros_like(x), np.zeros_like(y), np.zeros((N, lanes))
-        endless, times = np.full(lanes, np.inf), np.zeros(lanes)
-        codes, speeds, seen = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
+        some, own = states[:, start : start + LANES].copy(), totals[:, start:]
+        lanes = some.shape[1]
+        moving, counted = lanes_of(some, np.full(lanes, np.inf), law), np.zeros(lanes)
+        times = moving.times
         for l in range(lanes):
             open_kicks(l, seed, first + start + l, kicks)
         # The time of the last hop, negative before the first one, and the time since then.
         elapsed, last, age = np.zeros(lanes), np.full(lanes, -1.0), np.zeros(lanes)
         counts, busy = np.zeros((lanes, sums.shape[1]), np.int64), True
-        vertical = VERTICAL, old_y, y
-        hop, before, after = vertical if hops_x is None else (HORIZONTAL, old_x, x)
+        vertical = moving.counts[VERTICAL], moving.old_y, moving.y
+        horizontal = moving.counts[HORIZONTAL], moving.old_x, moving.x
+        hops, before, after = vertical if hops_x is None else horizontal
         while busy and going[0]:
             busy = False
             for _ in range(SWEEPS):
-                find_events(x, y, u, v, endless, times, codes, speeds, law, kicks)
-                advance(
-                    x, y, u, v, old_x, old_y, endless, times, codes, hits, law, hops_x, spins
-                )  # fmt: skip
-                kick_lanes(u, v, spins, times, law, kicks)
+                sweep(moving, law, hops_x, kicks)
                 for l in range(lanes):
                     at = 0.0
-                    if hits[hop, l] > seen[l]:
-                        seen[l] = hits[hop, l]
+                    if hops[l] > counted[l]:
+                        counted[l] = hops[l]
                         for k in range(hops_in_flight(before, after, l, times[l], when)):
                             interval = age[l] + (when[k] - at)
                             if 0.0 <= last[l] < window:

@@ -18,35 +18,23 @@ import numpy as np
 
 from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK, open_kicks, renew_kicks
 from twodiscs.dynamics.law import crossing_time
-from twodiscs.dynamics.many.lockstep import (
-    COLLISIONS,
-    ManyLaw,
-    N,
-    advance,
-    changes_order,
-    discs_in,
-    find_events,
-    kick_lanes,
-    law_of,
-    nearest,
-    new_kicks,
-)
+from twodiscs.dynamics.many import lockstep
+from twodiscs.dynamics.many.lockstep import COLLISIONS, ManyLaw, law_of
 from twodiscs.dynamics.two.passages import LARGEST_CLUSTER, SUMS
 from twodiscs.model.checks import InputError, check_choice
 from twodiscs.model.events import HOPS
+from twodiscs.model.many import LARGE
 from twodiscs.model.scene import hopping_along
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.many import insertions
 from twodiscs.sampling.many.initial import (
-    LARGE,
     Initial,
     draw_velocities,
     initial_of,
-    overlaps,
-    put_spins,
-    spins_in,
+    put_state,
     velocity_memory,
 )
+from twodiscs.sampling.many.insertions import is_free
 from twodiscs.sampling.streams import open_stream, signed_uniform, uniform
 from twodiscs.theory import n_discs
 from twodiscs.theory.virial import flux_constant
@@ -82,7 +70,6 @@ def draw_on_surface(state, pair, states, most):
     initial, proposals = pair.initial, 0
     n, ring, spin = initial.discs, initial.ring, initial.spin
     centres, (velocities, cuts) = np.empty((2, n)), velocity_memory(n, spin)
-    spins = spins_in(states, n, spin)
     for k in range(states.shape[1]):
         i = 0
         while i < n:
@@ -100,15 +87,12 @@ def draw_on_surface(state, pair, states, most):
                 x = initial.half_x * signed_uniform(state)
                 y = initial.half_y * signed_uniform(state)
                 centres[0, i], centres[1, i] = x, y
-                i = 0 if overlaps(centres, i, i, x, y, initial) else i + 1
+                i = i + 1 if is_free(centres, i, x, y, initial, -1) else 0
         while True:
             draw_velocities(state, velocities, cuts, ring, spin)
             if math.sqrt(2.0) * uniform(state) < abs(velocities[0, 0] - velocities[0, 1]):
                 break
-        put_spins(velocities, spins, k, spin)
-        for i in range(n):
-            states[i, k], states[n + i, k] = centres[0, i], centres[1, i]
-            states[2 * n + i, k], states[3 * n + i, k] = velocities[0, i], velocities[1, i]
+        put_state(states, k, centres, velocities, spin)
     return states.shape[1], proposals
 
 
@@ -120,28 +104,23 @@ def follow_pair(states, remaining, gap, net, hops, law, kicks):
     (above 0) a lane goes on after each hop for this time, up to ``LARGEST_CLUSTER`` hops. Returns
     the number of wall hits and collisions.
     """
-    n, lanes = discs_in(states, law.rough), remaining.size
-    spins = spins_in(states, n, law.rough)
-    x, y, u, v = states[:n], states[n : 2 * n], states[2 * n : 3 * n], states[3 * n : 4 * n]
-    old_x, old_y, counts = np.zeros((n, lanes)), np.zeros((n, lanes)), np.zeros((N, lanes))
-    times, codes, speeds = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-    rising = np.zeros(lanes)
+    lanes = lockstep.lanes_of(states, remaining, law)
+    x, u, old_x, times = lanes.x, lanes.u, lanes.old_x, lanes.times
+    rising = np.zeros(remaining.size)
     while np.max(remaining) > 0.0:
-        for l in range(lanes):
+        for l in range(remaining.size):
             rising[l] = u[0, l] - u[1, l]
-        find_events(x, y, u, v, remaining, times, codes, speeds, law, kicks)
-        advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, None, spins)
-        kick_lanes(u, v, spins, times, law, kicks)
-        for l in range(lanes):
+        lockstep.sweep(lanes, law, None, kicks)
+        for l in range(remaining.size):
             apart = old_x[0, l] - old_x[1, l]
-            if changes_order(apart, x[0, l] - x[1, l], law.ring):
-                apart = nearest(apart, law.ring)
+            if lockstep.changes_order(apart, x[0, l] - x[1, l], law.ring):
+                apart = lockstep.nearest(apart, law.ring)
                 net[l] += math.copysign(1.0, rising[l])
                 hops[l] += 1.0
                 if gap > 0.0:
                     left = gap - (times[l] - crossing_time(apart, rising[l]))
                     remaining[l] = left if hops[l] < LARGEST_CLUSTER else 0.0
-    return np.int64(counts[COLLISIONS:].sum())
+    return np.int64(lanes.counts[COLLISIONS:].sum())
 
 
 @compiled
@@ -204,12 +183,10 @@ def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes, kicks):
 
 
 def _followed(scene, hop, times, gap, blocks, seed, first):
-    sums, sizes = (
-        np.zeros((blocks, SUMS, len(times)), np.int64),
-        np.zeros(LARGEST_CLUSTER + 1, np.int64),
-    )
+    sums = np.zeros((blocks, SUMS, len(times)), np.int64)
+    sizes = np.zeros(LARGEST_CLUSTER + 1, np.int64)
     run = np.uint64(seed), first, first + blocks, np.array(times), gap, pair_of(scene, hop)
-    return sums, sizes, follow_blocks(*run, sums, sizes, new_kicks(scene, HOPS_OF_BLOCK))
+    return sums, sizes, follow_blocks(*run, sums, sizes, lockstep.new_kicks(scene, HOPS_OF_BLOCK))
 
 
 def hop_sums(scene, hop, times, blocks, seed, first=0):
@@ -267,11 +244,9 @@ def hop_rate(scene, hop):
     if rate := n_discs.event_rates(scene)[hop]:
         return rate
     scene, hop = hopping_along(scene, hop, "x")
-    volume, (accepted, proposals) = (
-        insertions.sample(scene, SAMPLES, 0),
-        surface_fraction(scene, hop),
-    )
+    accepted, proposals = surface_fraction(scene, hop)
+    volume, _ = insertions.sample(scene, SAMPLES, 0)
     a, b, n = scene.range_x, scene.range_y, scene.discs
     level = n * (n - 1) / 2 * (scene.room(hop) / b) ** 2 / a * accepted / proposals
-    empty = math.exp(n * math.log(a * b) - volume[0].log_volume)
+    empty = math.exp(n * math.log(a * b) - volume.log_volume)
     return math.sqrt(2) * flux_constant(scene.velocity_components) * level * empty

@@ -9,15 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.dynamics.ensemble import LANES, REPLICAS, SWEEPS, nearest_power_of_two
-from twodiscs.dynamics.law import (
-    DISC,
-    END_OF_TIME,
-    WALL_X1,
-    WALL_X2,
-    WALL_Y1,
-    WALL_Y2,
-    crosses,
-)
+from twodiscs.dynamics.law import DISC, END_OF_TIME, WALL_X1, WALL_X2, WALL_Y1, WALL_Y2, crosses
 from twodiscs.dynamics.two import strip
 from twodiscs.dynamics.two.follow import follow
 from twodiscs.model.events import DECLARED, EVENTS, HOPS, WALLS, by_kind
@@ -252,11 +244,6 @@ def run_blocks(
     sampler = start_sampler(scene, order=order)
     follow(counting, scene, sampler, seed, first, stop, replicas, lanes, SWEEPS)
     return counting.sums, counting.products
-
-
-def planned(needed, affordable):
-    """Return the number of planned blocks, ``needed``, because rare hops have their own parts."""
-    return needed
 
 
 def cost_ratio(scene):

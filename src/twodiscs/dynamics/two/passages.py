@@ -37,10 +37,7 @@ import numpy as np
 from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK, LANES, SHORT_SWEEPS
 from twodiscs.dynamics.law import END_OF_TIME, WRAP_X, WRAP_Y, crosses, crossing_time
 from twodiscs.dynamics.two.follow import across, follow
-from twodiscs.model.checks import (
-    InputError,
-    check_choice,
-)
+from twodiscs.model.checks import InputError, check_choice
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import check_scene, hopping_along
 from twodiscs.sampling.jit import inlined
@@ -182,14 +179,18 @@ def neighbours(scene, hop):
     return exact.mean_times(scene)[hop], 0
 
 
-def _sampler(scene, hop, on_surface):
-    if on_surface:
-        return StartSampler(None, prism_of(scene, hop, 0.0), surface="xy".index(AXIS[hop]))
-    return StartSampler(None, prism_of(scene))
-
-
 def _axis(hop):
     return (None, WRAP_Y) if AXIS[hop] == "y" else (True, WRAP_X)
+
+
+def _followed(experiment, scene, hop, blocks, seed, first, on_surface=True):
+    """Follow the hops of an ``experiment`` and return the number of wall hits and collisions."""
+    sampler = StartSampler(None, prism_of(scene))
+    if on_surface:
+        sampler = StartSampler(None, prism_of(scene, hop, 0.0), surface="xy".index(AXIS[hop]))
+    stop, shape = first + blocks, (HOPS_OF_BLOCK, LANES, SHORT_SWEEPS)
+    follow(experiment, scene, sampler, seed, first, stop, *shape)
+    return int(experiment.events.sum())
 
 
 def hop_sums(scene, hop, times, blocks, seed, first=0, on_surface=True):
@@ -202,20 +203,10 @@ def hop_sums(scene, hop, times, blocks, seed, first=0, on_surface=True):
     """
     times = np.array(times, float)
     scene, hop = hopping_along(scene, hop, "x")
-    net = NetHops(
-        times=times,
-        hopping=on_surface,
-        axis=_axis(hop),
-        falls=np.zeros(LANES),
-        rises=np.zeros(LANES),
-        hops=np.zeros(LANES),
-        events=np.zeros(LANES),
-        sums=np.zeros((blocks, SUMS, times.size), np.int64),
-        first=first * HOPS_OF_BLOCK,
-    )
-    sampler = _sampler(scene, hop, on_surface)
-    follow(net, scene, sampler, seed, first, first + blocks, HOPS_OF_BLOCK, LANES, SHORT_SWEEPS)
-    return net.sums, int(net.events.sum())
+    falls, rises, hops, events = np.zeros((4, LANES))
+    sums, begin = np.zeros((blocks, SUMS, times.size), np.int64), first * HOPS_OF_BLOCK
+    net = NetHops(times, on_surface, _axis(hop), falls, rises, hops, events, sums, begin)
+    return sums, _followed(net, scene, hop, blocks, seed, first, on_surface)
 
 
 def cluster_sizes(scene, hop, gap, blocks, seed, first=0):
@@ -226,17 +217,7 @@ def cluster_sizes(scene, hop, gap, blocks, seed, first=0):
     a time ``gap``. Arguments are otherwise as for ``hop_sums``.
     """
     scene, hop = hopping_along(scene, hop, "x")
-    clusters = Clusters(
-        gap=float(gap),
-        axis=_axis(hop),
-        most=float(LARGEST_CLUSTER),
-        falls=np.zeros(LANES),
-        hops=np.zeros(LANES),
-        events=np.zeros(LANES),
-        sizes=np.zeros(LARGEST_CLUSTER + 1, np.int64),
-    )
-    sampler = _sampler(scene, hop, True)
-    follow(
-        clusters, scene, sampler, seed, first, first + blocks, HOPS_OF_BLOCK, LANES, SHORT_SWEEPS
-    )
-    return clusters.sizes, int(clusters.events.sum())
+    falls, hops, events = np.zeros((3, LANES))
+    most, sizes = float(LARGEST_CLUSTER), np.zeros(LARGEST_CLUSTER + 1, np.int64)
+    clusters = Clusters(float(gap), _axis(hop), most, falls, hops, events, sizes)
+    return sizes, _followed(clusters, scene, hop, blocks, seed, first)

@@ -5,32 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from twodiscs.dynamics import law as codes
 from twodiscs.dynamics.ensemble import before_kick, nearest_power_of_two, opened
-from twodiscs.dynamics.law import (
-    DISC,
-    END_OF_TIME,
-    KICK,
-    WALL_X1,
-    WALL_X2,
-    WALL_Y1,
-    WALL_Y2,
-    WALL_Z1,
-    WALL_Z2,
-    WRAP_X,
-    WRAP_Y,
-    WRAP_Z,
-    after_event,
-    crosses,
-    crossing_time,
-    law_of,
-    next_event,
-)
+from twodiscs.dynamics.law import after_event, crosses, crossing_time, law_of, next_event
 from twodiscs.dynamics.two.follow import across, kicked, new_kicks, put_state, state_at
-from twodiscs.model.checks import InputError
 from twodiscs.model.events import HOPS
-from twodiscs.model.two import ENERGY
 from twodiscs.sampling.jit import compiled, optional
-from twodiscs.sampling.starts import ROUNDING, components, given_state
+from twodiscs.sampling.starts import components
 from twodiscs.theory import exact
 
 #: Wall and disc events that a trajectory lasts at most, on average.
@@ -38,19 +19,20 @@ LONGEST_TRAJECTORY = 6000
 
 #: The name of the event that ends a flight, by code, and the discs that it is of.
 _NAMES = {
-    END_OF_TIME: ("end", None, None),
-    WALL_X1: ("wall_x1", 1, None),
-    WALL_Y1: ("wall_y1", 1, None),
-    WALL_X2: ("wall_x2", 2, None),
-    WALL_Y2: ("wall_y2", 2, None),
-    DISC: ("disc_collision", 1, 2),
-    WALL_Z1: ("wall_z1", 1, None),
-    WALL_Z2: ("wall_z2", 2, None),
-    KICK: ("kick", None, None),
+    codes.END_OF_TIME: ("end", None, None),
+    codes.WALL_X1: ("wall_x1", 1, None),
+    codes.WALL_Y1: ("wall_y1", 1, None),
+    codes.WALL_X2: ("wall_x2", 2, None),
+    codes.WALL_Y2: ("wall_y2", 2, None),
+    codes.DISC: ("disc_collision", 1, 2),
+    codes.WALL_Z1: ("wall_z1", 1, None),
+    codes.WALL_Z2: ("wall_z2", 2, None),
+    codes.KICK: ("kick", None, None),
 }
 
-#: The axis of the periodic separation that jumps at the end of a flight, by code.
-_JUMPS = {WRAP_X: "x", WRAP_Y: "y", WRAP_Z: "z"}
+#: The axis of the periodic separation that jumps at the end of a flight, and the places of both
+#: centres in a state, by code.
+_JUMPS = {codes.WRAP_X: (0, 0, 2), codes.WRAP_Y: (1, 1, 3), codes.WRAP_Z: (2, 8, 9)}
 
 
 @compiled
@@ -74,7 +56,7 @@ def time_to_next(state, law, hop, longest):
         if hop and crosses(before, across(state, None)[0]):
             return elapsed + crossing_time(before, rising)
         elapsed += time
-        if code == DISC and not hop:
+        if code == codes.DISC and not hop:
             break
     return elapsed
 
@@ -86,7 +68,7 @@ def deep_separation(state, present):
 
 
 @optional(lambda left, kicks: False)
-def goes_on(left, kicks):
+def is_left(left, kicks):
     """Say whether time is left after a flight that ended without an event."""
     return left > 0.0
 
@@ -100,16 +82,16 @@ def advance_states(states, wraps, time, law, kicks):
     """
     for i in range(states.shape[1]):
         state, left, code = state_at(states, i, law), time, 1.0
-        while code != END_OF_TIME or goes_on(left, kicks):
+        while code != codes.END_OF_TIME or is_left(left, kicks):
             flight, code = next_event(state, before_kick(left, i, kicks), law)
             state = after_event(state, flight, code, law)
             state = kicked(state, i, flight, law, kicks)
             left -= flight
-            if code == WRAP_X:
+            if code == codes.WRAP_X:
                 wraps[0, i] -= math.copysign(1.0, state[0] - state[2])
-            elif code == WRAP_Y:
+            elif code == codes.WRAP_Y:
                 wraps[1, i] -= math.copysign(1.0, state[1] - state[3])
-            elif code == WRAP_Z:
+            elif code == codes.WRAP_Z:
                 wraps[2, i] -= math.copysign(1.0, deep_separation(state, law.depth))
         put_state(states, i, state, law)
 
@@ -139,38 +121,26 @@ def unwrap(scene, columns, wraps):
             columns[f"{axis}2"] -= second * wraps[k]
 
 
-class Jumps:
-    """The jumps of a periodic separation along one trajectory, which keep it within a period.
+def nearest_image(scene, state):
+    """Return ``state`` with the image of disc 2 that is nearest to disc 1, and the way to it.
 
-    ``periods`` has the periods between the image of disc 2 that is followed and disc 2, by axis.
+    That is the number of periods between the image and disc 2, by axis.
     """
+    columns, periods = dict(zip(components(scene), state, strict=True)), {}
+    for axis in scene.periodic:
+        side, apart = scene.side(axis), columns[f"{axis}1"] - columns[f"{axis}2"]
+        periods[axis] = round((apart - math.remainder(apart, side)) / side)
+        columns[f"{axis}2"] += periods[axis] * side
+    return tuple(columns.values()), periods
 
-    def __init__(self, scene):
-        self.scene, self.wraps, self.periods = scene, np.zeros((3, 1)), {}
 
-    def nearest(self, state):
-        """Return ``state`` with the image of disc 2 that is nearest to disc 1."""
-        columns = dict(zip(components(self.scene), state, strict=True))
-        for axis in self.scene.periodic:
-            side, apart = self.scene.side(axis), columns[f"{axis}1"] - columns[f"{axis}2"]
-            self.periods[axis] = round((apart - math.remainder(apart, side)) / side)
-            columns[f"{axis}2"] += self.periods[axis] * side
-        return tuple(columns.values())
-
-    def see(self, code, state):
-        """Count the jump that ends a flight with this ``code`` in ``state``, if it is one."""
-        if axis := _JUMPS.get(code):
-            first, second = {"x": (0, 2), "y": (1, 3), "z": (8, 9)}[axis]
-            apart = state[first] - state[second]
-            self.wraps["xyz".index(axis)] -= math.copysign(1.0, apart)
-
-    def undone(self, state):
-        """Return ``state`` with centres that go on beyond the cell, from those of the start."""
-        columns = dict(zip(components(self.scene), state, strict=True))
-        unwrap(self.scene, columns, self.wraps[:, 0])
-        for axis, periods in self.periods.items():
-            columns[f"{axis}2"] -= periods * self.scene.side(axis)
-        return tuple(columns.values())
+def beyond_cell(scene, state, wraps, periods):
+    """Return ``state`` with centres that go on beyond the cell, from those of the start."""
+    columns = dict(zip(components(scene), state, strict=True))
+    unwrap(scene, columns, wraps[:, 0])
+    for axis, number in periods.items():
+        columns[f"{axis}2"] -= number * scene.side(axis)
+    return tuple(columns.values())
 
 
 def events_of(scene, state, duration, seed=0):
@@ -182,9 +152,8 @@ def events_of(scene, state, duration, seed=0):
     start, the last one the end. Along periodic axes centres go on beyond the cell.
     """
     law, time, kicks = law_of(scene), 0.0, kicks_of(scene, 1, seed)
-    jumps = Jumps(scene)
     yield time, "start", None, None, state
-    state = jumps.nearest(state)
+    wraps, (state, periods) = new_wraps(scene, 1), nearest_image(scene, state)
     while True:
         left = duration - time
         until_kick = before_kick(left, 0, kicks)
@@ -196,14 +165,16 @@ def events_of(scene, state, duration, seed=0):
             if name in scene.events and crosses(before, across(after, horizontal)[0]):
                 hops.append((crossing_time(before, rising), name))
         for until, name in sorted(hops):
-            at_hop = after_event(state, until, END_OF_TIME, law)
-            yield time + until, name, 1, 2, jumps.undone(at_hop)
+            at_hop = after_event(state, until, codes.END_OF_TIME, law)
+            yield time + until, name, 1, 2, beyond_cell(scene, at_hop, wraps, periods)
         time, state = time + flight, kicked(after, 0, flight, law, kicks)
-        code = KICK if code == END_OF_TIME and until_kick < left else code
-        jumps.see(code, state)
+        code = codes.KICK if code == codes.END_OF_TIME and until_kick < left else code
+        if code in _JUMPS:
+            axis, first, second = _JUMPS[code]
+            wraps[axis] -= math.copysign(1.0, state[first] - state[second])
         if code in _NAMES:
-            yield time, *_NAMES[code], jumps.undone(state)
-        if code == END_OF_TIME:
+            yield time, *_NAMES[code], beyond_cell(scene, state, wraps, periods)
+        if code == codes.END_OF_TIME:
             return
 
 
@@ -221,49 +192,3 @@ def usual_duration(scene):
     hops = [exact.mean_times(scene)[hop] for hop in HOPS if scene.is_possible(hop)]
     duration = min(8 * max(hops, default=math.inf), LONGEST_TRAJECTORY / trajectory_rate(scene))
     return nearest_power_of_two(duration)
-
-
-def state_of(scene, start):
-    """Return ``start`` as a state of the ``Scene``: a tuple of floats, as ``law`` has it.
-
-    ``start`` is one of ``sampling.starts.records``, or as many numbers. On periodic axes any image
-    of disc 2 serves, and it stays. Raises ``InputError`` for anything else, for discs that overlap
-    or lie outside, and for another energy than 1/2.
-    """
-    state, apart = dict(zip(components(scene), given_state(scene, start), strict=True)), {}
-    for axis in scene.axes:
-        side = scene.side(axis)
-        if axis in scene.walled:
-            for disc, radius in enumerate(scene.radii, 1):
-                most, centre = side / 2 - radius, state[f"{axis}{disc}"]
-                if abs(centre) > most + ROUNDING * side:
-                    raise InputError(
-                        f"start must have disc {disc} inside the box, with {axis}{disc} between "
-                        f"{-most!r} and {most!r}, not {centre!r}"
-                    )
-        apart[axis] = state[f"{axis}1"] - state[f"{axis}2"]
-        if axis in scene.periodic:
-            apart[axis] = math.remainder(apart[axis], side)
-    distance, contact = math.hypot(*apart.values()), scene.contact_distance
-    if distance < contact * (1 - ROUNDING):
-        raise InputError(
-            f"start must have the discs apart, with {contact!r} or more between their centres, not "
-            f"{distance!r}"
-        )
-    energy = _energy(scene, state)
-    if abs(energy - ENERGY) > ROUNDING:
-        raise InputError(f"start must have a total energy of {ENERGY}, not {energy!r}")
-    return tuple(state.values())
-
-
-def _energy(scene, state):
-    """Return the total energy of a state, {name: value}, of a ``Scene``."""
-    energy = 0.0
-    for disc, (mass, radius) in enumerate(zip(scene.masses, scene.radii, strict=True), 1):
-        speeds = [state[f"{name}{disc}"] for name in "uvw"[: len(scene.axes)]]
-        energy += mass * math.fsum(speed * speed for speed in speeds) / 2
-        if scene.moment_of_inertia is not None:
-            energy += mass * scene.moment_of_inertia * state[f"s{disc}"] ** 2 / 2
-        if scene.field:
-            energy += mass * scene.field * (state[f"y{disc}"] + scene.height / 2 - radius)
-    return energy

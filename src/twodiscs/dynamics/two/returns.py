@@ -96,25 +96,16 @@ def record_intervals(
     if scene.is_plain:  # initial states are drawn on the surface of vertical hops only
         scene, hop = hopping_along(scene, hop, "y")
     horizontal = True if hop == "horizontal_hop" else None
+    to_come, age, interval, elapsed = np.zeros((4, lanes))
+    finished, lane_of = np.zeros(lanes + 1), np.zeros(lanes + 1, np.int64)
+    counts, totals = np.zeros((lanes, sums.shape[1]), np.int64), np.zeros((stop - first) * chains)
     recorded = Returns(
-        horizontal=horizontal,
-        wanted=float(returns),
-        per_width=1.0 / width,
-        wide=wide,
-        to_come=np.zeros(lanes),
-        age=np.zeros(lanes),
-        interval=np.zeros(lanes),
-        elapsed=np.zeros(lanes),
-        finished=np.zeros(lanes + 1),
-        lane_of=np.zeros(lanes + 1, np.int64),
-        counts=np.zeros((lanes, sums.shape[1]), np.int64),
-        sums=sums,
-        totals=np.zeros((stop - first) * chains),
-        first=first * chains,
-    )
+        horizontal, float(returns), 1.0 / width, wide, to_come, age, interval, elapsed, finished,
+        lane_of, counts, sums, totals, first * chains,
+    )  # fmt: skip
     sampler = start_sampler(scene, surface=1 if horizontal is None else 0)
     follow(recorded, scene, sampler, seed, first, stop, chains, lanes, SWEEPS, going)
-    return recorded.totals
+    return totals
 
 
 def mean_interval(scene, hop):
@@ -127,7 +118,7 @@ def intervals_of_chain(scene, hop):
     return RETURNS
 
 
-def interval_cost(scene):
+def cost_ratio(scene):
     """Return the time of an event over the time of an event of the plain ensemble."""
     return 1.0
 

@@ -247,10 +247,8 @@ def run_of(scene, hop, target, budget, seed):
     It has separate streams.
     """
     strip = strip_of(scene, hop)
-    seed, fractions = (
-        stream_seed(seed, hop, "strip", key(scene.radius)),
-        fractions_of(scene, hop, strip),
-    )
+    seed = stream_seed(seed, hop, "strip", key(scene.radius))
+    fractions = fractions_of(scene, hop, strip)
     hops = REPLICAS * 2 * strip.time * exact.rate(scene, hop) / strip.fraction
     wanders = scene.moment_of_inertia or scene.friction
     margin = MARGIN_OF_ROUGH if wanders else MARGIN_OF_COUNTS

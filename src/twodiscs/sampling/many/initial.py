@@ -28,8 +28,9 @@ from twodiscs.model.many import LARGE, arrangement, is_ordered
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import chains, insertions
 from twodiscs.sampling.many.cells import CellGrid, grid_of
-from twodiscs.sampling.many.insertions import around
-from twodiscs.sampling.rounds import in_a_thread, in_threads
+from twodiscs.sampling.many.insertions import around, is_free
+from twodiscs.sampling.rounds import draw_in_calls, in_a_thread
+from twodiscs.sampling.separations import draw_in_disc
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
 from twodiscs.theory import channel
 
@@ -112,13 +113,8 @@ def initial_of(scene, by=None):
         scene.width if scene.periodic else None,
         _cells(scene) if by == "channel" else None,
         _chain(scene) if by == "chain" or scene.discs > MOST_REJECTED else None,
-        rows_of(scene), spin_of(scene),
+        (4 if scene.moment_of_inertia is None else 5) * scene.discs, spin_of(scene),
     )  # fmt: skip
-
-
-def rows_of(scene):
-    """Return the number of components of a state of a ``Scene``."""
-    return (4 if scene.moment_of_inertia is None else 5) * scene.discs
 
 
 def spin_of(scene):
@@ -288,11 +284,7 @@ def draw_velocities(state, velocities, cuts, ring, spin=None):
     sort(cuts)
     for i in range(n):
         low, high = cuts[i - 1] if i > 0 else 0.0, cuts[i] if i < n - 1 else 1.0
-        while True:
-            p, q = signed_uniform(state), signed_uniform(state)
-            square = p * p + q * q
-            if 0.0 < square < 1.0:
-                break
+        p, q, square = draw_in_disc(state)
         scale = math.sqrt((high - low) / square)
         velocities[0, i], velocities[1, i] = p * scale, q * scale
     keep_spins(velocities, ring, spin)
@@ -301,25 +293,12 @@ def draw_velocities(state, velocities, cuts, ring, spin=None):
 # Centres -----------------------------------------------------------------------------------------
 
 
-@inlined
-def overlaps(centres, i, stop, x, y, initial):
-    """Return whether a disc at (x, y) overlaps any disc before ``stop`` except disc ``i``."""
-    for j in range(stop):
-        dx, dy = around(x - centres[0, j], initial.ring), y - centres[1, j]
-        if j != i and dx * dx + dy * dy < initial.sigma * initial.sigma:
-            return True
-    return False
-
-
 def _rejected(state, initial, centres, chain):
     i = 0
     while i < initial.discs:
         x, y = initial.half_x * signed_uniform(state), initial.half_y * signed_uniform(state)
-        if overlaps(centres, i, i, x, y, initial):
-            i = 0
-            continue
         centres[0, i], centres[1, i] = x, y
-        i += 1
+        i = i + 1 if is_free(centres, i, x, y, initial, -1) else 0
 
 
 def _one_by_one(state, initial, centres, chain, grid):
@@ -330,8 +309,7 @@ def _one_by_one(state, initial, centres, chain, grid):
             x = centres[0, i] + scale * width * signed_uniform(state)
             y = centres[1, i] + scale * height * signed_uniform(state)
             x = around(x, initial.ring)
-            inside = (abs(x) <= initial.half_x) & (abs(y) <= initial.half_y)
-            if inside and not overlaps(centres, i, initial.discs, x, y, initial):
+            if is_free(centres, initial.discs, x, y, initial, i):
                 centres[0, i], centres[1, i] = x, y
 
 
@@ -429,19 +407,25 @@ def draw_centres(state, initial, centres, cells):
     settle(state, initial, centres, initial.chain)
 
 
+@inlined
+def put_state(states, k, centres, velocities, spin):
+    """Put ``centres`` and ``velocities``, and the spins of rough discs, into column ``k``."""
+    n = centres.shape[1]
+    for i in range(n):
+        states[i, k], states[n + i, k] = centres[0, i], centres[1, i]
+        states[2 * n + i, k], states[3 * n + i, k] = velocities[0, i], velocities[1, i]
+    put_spins(velocities, spins_in(states, n, spin), k, spin)
+
+
 @compiled
 def draw_states(state, initial, states):
     """Fill ``states`` (rows, number): x of all discs, then y, u, v and maybe s."""
-    n, centres = initial.discs, np.empty((2, initial.discs))
-    velocities, cuts = velocity_memory(n, initial.spin)
-    spins = spins_in(states, n, initial.spin)
+    centres = np.empty((2, initial.discs))
+    velocities, cuts = velocity_memory(initial.discs, initial.spin)
     for k in range(states.shape[1]):
         draw_centres(state, initial, centres, initial.cells)
         draw_velocities(state, velocities, cuts, initial.ring, initial.spin)
-        put_spins(velocities, spins, k, initial.spin)
-        for i in range(n):
-            states[i, k], states[n + i, k] = centres[0, i], centres[1, i]
-            states[2 * n + i, k], states[3 * n + i, k] = velocities[0, i], velocities[1, i]
+        put_state(states, k, centres, velocities, initial.spin)
 
 
 @compiled
@@ -462,11 +446,8 @@ def labelled(scene, number, seed, block=0, progress=None):
     that the first states do not depend on their number. ``progress``, if given, is called
     repeatedly with the number of drawn states (None: as before), and ``number``.
     """
-    filled, initial, exchanged = (
-        np.zeros((rows_of(scene), number)),
-        initial_of(scene),
-        method(scene),
-    )
+    initial = initial_of(scene)
+    filled = np.zeros((initial.rows, number))
     seeds = np.uint64(seed), ~np.uint64(seed)
     stream, labels = (in_a_thread(open_stream, each, block) for each in seeds)
     seconds = 0.0
@@ -475,7 +456,7 @@ def labelled(scene, number, seed, block=0, progress=None):
         nonlocal seconds
         begin, some = monotonic(), np.zeros((initial.rows, stop - first))
         draw_states(stream, initial, some)
-        if exchanged != "rejection":
+        if method(scene) != "rejection":
             exchange_labels(labels, some, scene.discs)
         filled[:, first:stop] = some
         seconds = monotonic() - begin
@@ -488,9 +469,7 @@ def labelled(scene, number, seed, block=0, progress=None):
             yield first, min(first + step, number)
             first, step = first + step, step if seconds > SHORT else min(2 * step, PIECE)
 
-    for done in in_threads(fill, calls(), waiting=lambda: progress and progress(None, number)):
-        if progress is not None:
-            progress(done, number)
+    draw_in_calls(fill, calls(), number, progress)
     return filled
 
 

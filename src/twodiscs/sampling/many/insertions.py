@@ -19,17 +19,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.checks import (
-    MOST_WITH_VOLUME,
-    InputError,
-    check_choice,
-    check_fraction,
-    check_integer,
-)
+from twodiscs.model.checks import MOST_WITH_VOLUME, InputError, check_fraction, check_integer
 from twodiscs.model.events import SHELLS, by_kind
 from twodiscs.points.monte_carlo import InsertionPoint
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.rounds import Sampler, in_a_thread
+from twodiscs.sampling.rounds import Sampler, check_quantities, in_a_thread
+from twodiscs.sampling.separations import draw_in_disc
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
 from twodiscs.theory.virial import Derivatives, overlap_of_two
 
@@ -80,11 +75,15 @@ def around(dx, ring):
     return dx
 
 
-@optional(
-    lambda starts, ends, n, low, high, half, ring: put_between(starts, ends, n, low, high, half)
-)
+def _put_between(starts, ends, n, low, high, half, ring):
+    low, high = max(low, -half), min(high, half)
+    starts[n], ends[n] = low, high
+    return n + 1 if high > low else n
+
+
+@optional(_put_between)
 def put_interval(starts, ends, n, low, high, half, ring):
-    """Add the blocked interval from ``low`` to ``high``, as two if it crosses ±``half``."""
+    """Add the blocked interval from ``low`` to ``high``, on a ring as two across ±``half``."""
     starts[n], ends[n] = max(low, -half), min(high, half)
     n += 1
     if low < -half:
@@ -94,14 +93,6 @@ def put_interval(starts, ends, n, low, high, half, ring):
         starts[n], ends[n] = -half, high - ring
         n += 1
     return n
-
-
-@inlined
-def put_between(starts, ends, n, low, high, half):
-    """Add the blocked interval from ``low`` to ``high`` between walls."""
-    low, high = max(low, -half), min(high, half)
-    starts[n], ends[n] = low, high
-    return n + 1 if high > low else n
 
 
 @compiled
@@ -192,11 +183,7 @@ def sample_blocks(seed, first, stop, discs, box, walls):
                 bottom = is_free(centres, last, x, -box.half_y, box, -1)
                 weights[2] = ((1.0 if top else 0.0) + (1.0 if bottom else 0.0)) / 2
                 j = np.int64(next_bits(state) % np.uint64(last))
-                while True:
-                    p, q = signed_uniform(state), signed_uniform(state)
-                    square = p * p + q * q
-                    if 0.0 < square < 1.0:
-                        break
+                p, q, square = draw_in_disc(state)
                 scale = box.sigma / math.sqrt(square)
                 at_x = around(centres[0, j] + p * scale, box.ring)
                 touches = is_free(centres, last, at_x, centres[1, j] + q * scale, box, j)
@@ -217,10 +204,8 @@ def box_of(scene):
     pairs = scene.discs * (scene.discs - 1) / 2
     # Rounded to a power of two: the same on every machine.
     typical = 2.0 ** round(pairs * math.log2(1 - overlap_of_two(scene)))
-    return Bounds(
-        scene.range_x / 2, scene.range_y / 2, scene.contact_distance,
-        scene.width if scene.periodic else None, typical,
-    )  # fmt: skip
+    ring = scene.width if scene.periodic else None
+    return Bounds(scene.range_x / 2, scene.range_y / 2, scene.contact_distance, ring, typical)
 
 
 def run_blocks(scene, seed, first, stop):
@@ -280,11 +265,7 @@ def inserted(scene, quantities, shell, seed):
     Arguments are as in ``montecarlo.sample_point``; no shell is needed. A point is an
     ``InsertionPoint``. The area of all walls comes with those of the right and the top wall.
     """
-    allowed = ("volume", *(f"{event}_area" for event in scene.events))
-    for quantity in quantities:
-        check_choice("quantity", quantity, allowed)
-    if not quantities:
-        raise InputError("quantities must name at least one quantity, but is empty")
+    check_quantities(scene, quantities)
     check_fraction("shell", shell)
     check_integer("seed", seed, 0)
     if scene.discs > MOST_WITH_VOLUME:
@@ -294,11 +275,8 @@ def inserted(scene, quantities, shell, seed):
         )
     wanted = {*quantities, "volume"}
     if "any_wall_area" in wanted:
-        wanted |= {f"{event}_area" for event in ("right_wall", "top_wall")} & {*allowed}
+        wanted |= {f"{event}_area" for event in ("right_wall", "top_wall") if event in scene.events}
     sampled = {name: k for name, k in SUMS.items() if name in wanted}
-
-    def count(first, stop):
-        return np.vstack(run_blocks(scene, seed, first, stop))
 
     measures = _volume_and_areas(scene)
     constants = {
@@ -307,7 +285,10 @@ def inserted(scene, quantities, shell, seed):
         "unit": int(UNITS),
         "quantities": {n: {"place": k, "measure": measures[k]} for n, k in sampled.items()},
     }
-    return Sampler(scene.radius, BLOCK, count, constants, COST_RATIO * scene.discs)
+    return Sampler(
+        scene.radius, BLOCK, lambda first, stop: np.vstack(run_blocks(scene, seed, first, stop)),
+        constants, COST_RATIO * scene.discs,
+    )  # fmt: skip
 
 
 def _volume_and_areas(scene):
