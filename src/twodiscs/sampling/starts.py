@@ -123,22 +123,19 @@ def start_sampler(scene, hop=None, within=None, order=(0, 0), surface=None):
 
 
 @inlined
-def state_in(rows, i):
-    """Return the first eight numbers in column ``i`` of ``rows``: the whole state of a plain scene.
-
-    ``rows`` is an array of states, or a tuple of its rows.
-    """
+def state_in(initial_states, i):
+    """Return the plain state in column ``i`` of ``initial_states``."""
     return (
-        rows[0][i], rows[1][i], rows[2][i], rows[3][i],
-        rows[4][i], rows[5][i], rows[6][i], rows[7][i],
+        initial_states[0, i], initial_states[1, i], initial_states[2, i], initial_states[3, i],
+        initial_states[4, i], initial_states[5, i], initial_states[6, i], initial_states[7, i],
     )  # fmt: skip
 
 
 @inlined
-def put_in(rows, i, state):
-    """Set the first eight numbers in column ``i`` of ``rows``."""
-    rows[0][i], rows[1][i], rows[2][i], rows[3][i] = state[0], state[1], state[2], state[3]
-    rows[4][i], rows[5][i], rows[6][i], rows[7][i] = state[4], state[5], state[6], state[7]
+def put_in(states, i, state):
+    """Put a plain ``state`` into column ``i`` of ``states``."""
+    states[0, i], states[1, i], states[2, i], states[3, i] = state[:4]
+    states[4, i], states[5, i], states[6, i], states[7, i] = state[4:]
 
 
 @compiled

@@ -41,7 +41,7 @@ import numpy as np
 from twodiscs.dynamics.ensemble import before_kick, idle_kicks, open_kicks, renew_kicks
 from twodiscs.dynamics.law import after_event, first_event, kick_sampler, law_of, meeting, redrawn
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.starts import COMPONENTS, draw_states, put_in, state_in
+from twodiscs.sampling.starts import COMPONENTS, draw_states
 from twodiscs.sampling.streams import exponential, open_stream
 
 # An experiment -----------------------------------------------------------------------------------
@@ -213,8 +213,12 @@ def pair_at(rows, k, i, present):
 @inlined
 def state_at(rows, i, law):
     """Return the state of lane ``i``."""
+    plain = (
+        rows[0][i], rows[1][i], rows[2][i], rows[3][i],
+        rows[4][i], rows[5][i], rows[6][i], rows[7][i],
+    )  # fmt: skip
     deep = pair_at(rows, 8, i, law.depth) + pair_at(rows, 10, i, law.depth)
-    return state_in(rows, i) + deep + pair_at(rows, 8, i, law.rough)
+    return plain + deep + pair_at(rows, 8, i, law.rough)
 
 
 @optional(lambda rows, k, i, state, present: None)
@@ -226,7 +230,8 @@ def put_pair(rows, k, i, state, present):
 @inlined
 def put_state(rows, i, state, law):
     """Set the state of lane ``i``."""
-    put_in(rows, i, state)
+    rows[0][i], rows[1][i], rows[2][i], rows[3][i] = state[0], state[1], state[2], state[3]
+    rows[4][i], rows[5][i], rows[6][i], rows[7][i] = state[4], state[5], state[6], state[7]
     put_pair(rows, 8, i, state, law.depth)
     put_pair(rows, 10, i, state, law.depth)
     put_pair(rows, 8, i, state, law.rough)
