@@ -44,7 +44,7 @@ def test_one_more_radius_runs_one_job_of_each_kind(built):
 
 
 #: Sources that no result depends on, or only through the parameters of jobs.
-NO_CODE = {"__init__", "__main__", "arguments", "catalogue", "cli", "configuration"}
+NO_CODE = {"__init__", "__main__", "catalogue", "cli", "configuration"}
 
 
 def test_the_checksums_are_those_of_all_sources(unbuilt):
@@ -58,7 +58,8 @@ def test_the_checksums_are_those_of_all_sources(unbuilt):
         for path in re.search(r"^    input: (.*)$", job, re.MULTILINE)[1].split(", ")
     }
     source = unbuilt.path / "src"
-    paths = {path.relative_to(source) for path in source.rglob("*.py")}
+    kinds = (".py", ".mplstyle", ".html")
+    paths = {path.relative_to(source) for path in source.rglob("*") if path.suffix in kinds}
     counted = {path.as_posix() for path in paths if path.with_suffix("").parts[1] not in NO_CODE}
     # Those that draw a figure of a study are inputs of its jobs; the folder of studies has no code.
     drawing = {path for path in counted if re.search("twodiscs_paper/studies/.*/figure", path)}
