@@ -53,15 +53,20 @@ if numba.config.DISABLE_JIT:
         "a negative number is an error; to step through one kernel, call its attribute py_func"
     )
 
-# LLVM uses 512-bit vectors if the processor has them, unless the user set a width.
+# LLVM uses 512-bit vectors if the processor has them, unless the user set a width or has compiled.
 features = binding.get_host_cpu_features()
 if features.get("avx512f") and not (numba.config.CPU_NAME or numba.config.CPU_FEATURES):
     # Numba reads the features when it makes the context of all compilations. Afterwards the
-    # settings are again the user's.
+    # settings are again the user's, also in the keys of numba's caches: a user's kernels are found
+    # there whatever is imported first.
     users = numba.config.CPU_FEATURES
     numba.config.CPU_FEATURES = features.flatten() + ",-prefer-256-bit"
-    cpu_target.target_context  # noqa: B018
+    codegen = cpu_target.target_context.codegen()
     numba.config.CPU_FEATURES = users
+    #: What kernels are compiled for, a part of the name of their folder.
+    FEATURES, codegen._tm_features = codegen._tm_features, codegen._customize_tm_features()
+else:
+    FEATURES = "the user's"
 
 # Daemon threads end with the process. During a compilation that crashes it, so we wait.
 atexit.register(global_compiler_lock.acquire)
@@ -86,9 +91,9 @@ def cache_folder(package):
     """Return the folder for compiled code of a ``package``, None if no code can be kept.
 
     Its name changes with the path below the packages, the size and the time of each file in
-    ``SOURCES``, so a copy of the sources elsewhere has the same folder.
+    ``SOURCES``, and with ``FEATURES``, so a copy of the sources elsewhere has the same folder.
     """
-    digest = blake2b(digest_size=8)
+    digest = blake2b(FEATURES.encode(), digest_size=8)
     for path in sorted(path for folder in SOURCES[package] for path in folder.rglob("*.py")):
         name, status = path.relative_to(_ROOT), path.stat()
         digest.update(f"{name} {status.st_size} {status.st_mtime_ns}\n".encode())
