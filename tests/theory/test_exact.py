@@ -1,4 +1,4 @@
-"""A scene could be handed over to the wrong theory, or keep what a caller changed."""
+"""Rates could ignore the parts that confine events, or numbers keep what a caller changed."""
 
 import math
 import subprocess
