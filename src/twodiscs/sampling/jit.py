@@ -73,17 +73,13 @@ atexit.register(global_compiler_lock.acquire)
 
 #: The options of every compilation: division by zero gives infinity, as IEEE 754 requires. No
 #: kernel is called from C.
-OPTIONS = {
-    "error_model": "numpy", "boundscheck": False, "nogil": True, "no_cfunc_wrapper": True,
-}  # fmt: skip
+OPTIONS = {"error_model": "numpy", "boundscheck": False, "nogil": True, "no_cfunc_wrapper": True}
 
 _ROOT = Path(__file__).parents[2]
-_FLOORS = [
-    _ROOT / "twodiscs" / name for name in ("model", "points", "theory", "sampling", "dynamics")
-]
+_FLOORS = [f"twodiscs/{name}" for name in ("model", "points", "theory", "sampling", "dynamics")]
 
 #: {package whose kernels are kept: folders of the sources that are compiled into them}.
-SOURCES = {"twodiscs": _FLOORS, "twodiscs_paper": [*_FLOORS, _ROOT / "twodiscs_paper" / "studies"]}
+SOURCES = {"twodiscs": _FLOORS, "twodiscs_paper": [*_FLOORS, "twodiscs_paper/studies"]}
 
 
 @cache
@@ -94,7 +90,7 @@ def cache_folder(package):
     ``SOURCES``, and with ``FEATURES``, so a copy of the sources elsewhere has the same folder.
     """
     digest = blake2b(FEATURES.encode(), digest_size=8)
-    for path in sorted(path for folder in SOURCES[package] for path in folder.rglob("*.py")):
+    for path in sorted(p for folder in SOURCES[package] for p in (_ROOT / folder).rglob("*.py")):
         name, status = path.relative_to(_ROOT), path.stat()
         digest.update(f"{name} {status.st_size} {status.st_mtime_ns}\n".encode())
     try:

@@ -300,9 +300,7 @@ def _sampler(
             }  # fmt: skip
     joined = {"right_wall", "top_wall"} <= wanted and "any_wall" not in _shelled(scene)
     both = SETS - 1 if joined else None
-    constants = {
-        "method": method, "samples": block, "quantities": sampled, "right_and_top": both,
-    }  # fmt: skip
+    constants = {"method": method, "samples": block, "quantities": sampled, "right_and_top": both}
     return Sampler(
         scene.radius, block, lambda first, stop: kernel(seed, first, stop, *arguments), constants,
         ratio,

@@ -111,9 +111,7 @@ def law_of(scene):
         ring = scene.width, half, half / math.sqrt(2)
     if scene.moment_of_inertia is not None:
         rough = divided(1.0, scene.moment_of_inertia, 1.0)
-    return ManyLaw(
-        half_x, scene.range_y / 2, scene.contact_distance, ring, rough, spin_of(scene)
-    )  # fmt: skip
+    return ManyLaw(half_x, scene.range_y / 2, scene.contact_distance, ring, rough, spin_of(scene))
 
 
 def new_kicks(scene, lanes):
