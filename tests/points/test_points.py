@@ -150,6 +150,13 @@ def test_the_error_of_a_ratio_of_insertions_is_that_of_its_samples():
     assert found.relative_stderr == pytest.approx(relative)
 
 
+def test_all_samples_in_a_shell_are_samples_of_the_volume():
+    """Two shells are taken as independent if their overlap was not counted."""
+    point = hits_point(samples=1000, volume=500, top_wall_area=50, vertical_hop_area=100)
+    assert point.mean_product("top_wall_area", "volume") == 0.05
+    assert point.mean_product("top_wall_area", "vertical_hop_area") == pytest.approx(0.005)
+
+
 def test_the_area_of_all_walls_is_as_sure_as_that_of_the_rarer_wall():
     hits = {"right_wall_area": Hits(5000, 1.0, 0.1), "top_wall_area": Hits(50, 1.0, 0.1)}
     point = MonteCarloPoint(0.1, "monte_carlo", 10**6, hits, right_and_top=1)
