@@ -162,8 +162,12 @@ def _package(function):
 
 
 def inlined(function):
-    """Compile ``function`` into its callers, whatever its length: for the innermost loops."""
-    return compiled(function, forceinline=True)
+    """Compile ``function`` into its callers, whatever its length: for the innermost loops.
+
+    Only kernels call a function within a function: code for Python takes long to compile.
+    """
+    within = "<" in function.__qualname__
+    return compiled(function, forceinline=True, no_cpython_wrapper=within)
 
 
 def optional(absent):
