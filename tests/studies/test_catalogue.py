@@ -95,17 +95,14 @@ def test_a_configuration_without_plain_scenes_has_studies():
 
 
 @every_study
-def test_figures_are_drawn_by_modules_of_the_study_from_all_its_tables(study):
+def test_figures_are_drawn_from_all_tables_of_the_study_and_those_with_seconds_are_timed(study):
+    names = {table.name() for table in study.tables}
     for name, entry in study.figures.items():
         module = inspect.getmodule(DRAW[name]).__name__
         assert module.startswith(f"twodiscs_paper.studies.{study.name}.")
         if entry.tables or not entry.kept:  # a figure may be of a long run alone
-            assert {table.name() for table in study.tables} <= set(entry.tables)
-
-
-@every_study
-def test_timed_tables_are_its_own(study):
-    assert set(study.timed) <= {table.name() for table in study.tables}
+            assert names <= set(entry.tables)
+    assert set(study.timed) <= names
     for table in study.tables:
         seconds = [name for name, column in table.columns.items() if column.unit == "s"]
         assert not seconds or table.name() in study.timed
