@@ -24,6 +24,7 @@ from twodiscs.model.checks import (
     check_fraction,
     format_number,
     format_seconds,
+    quote,
 )
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene, check_scene
@@ -328,7 +329,10 @@ class Cost(Printed):
 
     def __getitem__(self, key: tuple[str, str]) -> Price:
         """Return the ``Price`` of a (quantity, method)."""
-        return {(price.quantity, price.method): price for price in self.prices}[key]
+        prices = {(price.quantity, price.method): price for price in self.prices}
+        if key not in prices:
+            raise KeyError(f"{quote(key)} is no (quantity, method) such as {next(iter(prices))}")
+        return prices[key]
 
     def seconds(self, error: float) -> float:
         """Return the processor time of ``simulate(scene, error)``: of all mean times together.

@@ -81,7 +81,7 @@ class Result(Printed):
         progress : bool, optional
             Whether to show a progress bar; if left out, only in a terminal or a notebook.
         **larger
-            The same by name, or a larger ``budget`` or ``duration``.
+            The same by name, or a larger ``budget`` or ``duration``. A smaller one gives less.
 
         Returns
         -------

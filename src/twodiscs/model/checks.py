@@ -244,6 +244,7 @@ def answering(function):
             known = signature(function).parameters
             unknown = [name for name in named if name not in known]
             hint = did_you_mean(unknown[0], known) if unknown else ""
-            raise WrongCall(f"{error}{hint}") from None
+            said = str(error).partition(". Did you mean")[0]  # Python 3.13 has a hint of its own
+            raise WrongCall(f"{said}{hint}") from None
 
     return call
