@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.sampling.jit import compiled
+from twodiscs.sampling.jit import compiled, inlined
 from twodiscs.sampling.streams import (
     largest_of,
     next_bits,
@@ -90,7 +90,7 @@ def separation_sampler(scene, within=None):
     )  # fmt: skip
 
 
-@compiled
+@inlined
 def propose_separation(state, sampler):
     """Propose separations u, v; return (accepted, A − u, B − v, u, u² + v² − σ²).
 
