@@ -63,7 +63,7 @@ if features.get("avx512f") and not (numba.config.CPU_NAME or numba.config.CPU_FE
     numba.config.CPU_FEATURES = features.flatten() + ",-prefer-256-bit"
     codegen = cpu_target.target_context.codegen()
     numba.config.CPU_FEATURES = users
-    #: What kernels are compiled for, a part of the name of their folder.
+    #: The features that kernels are compiled for, a part of the name of their folder.
     FEATURES, codegen._tm_features = codegen._tm_features, codegen._customize_tm_features()
 else:
     FEATURES = "the user's"
