@@ -87,7 +87,7 @@ def one(rows, **where):
 
 
 def test_rows_are_as_by_hand(rows):
-    """Of tests with a normal law, of bins and of effects whose count is no sum of others.
+    """Tests with a normal law, bins, and effects whose count is no sum of others are compared.
 
     A bin of half of all intervals has the error √(n/4)/n/width if they are independent. The
     parabola p − at² whose means over (0, 1) and (1, 2) are 1.3 and 1 begins at 1.35.

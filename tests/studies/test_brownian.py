@@ -228,7 +228,7 @@ def test_seeds_and_methods_agree(kept):
 
 
 def test_reflected_discs_have_the_exponents_of_both_theories(kept):
-    """Of a neck of 8 steps and more, and of one of 1/8 and less, from each seed."""
+    """A neck of 8 steps and more, and one of 1/8 and less, have theirs from each seed."""
     fits = of(kept, program="reflected", method="crossings", quantity="exponent")
     long, short = ([r for r in fits if (r["neck"] > 1) == long] for long in (True, False))
     assert {row["seed"] for row in long} == {row["seed"] for row in short} == {None, 1, 2}

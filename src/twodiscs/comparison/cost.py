@@ -408,7 +408,7 @@ class Cost(Printed):
 
     @property
     def note(self) -> str:
-        """What the columns of the printed table mean, and where it was measured."""
+        """The meaning of the columns of the printed table, and the machine that measured it."""
         return (
             f"Processor time of a relative error, on one core of {self.machine}. Least is the "
             "error of the smallest run; no work removes the floor."

@@ -39,7 +39,7 @@ MARKERS = ("o", "s", "^", "D", "v", "P")
 #: The range of the ratios; curves leave it only near the ends of the radii.
 SHOWN = (0.22, 22)
 
-#: Where the bars of costs begin, and the space for the number beside the longest one, a factor.
+#: The value at which the bars of costs begin, and the factor that leaves room for numbers.
 #: Points: the end of the column of instructions, from the edge of the panel.
 COST_FROM, COST_ROOM, COLUMN = 0.5, 8.0, 26
 
