@@ -9,7 +9,7 @@ from typst import TypstError
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures import style
-from twodiscs.figures.catalogue import FIGURES
+from twodiscs_paper.captions import SCENE_FIGURES
 from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES
 from twodiscs_paper.pipeline.documents import manuscript
 
@@ -54,7 +54,7 @@ def test_every_number_is_printed_by_its_name():
 def test_no_figure_is_shown_twice_and_those_that_are_shown_are_there_and_spoken_of():
     named = re.findall(r'#drawn\("(\w+)"', SOURCE)
     assert len({*named}) == len(named) > 1
-    assert {*named} <= {*FIGURES, *STUDY_FIGURES}
+    assert {*named} <= {*SCENE_FIGURES, *STUDY_FIGURES}
     spoken = " ".join(re.findall(r"#see\((.*?)\)", SOURCE))
     assert {*named} == {*re.findall(r"\w+", spoken)}
 
@@ -80,7 +80,9 @@ def paper(tmp_path_factory, page, tables_of):
     for a file of the results or of the manuscript.
     """
 
-    def make(figures=(*FIGURES,), common=(*STUDY_FIGURES,), scenes=1, empty=(), edit=("", "", "")):
+    def make(
+        figures=(*SCENE_FIGURES,), common=(*STUDY_FIGURES,), scenes=1, empty=(), edit=("", "", "")
+    ):
         tmp_path = tmp_path_factory.mktemp("paper")
         results, folder = tmp_path / "results", tmp_path / "elsewhere"
         names = ["paper", "other", "third"][:scenes]
@@ -128,7 +130,7 @@ def test_a_number_is_that_of_its_table(paper, unchanged):
 
 @pytest.mark.parametrize("start", [0, 1])
 def test_a_missing_figure_leaves_no_dangling_reference(paper, start):
-    paper(figures=list(FIGURES)[start::2], common=list(STUDY_FIGURES)[start::2])
+    paper(figures=list(SCENE_FIGURES)[start::2], common=list(STUDY_FIGURES)[start::2])
 
 
 def test_it_compiles_without_figures_without_rows_and_with_many_scenes(paper):
@@ -154,6 +156,6 @@ def test_a_misspelt_name_stops_the_compiler(paper, file, old, new):
 def test_what_captions_explain_alike_is_split_off():
     found = manuscript.captions({"name": "one", "width": 5.0, "height": 1.0})
     assert found["volume"][1].startswith("Error bars")
-    assert " ".join(found["volume"]) == FIGURES["volume"].caption()
-    assert found["model"] == (FIGURES["model"].caption(), "")
-    assert found.keys() == FIGURES.keys() | STUDY_FIGURES.keys()
+    assert " ".join(found["volume"]) == SCENE_FIGURES["volume"].caption()
+    assert found["model"] == (SCENE_FIGURES["model"].caption(), "")
+    assert found.keys() == SCENE_FIGURES.keys() | STUDY_FIGURES.keys()

@@ -19,7 +19,7 @@ rule figure:
     log:
         f"{RESULTS}/logs/{{scene}}/figure-{{figure}}.log",
     wildcard_constraints:
-        figure="|".join(FIGURES),
+        figure="|".join(SCENE_FIGURES),
     localrule: True
     params:
         box=box,

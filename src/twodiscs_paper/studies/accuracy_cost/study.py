@@ -11,7 +11,7 @@ from twodiscs.comparison.table import (
     Column,
     Table,
 )
-from twodiscs.figures.catalogue import Caption, Entry
+from twodiscs_paper.captions import Caption, Entry
 from twodiscs_paper.study import Study
 
 

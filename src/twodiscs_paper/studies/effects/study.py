@@ -13,7 +13,7 @@ from twodiscs.comparison.table import (
     Table,
     Z,
 )
-from twodiscs.figures.catalogue import DYNAMICS, Caption, Entry
+from twodiscs_paper.captions import DYNAMICS, Caption, Entry
 from twodiscs_paper.study import AS_EXACT, Study
 
 

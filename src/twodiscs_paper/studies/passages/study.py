@@ -12,8 +12,8 @@ from twodiscs.comparison.table import (
     Table,
     Z,
 )
-from twodiscs.figures.catalogue import DYNAMICS, Caption, Entry
 from twodiscs.model.events import HOPS
+from twodiscs_paper.captions import DYNAMICS, Caption, Entry
 from twodiscs_paper.study import AS_ESTIMATE, Study, scaled
 
 

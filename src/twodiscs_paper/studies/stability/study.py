@@ -1,7 +1,7 @@
 """How accurate each method is in numerically hard cases."""
 
 from twodiscs.comparison.table import COUNT, NUMBER, RADIUS, TEXT, TRUTH, Table, Z
-from twodiscs.figures.catalogue import Caption, Entry
+from twodiscs_paper.captions import Caption, Entry
 from twodiscs_paper.study import SEE_QUANTITY, Study, main_box, scaled
 
 

@@ -1,7 +1,7 @@
 """How probable long intervals are."""
 
 from twodiscs.comparison.table import RADIUS, TEXT, TIME, Column, Table
-from twodiscs.figures.catalogue import DYNAMICS, Caption, Entry
+from twodiscs_paper.captions import DYNAMICS, Caption, Entry
 from twodiscs_paper.study import AS_ESTIMATE, Study, main_box, scaled
 
 

@@ -10,7 +10,7 @@ from twodiscs.comparison.table import (
     Column,
     Table,
 )
-from twodiscs.figures.catalogue import DYNAMICS, Caption, Entry
+from twodiscs_paper.captions import DYNAMICS, Caption, Entry
 from twodiscs_paper.study import AS_ESTIMATE, Study
 
 
