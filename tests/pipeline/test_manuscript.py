@@ -52,7 +52,7 @@ def test_every_number_is_printed_by_its_name():
 
 
 def test_no_figure_is_shown_twice_and_those_that_are_shown_are_there_and_spoken_of():
-    named = re.findall(r'#drawn\("(\w+)"', SOURCE)
+    named = re.findall(r'"(\w+)"', " ".join(re.findall(r"#drawn\((.*?)\)", SOURCE)))
     assert len({*named}) == len(named) > 1
     assert {*named} <= {*SCENE_FIGURES, *STUDY_FIGURES}
     spoken = " ".join(re.findall(r"#see\((.*?)\)", SOURCE))
