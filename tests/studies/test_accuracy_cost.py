@@ -216,16 +216,6 @@ def series(rows):
     return found
 
 
-def test_the_long_run_has_four_decades_of_every_method(long):
-    """A curve that has not begun, near h/4, or that is at its floor needs none."""
-    due = {(m.name, m.quantity, m.scene.radius, m.setting) for m in costs.methods(1)}
-    assert series(long).keys() == due
-    for (name, _, radius, _), (first, *_, last) in series(long).items():
-        hard = (name, radius) == ("lockstep", costs.HARD.radius)
-        assert last["seconds"] / first["seconds"] > 1e4 or hard
-        assert last["repetitions"] == 1
-
-
 def test_its_errors_are_those_of_c_and_its_powers_a_half(long):
     """Root mean squares of independent runs, to five standard errors; the last ones are few."""
     powers = []
@@ -238,15 +228,6 @@ def test_its_errors_are_those_of_c_and_its_powers_a_half(long):
             assert abs(first["slope"] + 0.5) < SIGMA * first["slope_stderr"] <= SIGMA * 0.03
             powers.append(first["slope"])
     assert len(powers) >= 7
-
-
-def test_floors_of_time_steps_are_proportional_to_the_step(long):
-    floors = {row["setting"]: row["floor"] for row in of(long, method="time_step")}
-    steps = sorted(floors)
-    assert len(steps) == 3
-    for short, long_step in pairwise(steps):
-        ratio = floors[long_step] / floors[short]
-        assert ratio == pytest.approx(long_step / short, rel=0.25)
 
 
 # The figures --------------------------------------------------------------------------------------

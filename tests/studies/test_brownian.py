@@ -134,20 +134,10 @@ def test_both_methods_agree(program):
         assert deviation(found, far[quantity]) < SIGMA, (quantity, found, far[quantity])
 
 
-def test_clusters_hold_each_crossing_once_and_seeds_are_joined_as_one_run_is():
+def test_clusters_hold_each_crossing_once():
     counts = study.crossing_counts(1, "reflected", 0.125, 4, 100)
     assert sum(number for _, number in counts["sizes"]) == 2 * brownian.CROSSINGS
     assert counts["tried"] == 2 * brownian.CROSSINGS  # none is rejected
-    pairs = [study.passage_counts(seed, "singly", 0.25, 2, 8) for seed in (1, 2)]
-    both = study.joined(pairs)
-    assert both["pairs"] == 16
-    assert both["passage"] == [
-        sum(each) for each in zip(*(p["passage"] for p in pairs), strict=True)
-    ]
-    clusters = [study.crossing_counts(seed, "singly", 0.125, 3, 64) for seed in (1, 2)]
-    sizes = dict(study.joined(clusters)["sizes"])
-    assert sum(sizes.values()) == 128
-    assert sizes[1] == sum(dict(one["sizes"])[1] for one in clusters)
 
 
 # The motion -------------------------------------------------------------------------------------
@@ -236,13 +226,3 @@ def test_reflected_discs_have_the_exponents_of_both_theories(kept):
     assert all(abs(row["estimate"] + 1.5) < SIGMA * row["stderr"] for row in long)
     # 1 − κ ∝ ε^½ for short necks: half of it is left at the widest one.
     assert all(-2 < row["estimate"] < -1.95 for row in short)
-
-
-def test_rejected_discs_pass_a_channel_that_closes(kept):
-    """The time stays finite, at a quarter of σ a step; that of reflected discs goes as ε^−2."""
-    times = of(kept, program="together", step=0.25, quantity="passage_time")
-    first, last = times[-2:]
-    grown = last["estimate"] / first["estimate"]
-    error = grown * math.hypot(*(t["stderr"] / t["estimate"] for t in times[-2:]))
-    assert last["room"] == first["room"] / 4
-    assert grown + SIGMA * error < 4**1.5

@@ -18,7 +18,6 @@ from twodiscs.figures import curves, style
 from twodiscs.model.box import Box, key, stream_seed
 from twodiscs.model.events import EVENTS, WALLS
 from twodiscs.model.scene import Scene
-from twodiscs.points import estimates
 from twodiscs.sampling.starts import draw_states, start_sampler
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact, laws
@@ -59,19 +58,6 @@ def test_unmet_starts_are_those_whose_paths_have_no_collision(scene):
     found = effects.follow_survivors(seed, 0, 1, replicas, np.array(times), law, sampler)
     assert list(found) == expected
     assert 0 < expected[0] < replicas
-
-
-def test_rough_discs_stay_apart_where_smooth_ones_follow_their_law():
-    """At 100, in 2^17 starts: binomial and Poisson, five sigma each.
-
-    The share of smooth discs is within 40 % of its law by then: the difference falls as τ/t.
-    """
-    starts, smooth = 128 * REPLICAS, Scene(1.5, 1.0, 0.1)
-    (rough,), (found,) = (effects.survivors(s, (100.0,), 128, 1) for s in (ROUGH, smooth))
-    share = estimates.binomial_estimate(rough, starts, 1.0)
-    assert abs(share.value - 2.28e-3) < 5 * share.stderr + 5 * 5e-5  # from 2^20 other starts
-    law = starts * effects.share_law(smooth, 100.0)
-    assert abs(found - law) < 5 * law**0.5 + 0.4 * law
 
 
 # The table ----------------------------------------------------------------------------------------

@@ -134,20 +134,6 @@ def test_hops_in_a_file_are_those_of_monte_carlo(inertia):
     assert abs(hops.value - value) < 5 * math.hypot(hops.stderr, error)
 
 
-def test_discs_that_cannot_pass_stay_in_their_file():
-    scene, replicas = Scene(2.25, 1.0, 0.26, discs=3, periodic="x"), 64
-    states = file.initial.states(scene, replicas, 5)
-    places, hops = file.recorded(scene, 1000.0, 1, replicas, 5)
-    assert not hops.any()
-    # At the centre of mass, which rests, a file is no longer than the ring.
-    assert file.squares(places, [1]).max() < scene.width**2
-    early, _ = file.recorded(scene, 0.01, 1, replicas, 5)
-    velocities = states[2 * scene.discs : 3 * scene.discs]
-    flown = file.squares(early, [1])[0] / 0.01**2 / np.mean(velocities**2, axis=0)
-    # Few have met anything by then.
-    assert np.median(flown) == pytest.approx(1, rel=1e-9)
-
-
 # Long files -------------------------------------------------------------------------------------
 
 
@@ -223,31 +209,6 @@ def test_a_cluster_of_odd_size_is_one_passage():
     assert file.passages(times[mixed], pairs[mixed], (4.0, 8.0), 1.0) == (6, 2)
     assert file.passages(times[mixed], pairs[mixed], (4.0, 8.0), 0.3) == (6, 6)
     assert file.passages(times[mixed], pairs[mixed], (0.0, 10.0), 2.0) == (8, 4)
-
-
-def test_the_longest_wave_of_a_blocked_file_is_sound_and_heat():
-    """For two fifths of a period, before they are damped: five standard errors.
-
-    Sound is 1/(c² S) of the variance, and heat, which rests, is the other part.
-    """
-    scene = Scene(96.0, 1.0, 0.28, discs=128, periodic="x")
-    density, speed = file.exact_density(1.0, 0.28, 0.75), file.thermal_speed(scene)
-    places, _ = file.recorded(scene, 0.5 / speed, 32, 128, 3)
-    wave = np.exp(2j * math.pi / scene.width * places).sum(axis=1)
-    lag, share = 18, 1 / (density.speed**2 * density.variance)
-    later = (wave[lag:] * wave[:-lag].conj()).real.mean(axis=0)
-    now = (np.abs(wave) ** 2).mean(axis=0)
-
-    def apart(speed_of_sound, share):
-        angle = 2 * math.pi / scene.width * speed_of_sound * lag / 2
-        found = mean_of(
-            later / now.mean() - (share * math.cos(angle) + 1 - share) * now / now.mean()
-        )
-        return abs(found.value) / found.stderr
-
-    assert apart(density.speed, share) < 5
-    # Sound at constant temperature would be all of it, and slower.
-    assert apart(1 / math.sqrt(density.variance), 1.0) > 5
 
 
 def test_the_measured_density_is_exact_in_an_ordered_channel():

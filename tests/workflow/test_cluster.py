@@ -1,5 +1,6 @@
 """Without these tests a queue or a Slurm could run other jobs, or give other bytes."""
 
+import os
 import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
@@ -9,7 +10,6 @@ import psutil
 import pytest
 import yaml
 from checkout import REPOSITORY, folder
-from slurm import missing, running
 
 #: Points that are small enough for one job; and one with effects, in shards.
 SCENES = {
@@ -103,23 +103,35 @@ def test_a_queue_of_scripts(local, unbuilt, tmp_path, monkeypatch):
     assert len([*jobs.glob("*/process")]) == counted(unbuilt, tmp_path) + 1
 
 
-@pytest.fixture
-def slurm(tmp_path, monkeypatch):
-    """A Slurm that runs: its folder, and arguments for its profile."""
-    if missing() is not None:
-        pytest.skip(missing())
-    settings = {"slurm-status-command": "squeue", "latency-wait": 5}
-    settings |= {"slurm-init-seconds-before-status-checks": 2, "seconds-between-status-checks": 1}
-    settings["default-resources"] = {"mem_mb": 500, "runtime": 10}
-    with running(tmp_path / "slurm") as environment:
-        for name in ("PATH", "SLURM_CONF"):
-            monkeypatch.setenv(name, environment[name])
-        yield tmp_path / "slurm", profile(tmp_path, "slurm", **settings)
+#: The commands of Slurm that its plugin calls, for jobs of this machine: {name: script}.
+SLURM = {
+    "sbatch": 'for last; do :; done; echo RUNNING > {jobs}/$$; echo "$@" >> {jobs}/calls; echo $$\n'
+    '(sh -c "${{last#--wrap=}}" && echo COMPLETED > {jobs}/$$ || echo FAILED > {jobs}/$$) '
+    "> {jobs}/log 2>&1 &",
+    "squeue": 'cd {jobs}; for job in [0-9]*; do echo "$job|$(cat $job)"; done',
+    "srun": 'while [ "${{1#-}}" != "$1" ]; do shift; done; exec "$@"',
+    "sinfo": "echo main*",
+    "scontrol": "echo MinJobAge = 300 sec",
+    "sacct": "",
+    "scancel": "",
+}
 
 
 @pytest.mark.slow
-def test_slurm(local, unbuilt, tmp_path, slurm):
-    place, arguments = slurm
-    assert build(tmp_path / "jobs", unbuilt, *arguments) == local
-    log = (place / "slurmctld.log").read_text()
-    assert log.count("submit_batch_job: JobId=") == counted(unbuilt, tmp_path)
+@pytest.mark.skipif(
+    find_spec("snakemake_executor_plugin_slurm") is None, reason="the extra `cluster` is absent"
+)
+def test_slurm(local, unbuilt, tmp_path, monkeypatch):
+    jobs, tools = tmp_path / "jobs", tmp_path / "tools"
+    jobs.mkdir()
+    tools.mkdir()
+    for name, script in SLURM.items():
+        (tools / name).write_text(f"#!/bin/sh\n{script.format(jobs=jobs)}\n")
+        (tools / name).chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tools}{os.pathsep}{os.environ['PATH']}")
+    settings = {"slurm-init-seconds-before-status-checks": 1, "seconds-between-status-checks": 1}
+    settings |= {"slurm-status-command": "squeue", "latency-wait": 5, "jobs": 2}
+    assert build(tmp_path / "built", unbuilt, *profile(tmp_path, "slurm", **settings)) == local
+    calls = (jobs / "calls").read_text().splitlines()
+    assert len(calls) == counted(unbuilt, tmp_path)
+    assert all("--mem 1000" in call and " -t " in call for call in calls)
