@@ -102,7 +102,7 @@ def test_the_table_of_files_is_that_of_its_counts():
 )
 def test_long_runs_agree_with_the_build(name, table, quantity, keys, fewest):
     _, found = kept(name, table)
-    rows = of(table.read(PAPER / "expected" / f"{name}.csv"), quantity=quantity)
+    rows = of(table.read(PAPER / "expected" / f"{table.name()}.csv"), quantity=quantity)
     expected = [row for row in rows if row.get("scene", "paper") == "paper"]
     compared = 0
     for row in of(found, quantity=quantity):
