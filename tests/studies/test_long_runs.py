@@ -4,12 +4,16 @@ A dozen scores are held to five standard errors: a false alarm in fewer than 1e-
 """
 
 import math
+from functools import partial
 from pathlib import Path
 
 import pytest
 import yaml
 
+from twodiscs.comparison.transmission import by_clusters, of_clusters, plateau
+from twodiscs.dynamics.many.passages import cluster_sizes
 from twodiscs.dynamics.two.passages import HOPS_OF_BLOCK
+from twodiscs.model.box import Box
 from twodiscs.points.base import read_json
 from twodiscs_paper.studies.passages import measure as passages
 from twodiscs_paper.studies.passages.study import Passages
@@ -89,6 +93,31 @@ def test_the_table_of_files_is_that_of_its_counts():
     ]
     assert_same(made, found)
     assert [len(count) for count in counts] == [one["replicas"] for one in files]
+
+
+def test_files_diffuse_by_passages_if_hops_are_rare():
+    """D = κ ν ℓ² at δ = 1/32 and D < ν ℓ², smooth and with friction, as the paper has it.
+
+    κ of 128 discs is that of the same motion. κ of short files is that of hops that are drawn on
+    their surface, from other states and by another kernel.
+    """
+    rows = of(kept_files()[3], distance=1 / 32)
+    files = {(row["discs"], row["friction"]) for row in rows}
+    assert len(files) == 4
+    for discs, friction in files:
+        own = of(rows, discs=discs, friction=friction)
+        (moves,), (hops,) = (of(own, quantity=name) for name in ("diffusion", "rate"))
+        kappa = of(own, quantity="coefficient")[-1]
+        value, error = kappa["estimate"], kappa["stderr"]
+        if discs < 10:
+            scene, unit = passages.file_of(Box(1.5, 1.0), discs, 5)
+            gap = 8 * unit
+            sizes, _ = cluster_sizes(scene, "horizontal_hop", gap, 128, 5)
+            law = partial(of_clusters, others=2)
+            drawn = plateau(by_clusters(sizes), gap, 2 / hops["estimate"], law)
+            value, error = drawn.value, drawn.stderr
+        both = math.hypot(error, moves["stderr"])
+        assert abs(value - moves["estimate"]) < 5 * both < 1 - value
 
 
 @pytest.mark.parametrize(
