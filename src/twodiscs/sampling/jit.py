@@ -18,7 +18,7 @@ import os
 import sys
 import tempfile
 import uuid
-from functools import cache
+from functools import cache, cached_property
 from hashlib import blake2b
 from pathlib import Path
 
@@ -33,7 +33,7 @@ import numba  # noqa: E402
 from llvmlite import binding  # noqa: E402
 from numba.core import caching, types  # noqa: E402
 from numba.core.compiler_lock import global_compiler_lock  # noqa: E402
-from numba.core.registry import cpu_target  # noqa: E402
+from numba.core.registry import CPUDispatcher, cpu_target  # noqa: E402
 from numba.extending import overload  # noqa: E402
 
 # No kernel needs BLAS. Numba would import SciPy's, which takes a quarter of the start. We hide it;
@@ -151,7 +151,11 @@ def compiled(function, **options):
     The code of kernels in ``SOURCES`` is kept on disk. A function within a function is not kept,
     because others in its module have the same name. ``options`` are further ones of ``numba.njit``.
     """
-    kernel, package = numba.njit(function, **OPTIONS | options), _package(function)
+    return _kept(numba.njit(function, **OPTIONS | options))
+
+
+def _kept(kernel):
+    function, package = kernel.py_func, _package(kernel.py_func)
     if package in SOURCES and "<" not in function.__qualname__ and cache_folder(package):
         kernel._cache = KernelCache(function)
     return kernel
@@ -161,13 +165,24 @@ def _package(function):
     return function.__module__.partition(".")[0]
 
 
+class Inlined(CPUDispatcher):
+    """A function of kernels. The code for calls from Python takes long to compile."""
+
+    def __call__(self, *arguments):
+        return self._for_python(*arguments)
+
+    @cached_property
+    def _for_python(self):
+        return numba.njit(self.py_func, **OPTIONS)
+
+
 def inlined(function):
     """Compile ``function`` into its callers, whatever its length: for the innermost loops.
 
-    Only kernels call a function within a function: code for Python takes long to compile.
+    A call from Python compiles it once more, with the code for such calls.
     """
-    within = "<" in function.__qualname__
-    return compiled(function, forceinline=True, no_cpython_wrapper=within)
+    options = {"nopython": True, "forceinline": True, "no_cpython_wrapper": True}
+    return _kept(Inlined(function, targetoptions=OPTIONS | options))
 
 
 def optional(absent):
