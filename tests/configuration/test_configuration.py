@@ -3,8 +3,6 @@
 Mistakes in a configuration are in ``test_bad_input.py``.
 """
 
-import subprocess
-import sys
 from copy import deepcopy
 from itertools import pairwise
 from pathlib import Path
@@ -17,7 +15,6 @@ from twodiscs.model.box import Box, stream_seed
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import AXIS, EVENTS, HOPS
 from twodiscs.model.scene import Scene
-from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration import load, scene, schema
 from twodiscs_paper.configuration.load import read
 from twodiscs_paper.configuration.request import STAGES, Quantities
@@ -65,17 +62,6 @@ def test_every_effect_is_a_key_with_its_meaning_range_and_default():
             assert node["minimum"] in (effect.low, effect.default)
             assert node.get("default") == effect.default
     assert {place: {*blocks[place]["properties"]} for place in keys} == keys
-
-
-def test_reading_a_configuration_needs_no_numerical_package():
-    code = (
-        "import sys; from twodiscs_paper.configuration import load;"
-        "load.load(load.read('config/config.yaml'));"
-        "print({'numpy', 'pandas', 'numba', 'scipy', 'matplotlib'} & set(sys.modules))"
-    )
-    command = [sys.executable, "-c", code]
-    shown = subprocess.run(command, capture_output=True, check=True, cwd=ROOT, text=True).stdout
-    assert shown.strip() == "set()"
 
 
 # Defaults and forms
@@ -298,19 +284,6 @@ def test_effects_that_are_absent_leave_no_trace(effects):
 
 
 # Files that are built once
-
-
-def test_what_is_built_once():
-    known = schema.keys()["properties"]["shared"]["items"]["enum"]
-    assert load.load(PLAIN).shared == ("report",)
-    assert load.load(read(ROOT / "config/config.yaml")).shared == tuple(known)
-    assert load.load(PLAIN | {"shared": []}).shared == ()
-    assert load.load(PLAIN | {"shared": ["report", "errata"]}).shared == ("errata", "report")
-    # The manuscript adds the studies that it reads.
-    paper = load.load(PLAIN | {"shared": ["paper"]}).shared
-    assert paper == tuple(name for name in known if name != "report")
-    assert {"errata", "effects", "paper"} < {*paper}
-    assert {*STUDIES} < {*known}
 
 
 def test_what_is_about_a_plain_scene_needs_one():

@@ -45,16 +45,6 @@ def test_ten_times_the_accuracy_takes_a_hundred_times_the_work():
     assert budget == pytest.approx(10, rel=0.1)
 
 
-def test_the_price_of_a_point_is_that_of_its_shards():
-    request = scene(shard_events=1e8, accuracy=1e-4, event_budget=1e12)
-    parts = cost.run_at(request, "dynamics", 0.24).parts
-    work = sum(
-        (stop - first) * parts[name].block_events * parts[name].cost_ratio
-        for name, first, stop in cost.shards(request, "dynamics", 0.24)
-    )
-    assert cost.seconds(request, "dynamics", 0.24) == pytest.approx(work / 1e8)
-
-
 def test_days_are_those_of_the_jobs_of_all_radii_or_of_some_times_their_number(monkeypatch):
     radii = [round(0.1 + 0.001 * i, 3) for i in range(21)]
     request = scene(accuracy=1e-7, event_budget=1e15, radii=radii, watch={"mean_times": True})

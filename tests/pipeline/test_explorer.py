@@ -369,21 +369,11 @@ def test_lengths_are_in_any_unit(driven, sides, radius, next_radius):
     low, high = page.look("[at('radius').min, at('radius').max].map(value => unit * value)")
     assert low < 0.03 * box.largest_radius
     assert 0.99 * box.largest_radius < high < box.largest_radius
-    # Times of other radii are on their axis, and points of a build where they belong.
+    # Times of other radii are on their axis.
     low, high = page.look("SHOWN_TIMES.map(time => unit * time)")
     for fraction in (0.05, 0.9):
         found = exact.mean_times(box.scene(fraction * box.largest_radius))
         assert all(low < found[event] < high for event in explorer.COUNTED if found[event])
-    place = 0.07 * sides[0], 0.3 * sides[0]
-    page.look(f"DATA.scenes[0].points.any_wall.dynamics = [[...{[*place]}, null]]")
-    page.look("document.querySelectorAll('#buttons button')[1].click()")
-    assert "points of this build" in page.look("at('points').textContent")
-    drawn = page.look(
-        "var positions = [];"
-        "timesPlot.point = (x, y) => { positions.push(unit * x, unit * y); };"
-        "timesPlot.draw(); delete timesPlot.point; positions"
-    )
-    assert all(any(math.isclose(one, other, rel_tol=1e-14) for other in drawn) for one in place)
     page.look("at('radius').focus()")
     page.press("ArrowRight")
     assert page.look(f"{shown}[2]") == page.look("at('radius').ariaValueText") == next_radius

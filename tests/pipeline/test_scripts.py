@@ -156,13 +156,6 @@ def test_an_edited_point_is_refused(run, points):
         run("table", MADE, files=points, table="mean_times.csv")
 
 
-@pytest.mark.parametrize("stage", ["dynamics", "intervals"])
-def test_a_point_of_another_stage_is_refused(run, points, stage):
-    files = points | {stage: points["monte_carlo"][:1]}
-    with pytest.raises(InputError, match=f"must be a point of {stage}, but was made"):
-        run("table", MADE, files=files, table="check.csv")
-
-
 def test_a_figure_names_its_code_and_its_tables(run, points, tmp_path):
     run("table", MADE, files=points, table="volume.csv")
     Path("sums").write_text("the code\n")

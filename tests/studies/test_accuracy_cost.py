@@ -12,7 +12,6 @@ from figure_cases import points
 from twodiscs.figures import style
 from twodiscs.figures.style import LOOKS
 from twodiscs.model.scene import Scene
-from twodiscs.theory import exact
 from twodiscs_paper.studies.accuracy_cost import figure, figure_by_radius
 from twodiscs_paper.studies.accuracy_cost import measure as costs
 from twodiscs_paper.studies.accuracy_cost.study import AccuracyCost
@@ -51,15 +50,6 @@ def test_a_method_estimates_its_quantity_with_its_bias(method):
         assert (mean, method.name) == (-1, "lockstep")
     else:
         assert abs(mean - method.bias) < SIGMA * error
-
-
-def test_the_bias_of_a_shell_is_exact():
-    thick, thin = (costs.by_samples(PAPER, 1, costs.AREA, f) for f in costs.SHELLS)
-    for method in (thick, thin):
-        expected = exact.shell_expectation(PAPER, "disc_collision", method.setting)
-        assert method.bias == expected / exact.areas(PAPER)["disc_collision"] - 1
-    assert thick.bias < 10 * thin.bias < 0
-    assert costs.by_samples(PAPER, 1, "volume").bias == 0
 
 
 def test_blocks_have_their_own_random_numbers_and_those_of_their_seed():

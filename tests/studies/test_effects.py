@@ -24,12 +24,7 @@ from twodiscs.theory import exact, laws
 from twodiscs_paper.configuration.load import load, read
 from twodiscs_paper.studies.effects import cost, figure
 from twodiscs_paper.studies.effects import measure as effects
-from twodiscs_paper.studies.effects.study import (
-    SCENES,
-    Effects,
-    EffectsCost,
-    EffectsCurves,
-)
+from twodiscs_paper.studies.effects.study import SCENES, Effects, EffectsCost, EffectsCurves
 
 NAMES = [*SCENES]
 FILES = [Path(__file__).parents[2] / "config" / "scenes" / f"{name}.yaml" for name in NAMES]

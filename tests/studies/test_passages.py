@@ -21,12 +21,7 @@ from twodiscs.sampling.many import insertions
 from twodiscs.theory import exact
 from twodiscs.theory.virial import rates
 from twodiscs_paper.studies.estimates import LinearFit, mean_of
-from twodiscs_paper.studies.passages import (
-    figure,
-    figure_diffusion,
-    figure_transmission,
-    measure,
-)
+from twodiscs_paper.studies.passages import figure, figure_diffusion, figure_transmission, measure
 from twodiscs_paper.studies.passages.models import file
 from twodiscs_paper.studies.passages.study import Passages
 

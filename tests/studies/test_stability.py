@@ -92,19 +92,10 @@ def test_an_error_in_a_formula_shows(monkeypatch):
     monkeypatch.setattr(exact, "volume", lambda scene: volume(scene) * (1 + 1e-12))
     wrong = failed(stability.theory_rows(PAPER))
     assert {row["quantity"] for row in wrong} == {"volume"}
-
-
-@pytest.mark.parametrize(
-    ("ours", "due", "error"),
-    [
-        (0.0, {"a": mpf(0)}, 0.0),
-        (1e-300, {"a": mpf(0)}, math.inf),
-        (None, {}, 0.0),
-        (1.0, {}, math.inf),
-    ],
-)
-def test_a_zero_must_be_met_exactly(ours, due, error):
-    assert stability.relative_error({"a": ours}, due) == error
+    # A zero must be met exactly.
+    assert stability.relative_error({"a": 0.0}, {"a": mpf(0)}) == 0
+    assert stability.relative_error({"a": 1e-300}, {"a": mpf(0)}) == math.inf
+    assert stability.relative_error({"a": 1.0}, {}) == math.inf
 
 
 @any_box
@@ -189,14 +180,10 @@ def test_misses_and_false_hits_are_infinite_errors(apart, formula, error):
 def test_the_extremes_are_those_of_every_effect():
     """Both ends of each range, as far as they allow to follow the discs."""
     scenes = stability.EXTREMES.values()
-    for name in ("mass_ratio", "radius_ratio"):
+    for name in ("mass_ratio", "radius_ratio", "moment_of_inertia"):
         values = {getattr(scene, name) for scene in scenes}
         assert {EFFECTS[name].low, EFFECTS[name].high} <= values
-    assert {EFFECTS["moment_of_inertia"].low, EFFECTS["moment_of_inertia"].high} <= {
-        scene.moment_of_inertia for scene in scenes
-    }
-    used = {name for scene in scenes for name in scene.effects}
-    assert used == EFFECTS.keys()
+    assert {name for scene in scenes for name in scene.effects} == EFFECTS.keys()
     assert {scene.discs for scene in scenes} == {2, 3, 16}
     for case, scene in stability.EXTREMES.items():
         if "hardly" in case:

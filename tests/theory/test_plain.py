@@ -134,13 +134,6 @@ def test_the_smallest_and_largest_boxes(width, height):
 # Definitions ------------------------------------------------------------------------------------
 
 
-def test_a_shell_reaches_just_beyond_a_blocked_hop():
-    scene = Scene(1, 1, 0.2501)
-    assert exact.areas(scene)["vertical_hop"] == 0
-    assert exact.shell_expectation(scene, "vertical_hop", 0.05) > 0
-    assert exact.shell_expectation(scene, "vertical_hop", 1e-4) == 0
-
-
 @pytest.mark.parametrize("radius", [0.05, 0.2494, 0.25 * (1 - 1e-6), 0.3, 0.3747])
 def test_share_of_discs_that_are_almost_level(radius):
     """By antiderivatives: the separations along the axis of a hop up to a distance."""

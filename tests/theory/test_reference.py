@@ -3,27 +3,14 @@
 import math
 
 import pytest
-from mpmath import mp, mpf
+from mpmath import mp
 from theory.antiderivatives import DIGITS, reference, reference_times, relative_error
 
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
-from twodiscs_paper.reference import (
-    QUANTITIES,
-    MpScene,
-    contact_density,
-    exact_numbers,
-    largest_radius,
-)
+from twodiscs_paper.reference import QUANTITIES, MpScene, exact_numbers
 
-SCENES = [
-    Scene(*lengths_given)
-    for lengths_given in (
-        (1.5, 1.0, 0.2), (1.5, 1.0, 0.3), (1.5, 1.0, 0.38), (1.0, 1.0, 0.27),
-        (1.0, 1.7, 0.28), (3.0, 1.0, 0.35), (3.0, 1.0, 0.45),
-    )
-]  # fmt: skip
 BOXES = [(1.5, 1.0), (1.0, 1.0), (2.0, 1.0), (1.0, 2.0), (3.0, 1.0), (1.0, 1.7), (1e6, 1), (1, 1e6)]
 
 
@@ -32,18 +19,6 @@ def digits():
     """Work with many digits."""
     with mp.workdps(DIGITS):
         yield
-
-
-# Digits -----------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("box", BOXES)
-def test_antiderivatives_have_fifty_digits_even_next_to_the_largest_radius(box):
-    scene = Scene(*box, Box(*box).largest_radius * (1 - 1e-12))
-    found = reference(scene)
-    with mp.workdps(400):
-        for quantity, value in reference(scene).items():
-            assert abs(found[quantity] - value) <= abs(value) * mpf(10) ** -50
 
 
 def near_limits(box):
@@ -83,36 +58,9 @@ def test_the_digits_do_not_depend_on_those_that_the_caller_works_with():
 
 
 def test_every_number_has_the_name_that_tables_give_it():
-    scene = SCENES[0]
+    scene = Scene(1.5, 1.0, 0.2)
     volume, areas, times = exact_numbers(scene)
     expected = {f"{event}_area": area for event, area in areas.items()} | volume
     expected |= {f"{event}_time": time for event, time in times.items()}
     q = MpScene.of(scene.width, scene.height, scene.radius)
     assert {name: quantity(q) for name, quantity in QUANTITIES.items()} == expected
-
-
-# Their parts ------------------------------------------------------------------------------------
-
-
-def test_a_scene_takes_numbers_for_exactly_what_they_are():
-    q = MpScene.of(1.5, 1, mpf("0.1"))
-    assert (q.w, q.h) == (mpf("1.5"), 1)
-    assert q.r == mpf("0.1") != mpf(0.1)
-    assert (q.a, q.b) == (mpf("0.65"), mpf("0.4"))
-
-
-@pytest.mark.parametrize("scene", SCENES, ids=repr)
-def test_the_contact_density_is_the_area_of_contact_per_square_of_the_distance(scene):
-    """−∂V/∂σ² = A_coll/(2√2 σ)."""
-    q = MpScene.of(scene.width, scene.height, scene.radius)
-    with mp.workdps(60):
-        expected = exact_numbers(scene)[1]["disc_collision"] / (4 * mp.sqrt(2) * q.r)
-        assert relative_error(contact_density(q), expected) < 1e-15
-
-
-@pytest.mark.parametrize("box", [(1.5, 1.0), (1.0, 1.0), (1.0, 1.7)])
-def test_the_largest_radius_is_a_root(box):
-    found = largest_radius(MpScene.of(*box, 0.1))
-    w, h = map(mpf, box)
-    assert relative_error(found, (w + h - mp.sqrt(2 * w * h)) / 2) < 1e-100
-    assert float(found) == pytest.approx(Box(*box).largest_radius, rel=1e-15)

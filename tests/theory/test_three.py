@@ -109,15 +109,3 @@ def test_the_value_of_another_derivation():
     }  # fmt: skip
     assert {event: found[event] for event in expected} == pytest.approx(expected, rel=2e-4)
     assert virial_sum(scene, found) == pytest.approx(1, rel=1e-13)
-
-
-def test_largest_radius_ends_the_volume():
-    """V goes like the room to the sixth power there, and to nothing."""
-    for width in (1.0, 1.1, 1.3, 1.5, 2.0):
-        largest = largest_radius(3, width, 1.0)
-        volumes = []
-        for room in (2e-4, 1e-4):
-            radius = largest * (1 - room)
-            volumes.append(three.integrals(width - 2 * radius, 1 - 2 * radius, 2 * radius)[0])
-        power = math.log2(volumes[0] / volumes[1])
-        assert power == pytest.approx(6, abs=0.02), width

@@ -9,7 +9,6 @@ from effect_scenes import SCENES
 
 from twodiscs.model.scene import Scene
 from twodiscs.theory import exact, n_discs, virial
-from twodiscs.theory.virial import flux_constant
 
 PAPER = Scene(1.5, 1.0, 0.2)
 
@@ -106,39 +105,6 @@ def test_the_virial_theorem_holds(scene):
     found = virial.rates(scene, n_discs.known_derivatives(scene, hops=False))
     size = found["right_wall"] * virial.virial_weights(scene)["right_wall"]
     assert virial.virial_sum(scene, found) == pytest.approx(1, abs=1e-11 * (1 + size))
-
-
-def rates_of_small_discs(scene):
-    """Return {class of events: rate} without hops, for small σ at fixed ranges A and B.
-
-    They follow from V ≈ (AB)^N [1 − n (πσ²/(AB) − (4/3) σ³ (A + B)/(AB)²)], n = N(N − 1)/2. Wall
-    hits are those of an ideal gas with the second virial coefficient, and collisions have the first
-    two orders.
-    """
-    c, n = flux_constant(scene.velocity_components), scene.discs * (scene.discs - 1) / 2
-    a, b, sigma = scene.range_x, scene.range_y, scene.contact_distance
-    closed = math.pi * sigma**2 / (a * b)
-    return {
-        "disc_collision": c / math.sqrt(2) * n * (2 * closed / sigma)
-        * (1 - 2 * sigma * (a + b) / (math.pi * a * b)),
-        "right_wall": c * (scene.discs + n * closed) / a,
-        "top_wall": c * (scene.discs + n * closed) / b,
-    }  # fmt: skip
-
-
-@pytest.mark.parametrize("discs", [2, 3])
-def test_small_discs(discs):
-    """The error of the first orders falls like the next one: σ³ for walls, σ² over collisions."""
-    errors = {}
-    for radius in (2e-3, 1e-3):
-        scene = Scene(1.5, 1.0, radius, discs=discs)
-        true = virial.rates(scene, n_discs.known_derivatives(scene))
-        for event, rate in rates_of_small_discs(scene).items():
-            errors.setdefault(event, []).append(abs(rate / true[event] - 1))
-    for event, (large, small) in errors.items():
-        assert small < 1e-3
-        power = math.log2(large / small)
-        assert power > (1.8 if event == "disc_collision" else 2.8), (event, errors)
 
 
 def test_overlap_on_a_ring():

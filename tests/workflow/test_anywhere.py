@@ -4,9 +4,7 @@ The configuration here is tiny, and what one build has made is copied for the ot
 """
 
 import json
-import os
 import shutil
-import subprocess
 from importlib.util import find_spec
 
 import pytest
@@ -136,46 +134,3 @@ def test_as_a_module_it_plans_every_job_of_the_default_configuration(
     use(place, yaml.safe_load(unbuilt.configuration.read_text()), "discs_", more)
     alone = [(f"discs_{rule}", wildcards) for rule, wildcards in planned]
     assert place.jobs("discs_all") == sorted([*alone, ("discs_all", ())])
-
-
-#: As snakedeploy writes it.
-DEPLOYED = """
-configfile: "config/config.yaml"
-
-
-module discs:
-    snakefile:
-        github("somebody/twodiscs", path="workflow/Snakefile", tag="v1")
-    config:
-        config
-
-
-use rule * from discs
-"""
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(shutil.which("git") is None, reason="there is no git")
-def test_it_is_deployed_from_a_repository_that_is_hosted(own, complete, tmp_path, monkeypatch):
-    """The address is one of GitHub's, and git fetches a clone on this machine instead of it."""
-    hosted = tmp_path / "hosted" / "somebody" / "twodiscs"
-    hosted.mkdir(parents=True)
-    for part in ("Snakefile", "workflow", "config", "paper", "CITATION.cff"):
-        source = complete.path / part
-        copy = shutil.copytree if source.is_dir() else shutil.copy
-        copy(source, hosted / part)
-    (tmp_path / "gitconfig").write_text(
-        f'[url "file://{tmp_path}/hosted/"]\n    insteadOf = https://github.com/\n'
-        "[user]\n    name = a\n    email = a@example.org\n[safe]\n    directory = *\n"
-    )
-    monkeypatch.setenv("GIT_CONFIG_GLOBAL", str(tmp_path / "gitconfig"))
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setenv("NUMBA_CACHE_DIR", os.environ.get("NUMBA_CACHE_DIR", f"{tmp_path}/numba"))
-    for words in ("init --quiet", "add .", "commit --quiet -m a", "tag v1"):
-        subprocess.run(["git", "-C", hosted, *words.split()], check=True)
-
-    place = folder(tmp_path / "mine", complete, TINY)
-    (place.path / "Snakefile").write_text(DEPLOYED)
-    place.snakemake("--cores", "2", "--", "all")
-    assert manifest(place) == manifest(own)
-    assert place.jobs("all") == []

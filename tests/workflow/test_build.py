@@ -86,23 +86,6 @@ def test_a_formula_off_by_one_percent_fails_the_check_and_is_named(built):
     assert not (built.path / "results" / "check.passed").exists()
 
 
-def test_what_is_deleted_comes_back(built):
-    point = "full/points/monte_carlo/0.2.json"
-    content = read_json(built.path / "results" / point)
-    lost = "full/figures/volume.pdf", "tails.csv", "full/mean_times.csv", point
-    for name in lost:
-        (built.path / "results" / name).unlink()
-    made = {
-        ("figure", ("scene=full", "figure=volume")),
-        ("study_table", ("table=tails",)),
-        ("table", ("scene=full", "table=mean_times")),
-        ("monte_carlo", ("scene=full", "stage=monte_carlo", "radius=0.2")),
-    }
-    assert made <= {*built.jobs()}
-    built.snakemake("--cores", "1", f"results/{point}")
-    assert read_json(built.path / "results" / point) == content
-
-
 def test_verify_builds_nothing_and_names_what_differs(built):
     built.snakemake("--cores", "1", "renew")
     (built.path / "results/full/theory.csv").unlink()

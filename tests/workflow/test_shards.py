@@ -5,7 +5,6 @@ import shutil
 import pytest
 from checkout import BELOW, Checkout, folder, use
 
-from twodiscs.points.base import read_json
 from twodiscs_paper.configuration.load import load
 
 TINY = {
@@ -76,7 +75,7 @@ def test_shards_have_the_random_numbers_of_their_point():
 
 
 @pytest.mark.slow
-def test_no_shard_is_done_twice(unbuilt, tmp_path):
+def test_no_shard_is_done_twice_and_a_damaged_one_is_named(unbuilt, tmp_path):
     place = place_at(tmp_path, unbuilt)
     table = build(place)
     assert table.count(b",0.001,reached,") == 2
@@ -94,28 +93,14 @@ def test_no_shard_is_done_twice(unbuilt, tmp_path):
     assert build(place).startswith(table)
     assert all(shards(place)[path] == stamp for path, stamp in second.items())
 
-
-@pytest.mark.slow
-def test_a_damaged_shard_is_named_and_made_again_once_it_is_deleted(unbuilt, tmp_path):
-    place = place_at(tmp_path, unbuilt)
-    table = build(place)
-    point = place.path / "results/tiny/points/dynamics/0.24.json"
+    damaged, *_ = first
+    damaged.write_bytes(damaged.read_bytes().replace(b"0", b"1", 1))
+    assert place.snakemake("--cores", "2", "--", TABLE, passes=False).returncode != 0
     log = place.path / "results/logs/tiny/dynamics/0.24.log"
-    damaged, *_ = shards(place)
-    written, content = damaged.read_bytes(), read_json(damaged)
-    for damage in (written.replace(b"0", b"1", 1), b"", None):
-        point.unlink()
-        (place.path / TABLE).unlink()
-        if damage is not None:
-            damaged.write_bytes(damage)
-            run = place.snakemake("--cores", "2", "--", TABLE, passes=False)
-            assert run.returncode != 0
-            assert log.read_text().endswith(
-                f"{damaged.name} is not what its job wrote; delete it, and it is made again\n"
-            )
-        damaged.unlink()
-        assert build(place) == table
-        assert read_json(damaged) == content
+    said = f"{damaged.name} is not what its job wrote; delete it, and it is made again\n"
+    assert log.read_text().endswith(said)
+    damaged.unlink()
+    assert build(place).startswith(table)
 
 
 @pytest.mark.slow

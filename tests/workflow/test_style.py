@@ -22,16 +22,6 @@ def test_the_reference_has_every_public_name():
     assert sorted(re.findall(r"^\* `td\.(\w+)`$", page, re.M)) == sorted(twodiscs.__all__)
 
 
-CONFIGURATIONS = [*REPOSITORY.glob("config/**/*.yaml"), *REPOSITORY.glob("tests/**/*.yaml")]
-
-
-@pytest.mark.parametrize("path", CONFIGURATIONS, ids=lambda path: path.stem)
-def test_editors_find_the_schema_of_a_configuration(path):
-    head = path.read_text(encoding="utf-8").split("\n", 1)[0]
-    (place,) = re.fullmatch(r"# yaml-language-server: \$schema=(.+)", head).groups()
-    assert (path.parent / place).resolve() == REPOSITORY / "config/schema.json"
-
-
 def test_the_drawing_of_the_rules_is_the_graph_of_snakemake():
     command = [sys.executable, "-m", "snakemake", "--rulegraph", "--forceall", "--nolock", "all"]
     done = subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True, check=True)
