@@ -336,13 +336,9 @@ def quick(monkeypatch):
     monkeypatch.setattr(stability, "extreme_rows", lambda seed: extremes(seed, one))
 
 
-GIVEN = {"box": PAPER, "seed": 1, "ordinary": 2000, "hard": 1000}
-
-
-@pytest.mark.parametrize("box", [PAPER, Box(1e-6, 1e6)], ids=str)
-def test_table_and_figure_of_any_box(box, quick, tmp_path):
-    rows, again = (written(tmp_path, Stability, **GIVEN | {"box": box}) for _ in range(2))
-    assert rows == again
+def test_table_and_figure_of_any_box(quick, tmp_path):
+    box = Box(1e-6, 1e6)
+    rows = written(tmp_path, Stability, box=box, seed=1, ordinary=2000, hard=1000)
     parts = {row["part"] for row in rows}
     assert parts == {
         "theory", "sampling", "estimates", "times", "dynamics", "extremes", "reversal", "coverage"
@@ -350,4 +346,4 @@ def test_table_and_figure_of_any_box(box, quick, tmp_path):
     with style.context():
         for module in (figure, figure_runs):
             for some in (rows, []):
-                style.save(module.draw(PAPER, {"stability": some}), tmp_path / "figure.png")
+                style.save(module.draw(box, {"stability": some}), tmp_path / "figure.png")

@@ -36,17 +36,11 @@ LOOK = """
         thumbnails: all(".thumbnails img").map(image => [image.naturalWidth, image.alt.length]),
         sections: all("section h2").map(heading => heading.innerText),
         paused: [...labels, button.innerText, picture.querySelector("source").media],
-        tops: ["h1", ".verdict", "#agreement", "#animation", ".key", ".files", "#made"].map(
-            selector => place(document.querySelector(selector)).top),
-        opening: place(document.querySelector("#animation img")).bottom,
         right: Math.max(document.documentElement.scrollWidth,
                         place(document.querySelector("#agreement")).right),
-        smallest: Math.min(...all("p, td, th, figcaption, li").map(
-            element => parseFloat(getComputedStyle(element).fontSize))),
         links: all("a").map(link => link.getAttribute("href")),
         anchors: all("a[href^='#']").map(link => place(document.querySelector(link.hash)).top),
         numbers: all(".numbers").map(table => [...table.tBodies].map(body => body.rows.length)),
-        last: document.querySelector("main").lastElementChild.id,
     };
 })()
 """
@@ -116,17 +110,10 @@ def test_key_figures_have_their_captions_beneath_them_and_the_rest_are_thumbnail
     assert front["paused"] == ["Pause", "Play", "all"]
 
 
-def test_the_order_is_the_same_in_any_window_and_nothing_is_wider_than_it(front):
+def test_every_section_is_there_and_nothing_is_wider_than_the_window(front):
     scenes = ["How accurate, how long", "Scene full", "Scene walls"]
     assert front["sections"] == [*scenes, "Studies, over all scenes", "How it was made"]
-    heading, verdict, table, movie, *rest = front["tops"]
-    assert heading < verdict < table
-    assert max(table, movie) < rest[0]
-    assert rest == sorted(rest)
-    assert front["last"] == "made"
     assert front["right"] <= front["width"]
-    assert front["smallest"] >= 13
-    assert front["opening"] < 1000 or front["width"] < 1000, "the animation is in the first window"
 
 
 def test_it_has_all_mean_times_and_its_links_lead_to_files_and_sections(front, complete):

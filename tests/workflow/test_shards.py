@@ -3,7 +3,7 @@
 import shutil
 
 import pytest
-from checkout import BELOW, Checkout, folder, use
+from checkout import folder
 
 from twodiscs_paper.configuration.load import load
 
@@ -120,9 +120,3 @@ def test_neither_the_size_nor_the_site_of_shards_is_of_consequence(unbuilt, tmp_
     joined.snakemake("--cores", "1", "--touch", "--", *map(str, files))
     assert "shard" not in {rule for rule, _ in joined.jobs(TABLE)}
     assert build(joined) == table
-    # As a module, below a prefix.
-    place = Checkout(tmp_path / "other", unbuilt)
-    place.path.mkdir()
-    use(place, TINY, "discs_", BELOW)
-    place.snakemake("--cores", "2", "--", f"below/{TABLE}")
-    assert (place.path / "below" / TABLE).read_bytes() == table
