@@ -123,7 +123,7 @@ def test_files_diffuse_by_passages_if_hops_are_rare():
 @pytest.mark.parametrize(
     ("name", "table", "quantity", "keys", "fewest"),
     [
-        ("passages", Passages, "coefficient", ("distance", "moment_of_inertia", "time"), 4),
+        ("passages", Passages, "coefficient", ("distance", "friction", "moment_of_inertia"), 11),
         ("tails", Tails, "survival", ("radius", "method"), 10),
         # The same streams: the radii of the build are among those of the long run.
         ("displacements", Passages, "displacement", ("radius", "friction", "discs"), 21),
