@@ -1,6 +1,8 @@
-"""Command lines, run in this process."""
+"""Command lines, run in this process, and programs, run in another one."""
 
 import json
+import subprocess
+import sys
 
 from twodiscs.cli import run
 
@@ -17,3 +19,9 @@ def command(monkeypatch, module, *arguments):
             run(module.main)
         except SystemExit as leave:
             return leave.code or 0
+
+
+def python(*words, **options):
+    """Return the completed process of Python with some ``words``, and what it printed."""
+    words = [sys.executable, *map(str, words)]
+    return subprocess.run(words, **{"capture_output": True, "text": True} | options)

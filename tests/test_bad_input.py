@@ -7,15 +7,14 @@ import itertools
 import math
 import os
 import re
-import subprocess
-import sys
 from copy import deepcopy
 from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
-from commands import command
+from commands import command, python
+from matplotlib.figure import Figure  # noqa: F401 - for a line of CALLS
 
 import twodiscs as td
 from twodiscs import cli
@@ -27,6 +26,7 @@ from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.base import read_json
 from twodiscs.sampling import montecarlo
+from twodiscs.sampling.many import insertions  # noqa: F401 - for a line of CALLS
 from twodiscs.sampling.starts import components
 from twodiscs.theory import exact, laws, virial
 from twodiscs_paper.configuration import schema
@@ -40,6 +40,8 @@ PAPER = BOX.scene(0.2)
 RING, FIELD = Scene(1.5, 1.0, 0.2, periodic="x"), Scene(1.5, 1.0, 0.2, field=0.4)
 FOUR = Scene(6.0, 1.0, 0.2, discs=4, periodic="x")
 NAN, INF = math.nan, math.inf
+#: Disc 2 is where the next image of disc 1 is.
+ROUND_THE_RING = [-0.5, 0.0, 1.0, 0.1, 1.0, 0.0, 0.0, 0.0]
 START = dict(zip(components(PAPER), (-0.5, 0.0, 0.5, 0.0, 1.0, 0.0, 0.0, 0.0), strict=True))
 
 
@@ -75,7 +77,6 @@ discs: 1025 → discs must be an integer from 2 to 1024, not 1025
 discs: 3, field: 1 → field must be left out with 3 discs
 discs: 3, depth: 1 → depth must be left out with 3 discs
 discs: 3, periodic: xy, moment_of_inertia: 0.5 → moment_of_inertia must be left out in a box without
-discs: 3, periodic: y → periodic must be left out or x for more than two discs, not 'y'
 discs: 3, periodic: xy → periodic must be left out or x for more than two discs, not 'xy'
 discs: 3, radius: 0.31 → radius 0.31 does not fit: 3 discs in a box of 1.5 × 1.0 need a radius below
 discs: 4, radius: 0.376, periodic: x → radius 0.376 does not fit
@@ -84,9 +85,6 @@ discs: 64, width: 100000 → width and height must be in a unit of length in whi
 radius: 0.5 → radius 0.5 does not fit: … need a radius below 0.3839745962155614
 width: 0.2, radius: 1.5 → radius 1.5 does not fit
 height: 1.0e+99 → height must … between 1e-60 and 1e60, not 1
-width: .nan → width must be a positive… not nan
-mass_ratio: -1 → mass_ratio must be a… ratio…, not -1
-field: -1 → field must be …0…, not -1
 field: 1.0e-70 → field must lie between 1e-60 and 1e60, not 1e-70
 field: 1, periodic: y → field must be 0 if y is periodic
 field: 100, radius: 0.38 → field 100.0 is too strong at radius 0.38
@@ -99,17 +97,14 @@ depth: 1, moment_of_inertia: 0.4 → moment_of_inertia must be left out in a box
 CALLS = """
 Scene(1.5, 1, 0.1, periodic='x,y') → periodic must be some of the axes x and y (z needs a depth), …
 Scene('0,3', 1, 0.1) → width must be a positive number, not '0,3'; decimals follow a point, 0.3
-Scene(1.5, 1, 0.1, mass_ratio=0) → mass_ratio must be a positive, finite ratio, not 0.0
 Scene(1.5, 1, 0.1, n_discs=3) → 'n_discs'; did you mean discs?
 Scene(1.5, 1, np.array([0.1, 0.2])) → radius must be
 Scene(1.5, 1, 0.1, discs=3, periodic='x').turned() → periodic must be left out or
 Scene(1.5, 1) → missing 1 required positional argument: 'radius'
-Box.of(3) → scene must be a Scene, not 3
 exact.rate('any_wall', PAPER) → scene must be a Scene, not 'any_wall'
 td.simulate(PAPER, evnets=['any_wall']) → 'evnets'; did you mean events?
 td.simulate() → missing 1 required positional argument: 'scene'
 td.simulate(PAPER, events='any wall') → ; did you mean any_wall?
-td.simulate(PAPER, events={'any_wall': 1e-9}) → events must be some of vertical_hop,
 td.simulate(PAPER, 0.5, progress=1) → progress must be True, False or None, not 1
 td.simulate(PAPER, 0.1, duration=10) → error and duration must not both be given
 td.simulate(PAPER, duration=1e9, budget=1e6) → duration must be below
@@ -120,7 +115,6 @@ td.intervals(RING, 'horizontal_hop') → x two discs have no order that a hop co
 td.simulate(FOUR, events='horizontal_hop') → axis x are those of neighbours, see transmission
 td.intervals(FOUR, 'horizontal_hop') → axis x are those of neighbours, see transmission
 td.sample(PAPER, quantities='any_wall') → did you mean any_wall_area?
-td.sample(PAPER, 1, shell=1.0) → shell must lie between 0 and 1, ends excluded, not 1.0
 td.sample(PAPER, 1).save('\\0') → path must be a file to write, not '\\x00': it has a
 td.sample(PAPER, 1).save('no/a.json') → path must be a file to write, not 'no/a.json'
 td.plot(BOX, 'no/a.png') → path must be a file to write, not 'no/a.png'
@@ -130,10 +124,24 @@ td.load_result('absent.json') → path must be a file to read
 td.load('nothere') → tables of results, but 'nothere' does not exist
 td.load('src') → folder must hold tables of results, but 'src' has none
 td.scan(1.5, 1, [0.1], gravity=1) → gravity is no effect; effects must be some of
-td.scan(1.5, 1, []) → radii must have at least one radius
 td.scan(1.5, 1, [0.2, 0.2]) → radii must differ, because one radius has the same
 td.sample(PAPER, 1).more(budget=1e7) → to go on, give samples=
 td.simulate(PAPER, 0.5, budget=1).more(duration=10) → duration must be left out for a result of …
+td.trajectory(RING, start=ROUND_THE_RING) → must have the discs apart
+td.intervals(Scene(1.5, 1, 0.3), 'horizontal_hop') → is blocked
+td.intervals(Scene(1.6, 0.6, 0.18, discs=4), 'horizontal_hop') → is blocked
+td.intervals(Scene(1.5, 1, 0.13, discs=16), 'vertical_hop') → is so large for 16 discs that the time
+td.intervals(Scene(1, 1, 0.1, discs=3, moment_of_inertia=1), 'vertical_hop') → must have smooth
+insertions.sample(Scene(1.5, 1.0, 0.13, discs=16), 1000, 1) → in none of them 16 discs fit
+td.pressure(FIELD) → field must be 0 for a pressure
+td.pressure(Scene(1, 1, 0.1, radius_ratio=2)) → radius_ratio must be 1 for a pressure
+td.pressure(Scene(1, 1, 0.1, periodic='xy')) → must have walls along x or y for a pressure
+td.pressure(td.sample(PAPER, 1)) → of must be a Scene or a result of simulate
+td.free_energy(FIELD) → field must be 0 for the free energy
+td.free_energy('a') → of must be a Scene or a result of sample, not 'a'
+td.diffusion(PAPER, [1]) → axis must be periodic in the scene for diffusion
+td.diffusion(RING, [1], axis='y') → axis must be one of x for
+td.diffusion(RING, [0, 1]) → times must be above 0 for diffusion
 start(x1=0.2) → have the discs apart, with 0.4 or more between their centres, not 0.3
 start(x1=-0.6) → disc 1 inside the box, with x1 between -0.55 and 0.55, not -0.6
 start(y2=0.31) → disc 2 inside the box, with y2 between -0.3 and 0.3, not 0.31
@@ -141,7 +149,6 @@ start(u1=2.0) → start must have a total energy of 0.5, not 2.0
 start(v2=NAN) → start must be the numbers x1, y1, x2, y2, u1, v1, u2, v2, not
 observe(times={1: 0, 0: 0}) → times must be ascending numbers from 0 on, not [1, 0]
 observe(times=[1e9]) → where 1e7 events are due, not 1e9
-observe(1) → function must take two arrays of states, not be 1
 observe(lambda a, b: 1.0) → function must return a real number, or the same
 observe(lambda a, b: None) → 4096 replicas, not None: is its return missing?
 observe(lambda a, b: b) → an array with the fields x1, y1, x2, y2, u1, v1
@@ -151,6 +158,11 @@ td.plot(td.observe(PAPER, nine, [1], 1)) → at most 8 averages at a time to be 
 td.trajectory(PAPER).states_at([1e9]) → times must be numbers from 0.0 to
 td.trajectory(PAPER)[['time', 'x1']].states_at([1]) → rows and lacks y1, x2, y2, u1, v1, u2, v2
 td.plot(td.sample(PAPER, 1), figure='mean_times') → figure must be one of volume,
+td.plot(td.sample(PAPER, 1), ax='main') → ax must be one plane Axes of matplotlib, not
+td.plot(td.sample(PAPER, 1), ax=Figure().subplots(2)) → ax must be one plane Axes of matplotlib, not
+td.plot(td.sample(PAPER, 1), ax=Figure().add_subplot(projection='3d')) → ax must be one plane Axes
+td.plot([td.sample(s, 1) for s in (PAPER, RING)]) → for several boxes call plot with the same ax for
+td.plot(td.trajectory(PAPER, 1), ax=Figure().add_subplot()) → must be over the radius to be drawn in
 td.plot([td.sample(PAPER, 1), 1]) → result must be a scene, a trajectory, results
 td.plot([td.intervals(PAPER, hop, 1) for hop in td.EVENTS[:2]]) → not horizontal_hop and verti…
 td.plot(FIELD) → scene must be two plain discs for a drawing, but it has field
@@ -196,14 +208,11 @@ seed: 010 → FILE, line 1: 010 must be a decimal number or text in quotes: YAML
 scenes: [{radii: [0.1, 1_0.5]}] → FILE, line 1: 1_0.5 must be …: YAML reads 10.5
 010: 1 → FILE, line 1: 010 must be a decimal number …: YAML reads 8
 results: here → the configuration needs the key 'scenes'
-scenes: [] → scenes must be a non-empty list of scenes, not []
 scenes: &a [*a] → scenes[0] must be a block of keys, at least name and box, not [[[...]]]
-scenes: [a] → scenes[0] must be a block of keys, at least name and box, not 'a'
 scene: [] → the configuration has an unknown key 'scene'; did you mean 'scenes'?
 SCENE⏎zz: 1 → the configuration has an unknown key 'zz'; its keys are TOP_KEYS
 SCENE⏎accuracy: 1 → the configuration has an unknown key 'accuracy'; it belongs in a scene
 SCENE⏎seed: '010' → seed must be an integer …, not '010'
-SCENE⏎seed: -1 → seed must be an integer from 0 to 2^63 - 1, not -1
 SCENE⏎results: ../elsewhere → results must be a path, …, not '../elsewhere'
 SCENE⏎results: src → results must be … outside the folders of the sources, not 'src'
 SCENE⏎shared: [paper, paper] → shared must be a list of different …, not ['paper', 'paper']
@@ -214,7 +223,6 @@ SCENE⏎shared: [papers] → shared[0] must be one of …, not 'papers'; did you
 IN_SCENE = """
 name: a/b → .name must be a name of small letters…, not 'a/b'
 name: figures → .name must be … none of all, benchmarks, …, not 'figures'
-box: [1.5, 1] → .box must be a block {width: …, height: …}, …, not [1.5, 1]
 width: 1 →  has an unknown key 'width'; it belongs in 'box'
 box: {discs: 3} → .box has an unknown key 'discs'; it belongs in a scene
 box: {width: 1,5, height: 1} → .box has an unknown key 5; decimals have a point
@@ -222,7 +230,6 @@ box: {width: 1.5, heigth: 1} → .box has an unknown key 'heigth'; did you mean 
 box: {width: 1, height: '1,2'} → .box.height must be a positive length …; decimals …, 1.2
 discs: 2.5 → .discs must be an integer from 2 to 1024, not 2.5
 discs: 65⏎radii: [0.01]⏎watch: {volume: true} → .watch.volume must be false for more than 64 discs…
-radii: [] → .radii must be a non-empty list of radii, or a block …, not []
 radii: [0.1, 0.2, 1e-1] → .radii must hold every radius once, but …
 radii: {smallest: 0.4} → .radii.smallest: radius 0.4 does not fit: …
 radii: {smallest: 0.25} → .radii: smallest must not be 0.25, at which a …
@@ -243,7 +250,6 @@ effects: {field: 1}⏎radii: [0.1, 0.378] → .radii: with field 1.0, radius 0.3
 effects: {radius_ratio: 2}⏎radii: {smallest: 0.24} → .radii: smallest must be below 0.225…, not 0.24
 accuracy: papper → .accuracy must be …, not 'papper'; did you mean 'paper'?
 accuracy: {rihgt_wall: 1} → .accuracy has an unknown key 'rihgt_wall'; did you mean 'right_wall'?
-monte_carlo: 1e8 → .monte_carlo must be a block of the keys samples, shell, not '1e8'
 """
 
 GOOD = {"scenes": [{"name": "one", "box": {"width": 1.5, "height": 1}}]}
@@ -585,8 +591,7 @@ def test_what_the_workflow_cannot_run_with_is_one_sentence(tmp_path, wrong):
         mine.write_text("raise SystemExit('imported by mistake')\n")
         environment = os.environ | {"PYTHONPATH": os.pathsep.join((str(tmp_path), sources))}
         said = f"{mine} hides the package twodiscs: give this file another name\n"
-    program = [sys.executable, "-c", "import twodiscs_paper.pipeline.cost"]
-    run = subprocess.run(program, capture_output=True, text=True, env=environment, cwd=tmp_path)
+    run = python("-c", "import twodiscs_paper.pipeline.cost", env=environment, cwd=tmp_path)
     assert (run.returncode, run.stdout, run.stderr) == (1, "", said)
 
 

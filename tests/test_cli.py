@@ -13,10 +13,11 @@ import subprocess
 import sys
 from pathlib import Path
 from types import SimpleNamespace
+from unittest.mock import Mock
 
 import pytest
 from checkout import REPOSITORY
-from commands import command
+from commands import command, python
 from snakemake.jobs import Reason
 
 import twodiscs
@@ -168,33 +169,23 @@ def test_a_closed_output_is_refused_before_the_work():
 def test_who_reads_may_stop_reading(words):
     reader, writer = os.pipe()
     os.close(reader)
-    program = [sys.executable, "-m", "twodiscs", *words]
-    run = subprocess.run(program, stdout=writer, stderr=subprocess.PIPE, text=True, check=False)
+    to = {"stdout": writer, "stderr": subprocess.PIPE, "capture_output": False}
+    run = python("-m", "twodiscs", *words, **to)
     os.close(writer)
     assert run.stderr == ""
 
 
 def test_run_turns_an_error_into_a_sentence_and_a_result_into_its_status(capsys):
-    def ends(main):
+    for main, status, sentence in (
+        (Mock(side_effect=InputError("two\n  lines")), 2, "error: two lines\n"),
+        (Mock(side_effect=FileNotFoundError(2, "No file", "a.csv")), 2, "error: a.csv: No file\n"),
+        (Mock(side_effect=OSError("broken")), 2, "error: broken\n"),
+        (Mock(return_value=None), None, ""),
+        (Mock(return_value=1), 1, ""),
+    ):
         with pytest.raises(SystemExit) as caught:
             cli.run(main)
-        return caught.value.code
-
-    def raising(error):
-        def main():
-            raise error
-
-        return main
-
-    for error, sentence in (
-        (InputError("two\n  lines"), "error: two lines\n"),
-        (FileNotFoundError(2, "No such file", "a.csv"), "error: a.csv: No such file\n"),
-        (OSError("broken"), "error: broken\n"),
-    ):
-        assert ends(raising(error)) == 2
-        assert capsys.readouterr().err == sentence
-    assert ends(lambda: None) is None
-    assert ends(lambda: 1) == 1
+        assert (caught.value.code, capsys.readouterr().err) == (status, sentence)
 
 
 # Builds -----------------------------------------------------------------------------------------
@@ -224,8 +215,7 @@ def test_a_new_configuration_is_one_and_is_not_written_over(tmp_path, monkeypatc
 def test_a_new_configuration_needs_no_package_of_the_workflow(tmp_path):
     absent = "import sys; sys.modules |= dict.fromkeys(('snakemake', 'yaml', 'pydantic'));"
     program = f"{absent} from twodiscs.cli import main; main()"
-    words = [sys.executable, "-c", program, "new", "my.yaml"]
-    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=True)
+    done = python("-c", program, "new", "my.yaml", cwd=tmp_path, check=True)
     assert done.stdout == "my.yaml is written. To build it: twodiscs run my.yaml\n"
 
 
@@ -378,7 +368,6 @@ def test_a_shell_completes(tmp_path):
         "_ARGCOMPLETE": "1", "_ARGCOMPLETE_IFS": "\n", "_ARGCOMPLETE_SUPPRESS_SPACE": "1",
         "_ARGCOMPLETE_STDOUT_FILENAME": str(tmp_path / "proposed"), "COMP_TYPE": "9",
     }  # fmt: skip
-    words = [sys.executable, "-c", COMPLETE, tmp_path / "proposed", *COMPLETED]
-    where = {"env": {**os.environ, **shell}, "cwd": REPOSITORY, "text": True}
-    found = subprocess.check_output(words, timeout=60, **where)
+    words = "-c", COMPLETE, tmp_path / "proposed", *COMPLETED
+    found = python(*words, timeout=60, env=os.environ | shell, cwd=REPOSITORY, check=True).stdout
     assert found.splitlines() == [*COMPLETED.values()]

@@ -5,7 +5,6 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 import tarfile
 import tomllib
 from pathlib import Path
@@ -13,6 +12,7 @@ from zipfile import ZipFile
 
 import pytest
 from checkout import REPOSITORY
+from commands import python
 
 PROJECT = tomllib.loads((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
@@ -40,19 +40,18 @@ NO_RULE_READS = ("schema.json", "references.md")
 def installed(tmp_path_factory):
     """Build a wheel without a network, install it into an empty folder, and return that."""
     folder = tmp_path_factory.mktemp("wheel")
-    pip = [sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check"]
-    offline = ["--no-deps", "--no-index"]
+    pip, offline = ("-m", "pip", "--quiet"), ("--no-deps", "--no-index")
     source = folder / "source"
     source.mkdir()
     for name in ("pyproject.toml", "README.md", "LICENSE", "Snakefile", "CITATION.cff", *CARRIED):
         (source / name).symlink_to(REPOSITORY / name)
     leave = shutil.ignore_patterns("__pycache__", "*.egg-info")
     shutil.copytree(REPOSITORY / "src", source / "src", ignore=leave)
-    wheel = [*pip, "wheel", *offline, "--no-build-isolation", "--wheel-dir", folder, source]
-    subprocess.run(wheel, check=True, capture_output=True, text=True)
+    wheel = "wheel", *offline, "--no-build-isolation", "--wheel-dir", folder, source
+    python(*pip, *wheel, check=True)
     (built,) = folder.glob("*.whl")
     target = folder / "target"
-    subprocess.run([*pip, "install", *offline, "--target", target, built], check=True)
+    python(*pip, "install", *offline, "--target", target, built, check=True)
     absent = {{"pyyaml": "yaml"}.get(name, name) for name in EXTRAS}
     (target / "sitecustomize.py").write_text(BLOCKED.format(absent=absent), encoding="utf-8")
     return target
@@ -60,9 +59,7 @@ def installed(tmp_path_factory):
 
 def outside(installed, *words):
     """Run Python outside of the repository, with the wheel and without the extras."""
-    environment = {**os.environ, "PYTHONPATH": str(installed)}
-    shown = {"capture_output": True, "text": True, "check": False}
-    run = subprocess.run([sys.executable, *words], cwd=installed, env=environment, **shown)
+    run = python(*words, cwd=installed, env=os.environ | {"PYTHONPATH": str(installed)})
     assert run.returncode == 0, run.stderr
     return run.stdout
 
@@ -107,16 +104,15 @@ def sdist(tmp_path_factory):
     folder = tmp_path_factory.mktemp("sdist")
     subprocess.run(["git", "clone", "--quiet", REPOSITORY, folder / "source"], check=True)
     build = "import setuptools.build_meta as build; print(build.build_sdist('..'))"
-    subprocess.run([sys.executable, "-c", build], cwd=folder / "source", check=True)
+    python("-c", build, cwd=folder / "source", check=True)
     (built,) = folder.glob("*.tar.gz")
     return built
 
 
 @pytest.mark.slow
 def test_the_source_distribution_makes_the_same_wheel(installed, sdist, tmp_path):
-    pip = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-index"]
-    command = [*pip, "--no-build-isolation", "--wheel-dir", tmp_path, sdist]
-    subprocess.run(command, check=True)
+    offline = "--no-deps", "--no-index", "--no-build-isolation"
+    python("-m", "pip", "wheel", "--quiet", *offline, "--wheel-dir", tmp_path, sdist, check=True)
     (again,), (built,) = tmp_path.glob("*.whl"), installed.parent.glob("*.whl")
     names = [sorted(ZipFile(path).namelist()) for path in (again, built)]
     assert names[0] == names[1]

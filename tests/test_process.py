@@ -11,7 +11,6 @@ import logging
 import os
 import random
 import signal
-import subprocess
 import sys
 import tempfile
 import threading
@@ -25,6 +24,7 @@ import numba
 import numpy as np
 import pytest
 import scipy.integrate  # noqa: F401 - SciPy adds filters of warnings when it is imported
+from commands import python
 
 import twodiscs as td
 
@@ -180,8 +180,7 @@ def main():
 
 
 def test_a_process_is_left_as_it_was():
-    words = [sys.executable, str(Path(__file__))]
-    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    done = python(__file__)
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
     assert {*found} > {name for name in td.__all__ if isfunction(getattr(td, name))}

@@ -3,6 +3,7 @@
 import json
 import math
 import sys
+from dataclasses import replace
 from types import ModuleType
 
 import numpy as np
@@ -19,6 +20,8 @@ from twodiscs.sampling.rounds import joined
 
 SCENE = td.Scene(1.5, 1.0, 0.2)
 NARROW = td.Scene(1.5, 1.0, 0.249)
+THREE = td.Scene(1.5, 1.0, 0.15, discs=3)
+RING = replace(THREE, periodic="x")
 
 #: {name: (less, more of it, what says more)}; the hop of ``NARROW`` is counted from strips as well,
 #: and one radius of the scan does not fit.
@@ -256,21 +259,24 @@ def test_averages_over_states_have_honest_errors():
     assert list(found.frame().columns) == [f"{n}_{k}" for n in ("mean", "stderr") for k in range(3)]
 
 
-def test_what_is_observed_is_a_trajectory():
+@pytest.mark.parametrize(
+    ("scene", "replicas"), [(SCENES["combination"], 3), (THREE, 20), (replace(RING, discs=4), 20)]
+)
+def test_what_is_observed_is_a_trajectory(scene, replicas):
     """The states of a replica are those of the trajectory from its start, beyond the cell too."""
-    kept, scene = [], SCENES["combination"]
+    kept, times, gone = [], [1.0, 4.0 if scene.discs > 2 else 11.0], 0
 
     def seen(start, now):
-        kept.append((start[:3].copy(), now[:3].copy()))
+        kept.append((start[:replicas].copy(), now[:replicas].copy()))
         return now["x1"]
 
-    times = [2.0, 11.0]
     td.observe(scene, seen, times, 10)
-    for k, time in enumerate(times):
-        for start, now in zip(*kept[k], strict=True):
-            path = td.trajectory(scene, start=start, duration=12.0)
-            (state,) = path.states_at([time])
-            assert np.allclose([*state], [*now], rtol=0, atol=1e-6)
+    for time, both in zip(times, kept, strict=True):
+        for start, now in zip(*both, strict=True):
+            (state,) = td.trajectory(scene, start=start, duration=12.0).states_at([time])
+            assert np.allclose([*state], [*now], rtol=0, atol=1e-5)
+            gone += abs(now["x1"]) > scene.width / 2
+    assert bool(gone) == bool(scene.periodic)
 
 
 def test_blocks_of_replicas_have_different_kicks():
@@ -373,6 +379,3 @@ def test_a_density_that_the_bins_do_not_resolve_has_no_value():
     assert (near.value, near.stderr, near.z, near.status) == (None, None, None, "not-resolved")
     assert near.exact == pytest.approx(3 * math.sqrt(2) / (16 * (1.5 - 0.44)))
     assert "not-resolved" in str(near)
-    far = td.intervals(td.Scene(1.5, 1.0, 0.15), "vertical_hop", 1e6).at_zero
-    assert far.status == "extrapolated"
-    assert abs(far.value - far.exact) < 5 * far.stderr

@@ -10,6 +10,7 @@ import sys
 import time
 
 import pytest
+from commands import python
 
 #: The program of a child process: of each call first a small one, for which everything is compiled,
 #: then a long one. A call that goes on ends the process after a minute.
@@ -105,5 +106,5 @@ td.simulate(td.Scene(1.5, 1, 0.1, discs=8), 1, budget=1)
 
 def test_the_thread_that_hears_signals_calls_no_kernel():
     """A KeyboardInterrupt in what numba does about a call may be lost, or be a SystemError."""
-    run = subprocess.run([sys.executable, "-c", WATCHED], capture_output=True, text=True)
+    run = python("-c", WATCHED)
     assert (run.returncode, run.stdout) == (0, ""), run.stderr
