@@ -1,7 +1,6 @@
 """N discs: without it a disc could be lost on its way to the rows, or two programs differ."""
 
 import json
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -113,38 +112,6 @@ def test_expected_rates_are_near_what_is_counted():
 # A trajectory -----------------------------------------------------------------------------------
 
 
-def test_a_trajectory_on_a_ring_goes_on_beyond_the_cell():
-    scene = SCENES["four on a ring"]
-    frame = td.trajectory(scene, seed=3, duration=300.0)
-    walls = {f"wall_y{disc}" for disc in range(1, 5)}
-    assert set(frame["event"]) == {"start", "vertical_hop", "disc_collision", "end"} | walls
-    x, y, u = (frame[[f"{q}{d}" for d in range(1, 5)]].to_numpy() for q in "xyu")
-    assert np.ptp(x) > 2 * scene.width
-    # Places go on as velocities say, and the centre of mass stays where it is.
-    steps = np.diff(frame["time"])[:, None] * u[:-1]
-    assert np.diff(x, axis=0) == pytest.approx(steps, abs=1e-12)
-    assert np.ptp(x.sum(axis=1)) < 1e-11
-    # Pairs of discs are where their events say.
-    dx = x[:, :, None] - x[:, None]
-    apart = np.hypot(dx - scene.width * np.round(dx / scene.width), y[:, :, None] - y[:, None])
-    assert apart[:, *np.triu_indices(4, 1)].min() >= scene.contact_distance * (1 - 1e-12)
-    for event, found, due in (
-        ("disc_collision", apart, scene.contact_distance),
-        ("vertical_hop", y[:, :, None] - y[:, None], 0.0),
-    ):
-        (k,) = np.nonzero((frame["event"] == event).to_numpy())
-        pairs = (frame[name].to_numpy()[k].astype(int) - 1 for name in ("first", "second"))
-        assert found[k, *pairs] == pytest.approx(due, rel=1e-12, abs=1e-12)
-    # The same trajectory from any image of a disc.
-    early = frame["time"].searchsorted(5.0)
-    start = frame.states_at(0.0)[0].copy()
-    start["x2"] += 3 * scene.width
-    moved = td.trajectory(scene, start=start, duration=5.0)
-    assert moved["event"].tolist()[:-1] == frame["event"].tolist()[: len(moved) - 1]
-    back = moved["x2"].to_numpy()[:early] - 3 * scene.width
-    assert back == pytest.approx(x[:early, 1], abs=1e-9)
-
-
 @pytest.mark.parametrize("name", SCENES)
 def test_a_trajectory_is_that_of_another_program(name):
     """From the same state, for some sixteen events, in which roundings of 1e-16 stay small."""
@@ -165,26 +132,6 @@ def test_a_trajectory_is_that_of_another_program(name):
 
 
 # Observables ------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("name", ["three", "four on a ring"])
-def test_what_is_observed_are_trajectories(name):
-    """The states of a replica are those of the trajectory from its start, beyond the cell too."""
-    scene, times, kept = SCENES[name], [1.0, 3.0], []
-
-    def seen(start, now):
-        kept.append((start[:100].copy(), now[:100].copy()))
-        return now["x1"] - start["x1"]
-
-    td.observe(scene, seen, times, 10)
-    gone = 0
-    for time, (starts_of, states) in zip(times, kept, strict=True):
-        for start, now in zip(starts_of, states, strict=True):
-            path = td.trajectory(scene, start=start, duration=3.0)
-            (state,) = path.states_at([time])
-            assert [*state] == pytest.approx([*now], abs=1e-5)
-            gone += any(abs(now[f"x{k}"]) > scene.width / 2 for k in range(1, scene.discs + 1))
-    assert bool(gone) == bool(scene.periodic)
 
 
 # Intervals -------------------------------------------------------------------------------------
@@ -213,10 +160,3 @@ def test_the_mean_interval_is_compared_where_it_is_known(name):
 
 
 # Error messages ----------------------------------------------------------------------------------
-
-
-def test_the_exact_table_of_more_discs():
-    frame = td.exact_table(3.5, 0.6, [0.1, 0.18], discs=8)
-    assert math.isnan(frame["volume"][0.1])
-    assert frame["volume"][0.18] == exact.volume(SCENES["eight in a channel"])
-    assert frame["ergodic_components"].tolist() == [1, math.factorial(8)]

@@ -2,10 +2,9 @@
 
 import os
 import shutil
-import subprocess
-import sys
 
 import pytest
+from commands import python
 
 import twodiscs
 from twodiscs.model.events import DECLARED, SHELLS
@@ -70,14 +69,11 @@ def test_the_near_wall_needs_nothing_but_its_declaration(axis, side, tmp_path):
     declared = {(event.axis, event.side) for event in DECLARED.values()}
     assert (axis, side) not in declared
     environment = with_events(tmp_path, f'Event("own_wall", "wall", "{axis}", {side})')
-    command = [sys.executable, "-c", MEASURED, "own_wall"]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    done = python("-c", MEASURED, "own_wall", env=environment)
     assert done.returncode == 0, done.stderr
 
 
 def test_a_seventh_shell_is_refused_with_a_sentence(tmp_path):
     more = [f'Event("own_{i}", "wall", "x", -1)' for i in range(7 - len(SHELLS))]
-    command = [sys.executable, "-c", "import twodiscs.sampling.montecarlo"]
-    environment = with_events(tmp_path, *more)
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    done = python("-c", "import twodiscs.sampling.montecarlo", env=with_events(tmp_path, *more))
     assert done.stderr.endswith("sampling/montecarlo.py has room for 6 shells, not for 7\n")

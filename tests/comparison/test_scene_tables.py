@@ -5,35 +5,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from effect_scenes import SCENES
-from factory import (
-    BOX,
-    RADII,
-    Laws,
-    counts_point,
-    hits_point,
-    rows_of,
-    scenes,
-    theory_rows,
-)
+from factory import BOX, RADII, Laws, counts_point, hits_point, rows_of, scenes, theory_rows
 from scipy.special import ndtri, stdtr
 
 import twodiscs as td
-from twodiscs.comparison.scene_tables import (
-    Areas,
-    HopHistogram,
-    MeanTimes,
-    Theory,
-    Volume,
-    _sampled_row,
-)
+from twodiscs.comparison.scene_tables import Areas, HopHistogram, MeanTimes, Volume, _sampled_row
 from twodiscs.dynamics.many import engine
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.dynamics import StripCount
 from twodiscs.points.intervals import Bins
-from twodiscs.sampling import montecarlo
 from twodiscs.theory.exact import rate, replicas_needed
 
 
@@ -219,42 +201,6 @@ def test_rows_of_the_histogram(theory, laws):
 
 
 # With effects -----------------------------------------------------------------------------------
-
-
-def exact_of(*scenes):
-    """Return the rows of theory.csv of scenes of one box."""
-    radii = [scene.radius for scene in scenes]
-    return Theory.rows(Box.of(scenes[0]), radii)
-
-
-#: Each compiles a kernel of its own.
-SLOW = ("unequal", "channel", "field", "rough", "friction", "balls")
-
-
-@pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=[pytest.mark.slow] if name in SLOW else []) for name in SCENES],
-)
-def test_monte_carlo_becomes_rows_that_agree(name):
-    scene = SCENES[name]
-    quantities = ["volume", *(f"{event}_area" for event in scene.events)]
-    scenes = [scene.with_radius(radius) for radius in (0.1, scene.radius)]
-    points = [montecarlo.SamplingRun(s, quantities, 1, 0.1, 7).run() for s in scenes]
-    theory = exact_of(*scenes)
-    volume = Volume.rows(theory, {"monte_carlo": points[::-1]})
-    areas = Areas.rows(Box.of(scene), theory, {"monte_carlo": points[::-1]})
-    assert [row["radius"] for row in volume] == [s.radius for s in scenes]
-    assert [(row["radius"], row["quantity"]) for row in areas] == [
-        (s.radius, f"{event}_area") for s in scenes for event in scene.events
-    ]
-    for row in volume + areas:
-        possible = row["exact"] != 0
-        assert row["bias"] == row["expectation"] - row["exact"]
-        assert row["status"] == ("sampled" if possible else "impossible")
-        # Five sigma, two-sided: a false alarm in 1.7 million comparisons.
-        assert abs(row["z"]) <= 5
-        if possible:
-            assert abs(row["estimate"] - row["expectation"]) <= 6 * row["stderr"]
 
 
 def test_the_bound_of_a_wall_never_hit_counts_no_copy_twice():

@@ -162,17 +162,11 @@ def test_scores_of_scores_are_standard_normal(test, n):
         assert low <= (np.abs(found) >= c).sum() <= high
 
 
-def test_scores_of_scores_see_shift_and_spread():
+def test_scores_of_scores_say_on_which_side_they_are():
     z = np.random.default_rng(9).standard_normal(52)
-    assert abs(scores.z_mean(z)) < 4
-    assert scores.z_mean(z + 1) > 5
-    assert scores.z_mean(z - 1) < -5
-    assert abs(scores.z_spread(z)) < 4
-    assert scores.z_spread(2 * z) > 5
-    assert scores.z_spread(z / 3) < -5
-    assert scores.z_spread(z * 1e3) > 100
-    assert math.isfinite(scores.z_spread(z * 1e3))
+    assert scores.z_mean(z + 1) > 5 > -5 > scores.z_mean(z - 1)
     assert scores.z_spread([0.0] * 52) == -math.inf
+    assert 100 < scores.z_spread(z * 1e3) < math.inf
 
 
 @pytest.mark.parametrize("degrees", [1, 5, 100])

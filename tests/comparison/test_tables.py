@@ -1,13 +1,12 @@
 """Tables: without it a digit, an empty cell or a truth value could change in a file."""
 
 import math
-import subprocess
-import sys
 from inspect import isclass
 
 import factory
 import numpy as np
 import pytest
+from commands import python
 
 from twodiscs.comparison import load, scene_tables
 from twodiscs.comparison.load import plugin
@@ -53,22 +52,11 @@ def test_every_table_of_a_scene_is_known_and_makes_its_rows():
 
 # Files ----------------------------------------------------------------------------------------
 
-CHECK_ROW = {
-    "comparison": "area",
-    "quantity": "right_wall_area",
-    "radius": 0.1,
-    "method": "monte_carlo",
-    "exact": 1 / 3,
-    "estimate": None,
-    "stderr": None,
-    "z": -math.inf,
-    "p": 0.0,
-    "bound": 5,
-    "passed": False,
-    "independent": True,
-    "status": "none-seen",
-    "test": "exact-tail",
-}
+CHECK_ROW = Check.empty(
+    comparison="area", quantity="right_wall_area", radius=0.1, method="monte_carlo", exact=1 / 3,
+    z=-math.inf, p=0.0, bound=5, passed=False, independent=True, status="none-seen",
+    test="exact-tail",
+)  # fmt: skip
 BOX, LAWS, THEORY = factory.BOX, factory.Laws(factory.BOX.scene(0.2)), factory.theory_rows([0.2])
 RNG = np.random.default_rng(1)
 COST_ROW = {"stage": "dynamics", "radius": 1e-05, "events": 2**53 + 1, "seconds": 0.1 + 0.2}
@@ -181,5 +169,4 @@ def test_a_truth_value_is_spelled_in_one_way(tmp_path):
 )
 def test_imports_stay_light(module, absent):
     code = f"import sys, {module}; print(*(m for m in {absent!r} if m in sys.modules))"
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert run.stdout.strip() == ""
+    assert python("-c", code, check=True).stdout.strip() == ""

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from effect_scenes import SCENES
+from marks import slow
 
 import twodiscs as td
 
@@ -12,11 +13,7 @@ KINDS |= {"plain": td.Scene(1.5, 1.0, 0.2), "three": td.Scene(1.5, 1.0, 0.15, di
 
 
 @pytest.fixture(
-    scope="module",
-    params=[
-        pytest.param(kind, marks=pytest.mark.slow) if kind == "combination" else kind
-        for kind in KINDS
-    ],
+    scope="module", params=[slow(kind) if kind == "combination" else kind for kind in KINDS]
 )
 def path(request):
     return td.trajectory(KINDS[request.param], 6, seed=2)

@@ -106,28 +106,6 @@ def test_the_order_of_three_discs_decays_by_passages():
         assert error < 0.02 * (1 - due)
 
 
-@pytest.mark.slow
-def test_the_order_of_the_discs_decays_by_passages():
-    """As exp(−2 κ t/τ), over starts of the invariant measure, whatever clusters of hops are.
-
-    After 48 ranges what comes before has been forgotten. Clusters with a pause of six ranges have
-    a κ that is too large by 1.5 %, which this would see.
-    """
-    scene, hop = td.Scene(1.5, 1.0, 0.25 * (1 - 2.0**-6)), "horizontal_hop"
-
-    def ordered(start, now):
-        return np.sign(start["x1"] - start["x2"]) * np.sign(now["x1"] - now["x2"])
-
-    early, late = 48.0, 250.0
-    parts = [td.observe(scene, ordered, [early, late], 2**17, seed=n) for n in range(16)]
-    decays = np.array([np.log(part.mean[0] / part.mean[1]) for part in parts]) / (late - early)
-    kappa = decays * td.mean_times(scene)[f"{hop}_time"] / 2
-    due = td.transmission(scene, hop, 2**18, seed=1).coefficient
-    error = math.hypot(kappa.std(ddof=1) / math.sqrt(kappa.size), due.stderr)
-    assert error < 0.003 * due.value
-    assert abs(student_deviate((kappa.mean() - due.value) / error, kappa.size - 1)) <= 5
-
-
 def test_the_face_has_the_coefficient_and_the_curve():
     scene = td.Scene(1.5, 1.0, 0.246)
     found = td.transmission(scene, "horizontal_hop", hops=2**14, seed=1)
@@ -176,18 +154,6 @@ def test_more_discs_have_a_coefficient_too():
     assert "fraction of horizontal hops that are passages 0.8" in str(other)
     assert "mean time" not in str(other)
     assert other.more(2**12).coefficient.stderr < other.coefficient.stderr
-
-
-def test_an_error_needs_a_hundred_hops_of_either_kind():
-    """If all 64 hops are passages, the spread is 0, but the error is not known."""
-    flat = td.Scene(6.048206371874357, 0.36037073272920495, 0.09008933352658281)
-    found = td.transmission(flat, "horizontal_hop", 1, seed=1)
-    assert found.clusters == {1: 64}
-    assert found.coefficient.stderr is found.passage_time.stderr is None
-    assert found.coefficient.relative_stderr is found.coefficient.interval() is None
-    assert "1, too few events for an error" in str(found)
-    assert "± 0" not in str(found)
-    assert found.frame()["stderr"].isna().all()
 
 
 @pytest.mark.parametrize(
