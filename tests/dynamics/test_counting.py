@@ -9,14 +9,12 @@ from effect_scenes import SCENES
 from factory import all_reached
 
 from twodiscs.dynamics import runs
-from twodiscs.dynamics.ensemble import REPLICAS, nearest_power_of_two
-from twodiscs.dynamics.runs import relative_errors
+from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.two import lockstep
 from twodiscs.model.box import Box
-from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
+from twodiscs.model.events import EVENTS, HOPS, WALLS
 from twodiscs.model.scene import Scene
-from twodiscs.sampling import montecarlo
-from twodiscs.theory.exact import mean_times, shell_expectation, volume
+from twodiscs.theory.exact import mean_times
 
 PAPER = Scene(1.5, 1.0, 0.2)
 
@@ -43,24 +41,6 @@ def test_any_duration_is_unbiased():
     """The mean count is rate × T for every T, even when almost all replicas see nothing."""
     for duration in (0.05, 0.5, 5.0):
         check_rates(PAPER, seed=4, blocks=40, duration=duration)
-
-
-def test_walls_that_symmetry_makes_equal_are_counted_together():
-    """Beyond h/4 a component has two of the four pairs of a disc and a wall of x, and one rate."""
-    scene = PAPER.with_radius(0.3)
-    left, right = (
-        runs.run_blocks(scene, EVENTS, 1, 0, 4, 32.0, order=(side, 0)) for side in (-1, 1)
-    )
-    expected = scene.copies("right_wall") * 32.0 / mean_times(scene)["right_wall"]
-    assert scene.copies("right_wall") == 2
-    at = {event: e for e, event in enumerate(EVENTS)}
-    for sums, products in (left, right):
-        error = relative_errors(sums, products, 4 * REPLICAS)[at["right_wall"]]
-        beside, above = sums[at["right_wall"]], sums[at["top_wall"]]
-        assert abs(beside / (4 * REPLICAS) - expected) <= 5 * error * expected
-        assert beside + above == sums[at["any_wall"]]
-        for wall in WALLS:
-            assert sums[at[wall]] == (beside if AXIS[wall] == "x" else above)
 
 
 def test_what_is_not_watched_is_not_detected():
@@ -111,39 +91,3 @@ def test_a_blocked_hop_is_not_waited_for():
 )
 def test_the_nearest_power_of_two_is_so_on_a_logarithmic_scale(value, power):
     assert nearest_power_of_two(value) == power
-
-
-BOX = Box(1.5, 1.0)
-
-
-@pytest.mark.slow
-def test_binomial_intervals_cover_volume_and_areas():
-    """1600 points of one block of proposals, against the exact expectation of each shell."""
-    scene = BOX.scene(0.38)
-    areas = [f"{event}_area" for event in SHELLS]
-    points = [
-        montecarlo.conditioned_point(scene, ["volume", *areas], 1, 0.3, seed)
-        for seed in range(1600)
-    ]
-    exact = {"volume": volume(scene)}
-    for event, area in zip(SHELLS, areas, strict=True):
-        epsilon = points[0].quantities[area].epsilon
-        exact[area] = shell_expectation(scene, event, epsilon)
-    for quantity, value in exact.items():
-        found = [point.estimate(quantity) for point in points]
-        if value == 0:
-            assert found == [None] * 1600
-        else:
-            assert 0.92 <= np.mean([one.covers(value) for one in found]) <= 0.98, quantity
-
-
-def test_the_shown_interval_is_the_one_whose_coverage_is_measured():
-    """The estimate ± stderr of a table comes from the same sums by the same function."""
-    point = runs.count_events(BOX.scene(0.24), {"right_wall": 0.02}, 10**7, 1)
-    count, squares = point.counts["right_wall"], point.products["right_wall*right_wall"]
-    replicas, duration = point.replicas, 4 * point.duration
-    estimate = point.estimate("right_wall", copies=4)
-    variance = squares / replicas - (count / replicas) ** 2
-    error = math.sqrt(variance / (replicas - 1)) / (count / replicas)
-    assert estimate.value == pytest.approx(duration * replicas / count, rel=1e-14)
-    assert estimate.relative_stderr == pytest.approx(error, rel=1e-9)

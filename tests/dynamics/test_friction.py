@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from dynamics.rates import check_rates
 from effect_scenes import ALL, SCENES
+from marks import slow
 from sampling.uniformity import assert_uniform_on_sphere, parts, scaled_components
 
 import twodiscs as td
@@ -27,11 +28,9 @@ from twodiscs.theory import exact
 PLAIN = Scene(1.5, 1.0, 0.2)
 NAMED = SCENES | {"all": ALL}
 #: A scene without effects, and one that takes long to compile.
-BOTH = pytest.mark.parametrize(
-    "scene", [PLAIN, pytest.param(ALL, marks=pytest.mark.slow)], ids=["plain", "all"]
-)
+BOTH = pytest.mark.parametrize("scene", [PLAIN, slow(ALL)], ids=["plain", "all"])
 #: Each compiles kicks of its own.
-SLOW = [pytest.param(name, marks=pytest.mark.slow) for name in ("all", "torus", "combination")]
+SLOW = [*map(slow, ("all", "torus", "combination"))]
 
 
 @compiled

@@ -1,13 +1,12 @@
 """Intervals could be cut off at an end, put in another bin or have too small errors."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from effect_scenes import SCENES
+from marks import slow
 
-import twodiscs as td
 from twodiscs.dynamics import runs, trajectory
 from twodiscs.dynamics.many import engine
 from twodiscs.dynamics.two import returns
@@ -23,11 +22,7 @@ PAPER = Scene(1.5, 1.0, 0.2)
 
 
 @pytest.mark.parametrize("event", HOPS)
-@pytest.mark.parametrize(
-    "scene",
-    [PAPER.with_radius(0.05), PAPER, pytest.param(SCENES["field"], marks=pytest.mark.slow)],
-    ids=repr,
-)
+@pytest.mark.parametrize("scene", [PAPER.with_radius(0.05), PAPER, slow(SCENES["field"])], ids=repr)
 def test_hop_intervals_have_the_exact_mean(event, scene):
     """In a field the box cannot be turned by a quarter: horizontal hops have separate starts."""
     found = runs.hop_intervals(scene, event, 1_000_000, 9)
@@ -40,7 +35,7 @@ def test_hop_intervals_have_the_exact_mean(event, scene):
 def test_hop_intervals_have_the_exact_density_at_zero(event, side):
     """p(0⁺) = 3√2 / (16 (side − 2r))."""
     scene = PAPER.with_radius(0.1)
-    found = runs.hop_intervals(scene, event, 8_000_000, 10)
+    found = runs.hop_intervals(scene, event, 1_000_000, 10)
     width, n = found.bin_width, found.intervals
     counts, squares = np.array(found.equal.counts[:2]), np.array(found.equal.squares[:2])
     error = np.sqrt(squares - counts**2 / found.chains) / (n * width)
@@ -94,11 +89,7 @@ MANY = {
 
 
 @pytest.mark.parametrize(
-    "name",
-    [
-        name if name in ("three", "four") else pytest.param(name, marks=pytest.mark.slow)
-        for name in MANY
-    ],
+    "name", [name if name in ("three", "four") else slow(name) for name in MANY]
 )
 def test_intervals_of_many_have_the_mean_of_theory_or_monte_carlo(name):
     """Five sigma: the first interval of a replica, or one cut off at an end, would show."""
@@ -133,33 +124,3 @@ def test_intervals_of_many_are_those_of_trajectories(name):
         c = np.bincount(np.concatenate([bins, wide[bins]]), minlength=66)
         due += [c, c * c, c * own.size]
     assert np.array_equal(sums, due)
-
-
-def test_errors_of_intervals_of_many_are_those_of_repetitions():
-    """The spread of 60 estimates over the mean error, of the mean and in bins: five sigma."""
-    scene, event = MANY["three"]
-    points = [runs.hop_intervals(scene, event, 1, seed) for seed in range(60)]
-    bins = [[*point.bins()] for point in points]
-    wide = BINS  # from there on bins are wide
-    for k in (0, 1, 10, wide, wide + 15, wide + 19):
-        densities = [some[k].density.value for some in bins]
-        errors = np.array([some[k].density.stderr for some in bins])
-        ratio = np.std(densities, ddof=1) / math.sqrt((errors**2).mean())
-        assert abs(ratio - 1) < 5 / math.sqrt(2 * 59), k
-    errors = np.array([point.stderr for point in points])
-    ratio = np.std([point.mean for point in points], ddof=1) / math.sqrt((errors**2).mean())
-    assert abs(ratio - 1) < 5 / math.sqrt(2 * 59)
-
-
-def test_what_is_not_known_of_many_is_refused():
-    scene = Scene(1.5, 1.0, 0.13, discs=16)
-    with pytest.raises(ValueError, match="is so large for 16 discs that the time between"):
-        runs.hop_intervals(scene, "vertical_hop", 1, 1)
-    with pytest.raises(ValueError, match="blocked"):
-        runs.hop_intervals(MANY["four in a channel"][0], "horizontal_hop", 1, 1)
-    with pytest.raises(ValueError, match="budget must allow for 65536 intervals"):
-        runs.hop_intervals(*MANY["three"], 1, 1, budget=1000)
-    with pytest.raises(ValueError, match=r"^scene must have smooth discs"):
-        td.intervals(replace(scene, discs=3, moment_of_inertia=0.3), "vertical_hop", 1000)
-    with pytest.raises(ValueError, match="blocked"):
-        runs.hop_intervals(PAPER.with_radius(0.3), "horizontal_hop", 1, 1)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import scalar_many
 from dynamics.rates import five
+from marks import slow
 
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import engine
@@ -64,9 +65,7 @@ COMPILED = {
 }
 
 
-@pytest.mark.parametrize(
-    "name", [*EXACT, *(pytest.param(name, marks=pytest.mark.slow) for name in COMPILED)]
-)
+@pytest.mark.parametrize("name", [*EXACT, *map(slow, COMPILED)])
 def test_rates_are_exact(name):
     scene = (EXACT | COMPILED)[name]
     large = initial.large_grid(scene) is not None
@@ -97,9 +96,7 @@ OTHERS = {
 ROUGH_RING = Scene(1.5, 1.0, 0.15, discs=4, periodic="x", moment_of_inertia=0.5)
 
 
-@pytest.mark.parametrize(
-    "scene", [*OTHERS.values(), pytest.param(ROUGH_RING, marks=pytest.mark.slow)], ids=repr
-)
+@pytest.mark.parametrize("scene", [*OTHERS.values(), slow(ROUGH_RING)], ids=repr)
 def test_monte_carlo_and_another_program_have_the_same_rates(scene):
     """Time averages of one trajectory: batches of some ten thousand events are independent."""
     found, errors, _ = counted(scene, 4, seed=2)
@@ -165,25 +162,6 @@ def test_states_of_one_block_at_a_time(monkeypatch):
     monkeypatch.setattr(many, "count_events", counting_events)
     engine.run_classes(EXACT["three"], 7, 0, 3, 8.0, replicas=100)
     assert sizes == [100, 100, 100]
-
-
-def test_a_disc_at_rest_and_discs_that_touch():
-    """Contact is a matter of direction: touching discs that approach collide now, others do not."""
-    law = many.law_of(Scene(10.0, 10.0, 0.5, discs=3))
-    x = np.array([[0.0, 0.0], [1.0, 1.0], [3.0, 3.0]])
-    y = np.zeros((3, 2))
-    u = np.array([[0.6, -0.6], [0.0, 0.0], [0.0, 0.0]])
-    v = np.array([[0.0, 0.0], [0.0, 0.0], [0.8, 0.8]])
-    lanes = many.lanes_of(np.vstack([x, y, u, v]), np.full(2, 100.0), law)
-    many.find_events(lanes, law)
-    assert lanes.times[0] == 0.0
-    assert lanes.codes.tolist() == [7.0, 6.0]
-    assert lanes.times[1] == pytest.approx(4.5 / 0.8)
-    many.advance(lanes, law, True)
-    assert (lanes.u[0, 0], lanes.u[1, 0]) == (0.0, 0.6)
-    assert lanes.counts[:, 0].tolist() == [0.0, 0.0, 1.0, 0.0, 0.0]
-    assert lanes.counts[:, 1].tolist() == [0.0, 0.0, 0.0, 0.0, 1.0]
-    assert lanes.y[2, 1] == law.half_y
 
 
 @pytest.mark.parametrize(("width", "discs"), [(1.0, 3), (3.0, 8)])

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from marks import slow
 
 from twodiscs.dynamics.many import cells as many_cells
 from twodiscs.dynamics.many import engine
@@ -34,8 +35,8 @@ SHORT = [
 #: Few rough discs, which only the other kernel follows.
 ROUGH = Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.3)
 #: Their kernels take seconds to compile.
-ROUGH_TOO = pytest.param(BORDER[4], marks=pytest.mark.slow)
-KICKED_TOO = pytest.param(Scene(8.75, 0.6, 0.18, discs=20, friction=4.0), marks=pytest.mark.slow)
+ROUGH_TOO = slow(BORDER[4])
+KICKED_TOO = slow(Scene(8.75, 0.6, 0.18, discs=20, friction=4.0))
 
 
 #: Few discs have as few cells as there may be.
@@ -114,11 +115,7 @@ def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
 
 @pytest.mark.parametrize(
     ("scene", "hop"),
-    [
-        (BORDER[0], "vertical_hop"),
-        pytest.param(BORDER[1], "horizontal_hop", marks=pytest.mark.slow),
-        (BORDER[3], "vertical_hop"),
-    ],
+    [(BORDER[0], "vertical_hop"), slow(BORDER[1], "horizontal_hop"), (BORDER[3], "vertical_hop")],
     ids=repr,
 )
 def test_intervals_are_those_of_the_other_kernel(scene, hop, monkeypatch):
@@ -174,7 +171,7 @@ STAYING = {
     ("name", "events"),
     [
         *((name, 1e5) for name in [*STAYING][:-1]),
-        *(pytest.param(name, 2e7, marks=pytest.mark.slow) for name in ("three", "many", "rough")),
+        *(slow(name, 2e7) for name in ("three", "many", "rough")),
     ],
 )
 def test_nothing_overlaps_or_drifts(name, events):

@@ -9,6 +9,7 @@ import math
 import numpy as np
 import pytest
 from dynamics.rates import five, same_sizes
+from marks import slow
 from scalar_bonds import clusters, orders
 
 from twodiscs.comparison.transmission import by_clusters, of_clusters, plateau
@@ -25,10 +26,10 @@ HOP = "horizontal_hop"
     ("hop", "effects"),
     [
         (HOP, {}),
-        pytest.param(HOP, {"friction": 20.0}, marks=pytest.mark.slow),
+        slow(HOP, {"friction": 20.0}),
         ("vertical_hop", {}),
-        pytest.param(HOP, {"moment_of_inertia": 0.5}, marks=pytest.mark.slow),
-        pytest.param(HOP, {"moment_of_inertia": 0.5, "friction": 1.0}, marks=pytest.mark.slow),
+        slow(HOP, {"moment_of_inertia": 0.5}),
+        slow(HOP, {"moment_of_inertia": 0.5, "friction": 1.0}),
     ],
 )
 def test_two_discs_among_no_others_are_two_discs(hop, effects):
@@ -66,24 +67,6 @@ def test_correlations_are_those_of_another_program():
     assert 5 * found.stderr < min(found.value, 1 - found.value)
 
 
-def test_states_are_on_the_surface_without_overlap():
-    rough = Scene(3.0, 1.0, 0.22, discs=4, moment_of_inertia=0.3)
-    ring = Scene(3.0, 1.0, 0.2, discs=4, periodic="x")
-    for scene in (Scene(3.0, 1.0, 0.2499, discs=4), ring, rough):
-        pair = passages.pair_of(scene, HOP)
-        states = np.zeros((pair.initial.rows, 500))
-        passages.draw_on_surface(passages.open_stream(np.uint64(1), 0), pair, states, -1)
-        x, y, u, v, *s = states.reshape(-1, 4, 500)
-        assert np.array_equal(x[0], x[1])
-        dx = x[:, None] - x
-        dx -= scene.width * np.round(dx / scene.width) if scene.periodic else 0.0
-        apart = np.hypot(dx, y[:, None] - y)[np.triu_indices(4, 1)]
-        assert apart.min() >= scene.contact_distance * (1 - 1e-15)
-        assert np.abs(y).max() <= scene.range_y / 2
-        turning = scene.moment_of_inertia * s[0] ** 2 if s else 0.0
-        np.testing.assert_allclose((u**2 + v**2 + turning).sum(axis=0), 1.0, rtol=1e-13)
-
-
 @pytest.mark.parametrize(("periodic", "components"), [("", 4), ("x", 3)])
 def test_relative_speeds_on_the_surface_have_the_law_of_the_flux(periodic, components):
     """For s, the relative speed over its largest, (1 − s²)^((D − 1)/2) is uniform."""
@@ -107,9 +90,7 @@ def test_the_sampled_rate_of_hops_is_the_exact_one(monkeypatch):
     five(found / due, 1.0, math.hypot(1 / math.sqrt(passages.STATES), volume_error[0]))
 
 
-@pytest.mark.parametrize(
-    ("discs", "blocks"), [(3, 256), pytest.param(6, 4096, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize(("discs", "blocks"), [(3, 256), slow(6, 4096)])
 def test_the_coefficient_does_not_depend_on_the_gap(discs, blocks):
     """Passages in the longer gap take 15 % of κ, one per cent of κ less because of other pairs.
 

@@ -9,6 +9,7 @@ import math
 import numpy as np
 import pytest
 from dynamics.rates import five, same_sizes
+from marks import slow
 from scalar_passages import clusters, replicas
 from scipy.stats import f
 
@@ -26,13 +27,7 @@ NARROW = 0.246  # 0.016 of the height is left to discs side by side along y
 
 
 @pytest.mark.parametrize(
-    ("periodic", "inertia"),
-    [
-        ("", None),
-        pytest.param("x", None, marks=pytest.mark.slow),
-        pytest.param("", 0.5, marks=pytest.mark.slow),
-        pytest.param("x", 0.5, marks=pytest.mark.slow),
-    ],
+    ("periodic", "inertia"), [("", None), slow("x", None), slow("", 0.5), slow("x", 0.5)]
 )
 def test_correlations_are_those_of_another_program(inertia, periodic):
     for radius in (0.218, NARROW):
@@ -58,9 +53,7 @@ def test_correlations_are_those_of_another_program(inertia, periodic):
         ({"moment_of_inertia": 0.1}, 0.247, 0.6),
         ({"moment_of_inertia": 0.1}, 0.1, 0.4),
         ({"friction": 20.0}, NARROW, 6.0),
-        pytest.param(
-            {"friction": 20.0, "moment_of_inertia": 0.5}, NARROW, 6.0, marks=pytest.mark.slow
-        ),
+        slow({"friction": 20.0, "moment_of_inertia": 0.5}, NARROW, 6.0),
     ],
 )
 def test_clusters_to_both_sides_are_those_of_another_program(effects, radius, gap):
@@ -85,10 +78,7 @@ EFFECTS = {
 }
 
 
-@pytest.mark.parametrize(
-    "name",
-    ["plain", "friction", *(pytest.param(n, marks=pytest.mark.slow) for n in [*EFFECTS][2:])],
-)
+@pytest.mark.parametrize("name", ["plain", "friction", *map(slow, [*EFFECTS][2:])])
 def test_both_estimates_of_effects_agree(name):
     """By clusters and by κ(t), where passages are rare; corrected for those in the gap."""
     (hop, scene), gap = EFFECTS[name], 6.0
@@ -100,14 +90,7 @@ def test_both_estimates_of_effects_agree(name):
     assert 0 < kappa.value < 1
 
 
-@pytest.mark.parametrize(
-    "effects",
-    [
-        {},
-        pytest.param({"moment_of_inertia": 0.5}, marks=pytest.mark.slow),
-        pytest.param({"field": 0.8}, marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.parametrize("effects", [{}, slow({"moment_of_inertia": 0.5}), slow({"field": 0.8})])
 def test_hops_on_a_ring_have_their_exact_rate(effects):
     """In a field the flux has another power of the energy than the volume."""
     scene = Scene(1.5, 1.0, 0.2, periodic="x", **effects)

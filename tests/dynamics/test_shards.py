@@ -1,22 +1,20 @@
 """A result could depend on who computes which blocks, in how many lanes or on which processor."""
 
 import os
-import subprocess
-import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from commands import python
 from effect_scenes import ALL, SCENES
+from marks import slow
 
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.many import engine
 from twodiscs.dynamics.two import strip
-from twodiscs.model.events import EVENTS, SHELLS
+from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
-from twodiscs.sampling import montecarlo
 from twodiscs.sampling.many import initial, insertions
-from twodiscs.sampling.prism import prism_of
 
 PAPER = Scene(1.5, 1.0, 0.2)
 TWO = {
@@ -53,36 +51,15 @@ def of_strip(first, stop, **lanes):
     return *found, events
 
 
-def plain_shells(first, stop):
-    # Squares of separations, and grains of the places of disc 1 at the walls.
-    ends = montecarlo.shell_ends(
-        [0.01] * len(SHELLS),
-        lambda thick: 0.42**2,
-        lambda axis, side, thick: 2**32 - 2**26 if side > 0 else 2**26,
-    )
-    ranges = PAPER.range_x, PAPER.range_y, PAPER.contact_distance
-    return (montecarlo.sample_blocks(np.uint64(3), first, stop, *ranges, ends, True),)
-
-
-def weighted_shells(first, stop):
-    scene = SCENES["combination"]
-    epsilon = [0.02 if event in scene.events else 0.0 for event in EVENTS]
-    prism = prism_of(scene)._replace(inertia=None)
-    ends = montecarlo.weighted_ends(scene, epsilon)
-    return (montecarlo.weighted_blocks(np.uint64(3), first, stop, prism, ends),)
-
-
 #: Kernels by name: functions of the first block and the one after the last.
 KERNELS = {
     **{name: of_two(scene) for name, scene in TWO.items()},
     **{f"many, {name}": of_many(scene) for name, scene in MANY.items()},
     "strip": of_strip,
     "insertions": lambda first, stop: insertions.run_blocks(MANY["channel"], 7, first, stop),
-    "shells": plain_shells,
-    "weighted shells": weighted_shells,
 }
 #: Each compiles a kernel for all effects.
-SLOW = [pytest.param(name, marks=pytest.mark.slow) for name in ("all", "all, friction")]
+SLOW = [*map(slow, ("all", "all, friction"))]
 
 
 @pytest.mark.parametrize("name", [*(name for name in KERNELS if name[:3] != "all"), *SLOW])
@@ -92,7 +69,7 @@ def test_blocks_add_up_in_any_number_of_lanes(name):
     for total, *parts in zip(whole, run(0, 1), run(1, 4), strict=True):
         assert np.array_equal(total, sum(parts))
     assert not np.array_equal(run(0, 1)[0], run(1, 2)[0])
-    for lanes in () if "shells" in name or name == "insertions" else (1, 37):
+    for lanes in () if name == "insertions" else (1, 37):
         for one, same in zip(whole, run(0, 4, lanes=lanes), strict=True):
             assert np.array_equal(one, same)
 
@@ -131,10 +108,9 @@ def test_the_bits_do_not_depend_on_the_processor(tmp_path):
     """A processor without AVX computes the same."""
     generic = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""}
     generic |= {"NUMBA_CACHE_DIR": str(tmp_path)}
-    command = [sys.executable, "-c", BITS]
     here, there = (
-        subprocess.run(command, env=environment, check=True, capture_output=True).stdout
+        python("-c", BITS, env=environment, check=True).stdout
         for environment in (os.environ, os.environ | generic)
     )
     assert here == there
-    assert here.count(b"\n") == 4 + 5 * 5
+    assert here.count("\n") == 4 + 5 * 5
