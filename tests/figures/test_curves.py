@@ -77,12 +77,3 @@ def test_limits_of_scenes_with_effects(effects, expected):
         index: radius for radius, text in found for index in re.findall(r"(?:\{|=)([\w/]+)", text)
     }
     assert named == pytest.approx(expected, rel=1e-15)
-
-
-def test_a_field_lowers_the_largest_radius():
-    box = Box(1.5, 1.0, {"field": 10.0})
-    *_, (largest, _) = limits(box)
-    assert largest < box.largest_radius
-    box.scene(largest * (1 - 1e-15))
-    with pytest.raises(ValueError, match="too strong"):
-        box.scene(largest)

@@ -62,15 +62,6 @@ def test_texts_stand_clear(name, box):
     assert figure.get_size_inches()[0] == (radius.WIDE if name == "all_areas" else style.COLUMN)
 
 
-def test_what_would_not_be_clear_is_found():
-    with style.context():
-        figure = draw("model", PAPER, {})
-        figure.text(0.5, 0.5, "one")
-        figure.text(0.5, 0.5, "two")
-        figure.text(-0.5, 0.5, "beyond")
-        assert unclear(figure) == ["beyond", ("one", "two")]
-
-
 def of_quantity(rows, quantity, factor=None, rooted=False):
     """Return (x, y, standard error, residual) of the rows of a quantity that have an error.
 

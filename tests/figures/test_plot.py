@@ -73,31 +73,6 @@ def test_two_boxes_are_drawn_in_axes_of_the_user(tmp_path):
         assert any(np.array_equal(line, exact, equal_nan=True) for line in drawn)
 
 
-@pytest.mark.parametrize(
-    ("result", "options", "said"),
-    [
-        *(
-            (lambda: scan(HOPS), {"ax": axes}, "ax must be one plane Axes of matplotlib, not ")
-            for axes in (Figure().add_subplot(projection="3d"), Figure().subplots(2), "main")
-        ),
-        (lambda: scan(HOPS), {"figure": "pressure"}, "figure must be one of mean_"),
-        (
-            lambda: [scan(HOPS), scan(HOPS, width=2.0)],
-            {},
-            "for several boxes call plot with the same ax for",
-        ),
-        (
-            lambda: td.trajectory(td.Scene(1.5, 1.0, 0.2), 2),
-            {"ax": Figure().add_subplot()},
-            "result must be over the radius to be drawn in ax",
-        ),
-    ],
-)
-def test_what_cannot_be_drawn_is_refused_in_a_sentence(result, options, said):
-    with pytest.raises(td.InputError, match=said):
-        td.plot(result(), **options)
-
-
 def test_what_a_transmission_leaves_falls_at_twice_its_rate():
     """The points with their errors, and the curve κ exp(−2κt/τ) of the coefficient."""
     found = td.transmission(td.Scene(1.5, 1.0, 0.249), "horizontal_hop", 2**12)

@@ -3,12 +3,12 @@
 import os
 import re
 import runpy
-import subprocess
 import sys
 from pathlib import Path
 
 import matplotlib
 import pytest
+from commands import python
 
 from twodiscs.figures import style
 from twodiscs.model import events
@@ -63,12 +63,8 @@ def test_same_bytes_whatever_the_machine_is_set_to(name, kinds, tmp_path):
         folder = tmp_path / str(turn)
         folder.mkdir()
         outputs = [folder / f"a.{kind}" for kind in kinds]
-        finished = subprocess.run(
-            [sys.executable, "-c", DRAW, name, *outputs],
-            env=os.environ | tests | {"TZ": f"UTC{turn}"} | environment,
-            capture_output=True,
-            text=True,
-        )
+        environment = os.environ | tests | {"TZ": f"UTC{turn}"} | environment
+        finished = python("-c", DRAW, name, *outputs, env=environment)
         assert (finished.returncode, finished.stderr) == (0, "")
         contents.append([path.read_bytes() for path in outputs])
     assert contents[0] == contents[1]
@@ -76,15 +72,12 @@ def test_same_bytes_whatever_the_machine_is_set_to(name, kinds, tmp_path):
         assert all(len(content) < 600_000 for content in contents[0])
         return
     pdf, png, svg = contents[0]
-    assert not re.search(rb"<dc:date>|Matplotlib v", svg)
     assert not re.search(rb"Date|Creator|Producer|Matplotlib", pdf)
-    assert b"/Subtype /Type0" in pdf or b"/Subtype /TrueType" in pdf
     assert b"/FontFile2" in pdf
     assert b"/Type3" not in pdf
     width = float(re.search(rb"/MediaBox \[ ?0 0 ([0-9.]+)", pdf)[1])
     assert width == pytest.approx(72 * style.COLUMN)
-    assert png[:8] == b"\x89PNG\r\n\x1a\n"
-    assert not re.search(rb"tIME|iTXt|Software|Creation|Matplotlib", png)
+    assert not re.search(rb"<dc:date>|Matplotlib v|tIME|iTXt|Software|Creation", svg + png)
     assert int.from_bytes(png[16:20], "big") == round(style.SETTINGS["savefig.dpi"] * style.COLUMN)
 
 

@@ -79,30 +79,10 @@ def test_sides():
 # Radii at which something ends ------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("width", "height", "thresholds"),
-    [
-        (1.5, 1.0, (0.25, 0.375)),
-        (1.0, 1.5, (0.25, 0.375)),
-        (3.0, 1.0, (0.25,)),  # w/4 is beyond the largest radius
-        (2.0, 1.0, (0.25,)),
-        (1.0, 1.0, (0.25,)),
-    ],
-)
-def test_thresholds_of_a_plain_box(width, height, thresholds):
-    box = Box(width, height)
-    assert box.thresholds == thresholds
-    for hop, across in zip(HOPS, (width, height), strict=True):
-        assert box.blocking_radius(hop) == across / 4
-        assert box.threshold(hop) == min(across / 4, box.largest_radius)
-    others = {*EVENTS} - {*HOPS}
-    assert all(box.threshold(event) == box.largest_radius for event in others)
-    assert box.last_radius == box.largest_radius
-
-
 #: Effects, and where hops along y and x end by the geometry: None where they have no place, "last"
 #: where they go on to the last radius.
 ENDS = [
+    ({}, 1.5 / 4, 1.0 / 4),
     # σ = (1 + ratio) r is half the side.
     ({"radius_ratio": 1.5}, 1.5 / 5, 1.0 / 5),
     ({"radius_ratio": 0.5}, "last", 1.0 / 3),
@@ -121,7 +101,7 @@ ENDS = [
 
 
 @pytest.mark.parametrize(("effects", "vertical", "horizontal"), ENDS, ids=str)
-def test_thresholds_with_effects_follow_from_the_geometry(effects, vertical, horizontal):
+def test_thresholds_follow_from_the_geometry(effects, vertical, horizontal):
     box = Box(1.5, 1.0, effects)
     inner = set()
     for hop, end in zip(HOPS, (vertical, horizontal), strict=True):

@@ -16,13 +16,6 @@ from twodiscs.model.many import largest_known_radius as largest_radius
 from twodiscs.model.scene import Scene
 
 
-@pytest.mark.parametrize("width", [1.0, 1.3, 1.5, 1.99, 2.0, 5.0])
-def test_two_discs_fit_as_in_a_scene(width):
-    assert largest_radius(2, width, 1.0) == pytest.approx(
-        Scene(width, 1.0, 0.1).largest_radius, rel=1e-14
-    )
-
-
 @pytest.mark.parametrize("width", [1.0, 1.02, 1.05, 1.1, 1.3, 1.5, 2.0, 2.9, 3.0, 4.0])
 def test_three_discs_fit_as_far_as_closed_forms_say(width):
     """A zigzag, the largest equilateral triangle, or a row."""

@@ -3,11 +3,11 @@
 import json
 import os
 import shutil
-import subprocess
-import sys
 from pathlib import Path
+from subprocess import CalledProcessError
 
 import pytest
+from commands import python
 
 import twodiscs
 from twodiscs.dynamics import law
@@ -36,25 +36,14 @@ def package(tmp_path):
     return tmp_path / "twodiscs", environment
 
 
-def start(environment):
-    return subprocess.Popen(
-        [sys.executable, "-c", SCRIPT], env=environment, text=True,
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-    )  # fmt: skip
-
-
-def output(process):
-    out, error = process.communicate(timeout=120)
-    assert process.returncode == 0, error
-    return out
+def output(environment, script=SCRIPT):
+    return python("-c", script, env=environment, check=True).stdout
 
 
 def test_an_edit_of_what_a_kernel_imports_changes_the_result(package):
     """Numba alone would go on as before: the file of the kernel is the same."""
     sources, environment = package
-    # Two that find the cache empty compile both.
-    before, same = map(output, [start(environment), start(environment)])
-    assert same == before
+    before = output(environment)
 
     def kernels():
         cache = sources.parent / "cache"
@@ -62,8 +51,15 @@ def test_an_edit_of_what_a_kernel_imports_changes_the_result(package):
 
     kept = kernels()
     assert any("draw_velocity" in path.name for path in kept)
-    assert output(start(environment)) == before
+    assert output(environment) == before
     assert kernels() == kept
+
+    # If no code can be kept, a sentence says so.
+    (blocked := sources.parent / "file").touch()
+    done = python("-c", SCRIPT, env=environment | {"NUMBA_CACHE_DIR": str(blocked)})
+    assert done.stdout == before
+    assert done.stderr.startswith("Compiled code cannot be kept, so every process compiles again: ")
+    assert done.stderr.count("\n") == 1
 
     streams = sources / "sampling" / "streams.py"
     stamp, text = streams.stat().st_mtime, streams.read_text()
@@ -72,7 +68,7 @@ def test_an_edit_of_what_a_kernel_imports_changes_the_result(package):
     assert edited != text
     streams.write_text(edited)
     os.utime(streams, (stamp - 1000, stamp - 1000))
-    assert output(start(environment)) != before
+    assert output(environment) != before
 
 
 def test_two_processes_that_save_together_keep_their_kernels_apart(tmp_path, monkeypatch):
@@ -93,26 +89,9 @@ def test_two_processes_that_save_together_keep_their_kernels_apart(tmp_path, mon
     assert found.load("one signature") in (None, "one kernel")
 
 
-def finished(environment, script):
-    return subprocess.run(
-        [sys.executable, "-c", script], env=environment, text=True, capture_output=True, check=True
-    )
-
-
-def test_if_no_code_can_be_kept_a_sentence_says_so(package):
-    sources, environment = package
-    (blocked := sources.parent / "file").touch()
-    process = start(environment | {"NUMBA_CACHE_DIR": str(blocked)})
-    out, error = process.communicate(timeout=120)
-    assert out == output(start(environment))
-    assert error.startswith("Compiled code cannot be kept, so every process compiles again: ")
-    assert error.count("\n") == 1
-
-
 def test_a_users_choice_of_processor_wins():
     script = "from twodiscs.sampling.jit import numba; print(numba.config.CPU_FEATURES)"
-    done = finished(os.environ | {"NUMBA_CPU_FEATURES": "+sse2"}, script)
-    assert done.stdout.strip() == "+sse2"
+    assert output(os.environ | {"NUMBA_CPU_FEATURES": "+sse2"}, script) == "+sse2\n"
 
 
 def test_the_process_of_a_user_stays_as_it_was(tmp_path):
@@ -130,16 +109,13 @@ print(own.f(1), own.f._cache.cache_path, *own.f.stats.cache_hits.values())
     environment = {name: value for name, value in os.environ.items() if "NUMBA" not in name}
     environment["XDG_CACHE_HOME"] = str(tmp_path / "cache")
     place = str(tmp_path / "__pycache__")
-    finished(environment | {"PYTHONPATH": str(tmp_path)}, "import own; own.f(1)")
-    assert finished(environment, script).stdout.split() == ["1", place, "1"]
+    output(environment | {"PYTHONPATH": str(tmp_path)}, "import own; own.f(1)")
+    assert output(environment, script).split() == ["1", place, "1"]
 
 
 def test_without_a_compiler_there_are_no_kernels_and_a_sentence_says_so():
     words = ["twodiscs.cli", "simulate", "--width=1.5", "--height=1", "--radius=.2", "--error=.1"]
-    done = subprocess.run(
-        [sys.executable, "-m", *words], env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
-        text=True, capture_output=True,
-    )  # fmt: skip
+    done = python("-m", *words, env=os.environ | {"NUMBA_DISABLE_JIT": "1"})
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith("error: NUMBA_DISABLE_JIT must not be set: ")
     assert done.stderr.count("\n") == 1
@@ -159,11 +135,7 @@ a = np.arange(12.0).reshape(3, 4) ** 1.5
 product = lambda a: np.dot(a, a.T)
 print(np.allclose(numba.njit(product)(a), product(a), rtol=1e-9, atol=0))
 """
-    done = finished(os.environ, script)
-    assert done.stdout.split() == ["False", "True"], done.stderr
-
-
-# Effects that are absent ---------------------------------------------------------------------
+    assert output(os.environ, script).split() == ["False", "True"]
 
 
 # Absent effects are not compiled ----------------------------------------------------------------
@@ -184,11 +156,8 @@ json.dump(collections.Counter(names), sys.stdout)
 
 
 def instructions(environment, **effects):
-    done = subprocess.run(
-        [sys.executable, "-c", INSTRUCTIONS, json.dumps(effects)],
-        env=environment, text=True, capture_output=True, check=True, timeout=300,
-    )  # fmt: skip
-    return json.loads(done.stdout)
+    words = "-c", INSTRUCTIONS, json.dumps(effects)
+    return json.loads(python(*words, env=environment, check=True).stdout)
 
 
 @pytest.mark.slow
@@ -213,11 +182,8 @@ def test_absent_effects_leave_no_instruction(package):
     )
     module.write_text(text.replace(mark, f"{mark}\n{without}"), encoding="utf-8")
     assert instructions(environment) == present
-    failed = subprocess.run(
-        [sys.executable, "-c", INSTRUCTIONS, '{"moment_of_inertia": 0.5}'],
-        env=environment, capture_output=True, check=False,
-    )  # fmt: skip
-    assert failed.returncode != 0
+    with pytest.raises(CalledProcessError):
+        instructions(environment, moment_of_inertia=0.5)
 
 
 def test_inlined_functions_are_kept_but_those_within_a_function():

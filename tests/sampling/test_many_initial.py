@@ -5,13 +5,13 @@ import math
 
 import numpy as np
 import pytest
+from marks import slow
 from scipy.stats import f
 
 from twodiscs.model.many import arrangement, is_ordered
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.many import chains, initial
+from twodiscs.sampling.many import initial
 from twodiscs.sampling.streams import open_stream
-from twodiscs.theory import n_discs
 
 
 def box(discs, packing, periodic=""):
@@ -125,7 +125,7 @@ def test_ways_to_draw_agree(scene, one, other):
         box(20, 0.5, "x"),
         Scene(9.6, 0.75, 0.18, discs=24),
         *(
-            pytest.param(scene, marks=pytest.mark.slow)
+            slow(scene)
             for scene in (
                 box(20, 0.1),
                 Scene(0.54, 5.0, 0.13, discs=20, periodic="x"),
@@ -140,22 +140,6 @@ def test_chains_of_events_have_the_law_of_chains_of_single_moves(scene):
     chain = initial._chain(scene)
     singly = initial.Chain(chain.centres, 4000, chain.scales)
     assert difference(scene, drawn(scene, 500, 1), drawn(scene, 400, 2, chain=singly)) < 5
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("scene", [box(20, 0.1), box(64, 0.6), box(256, 0.6)], ids=repr)
-def test_longer_event_chains_are_no_different(scene, monkeypatch):
-    number = 2**14 // scene.discs
-    one = drawn(scene, number, 1)
-    monkeypatch.setattr(chains, "CONTACTS", 4 * chains.CONTACTS)
-    assert difference(scene, one, drawn(scene, number // 2, 2)) < 5
-
-
-def test_chains_that_are_too_short_are_seen(monkeypatch):
-    scene = box(32, 0.6)
-    one = drawn(scene, 200, 1)
-    monkeypatch.setattr(chains, "CONTACTS", 16)
-    assert difference(scene, one, drawn(scene, 200, 2)) > 10
 
 
 def free_length(scene, found):
@@ -189,16 +173,6 @@ def test_heights_in_a_channel_are_accepted_at_every_density(scene, least):
         initial.propose_heights(state, cells, scene.contact_distance, heights) for _ in range(2000)
     )
     assert accepted / 2000 > least
-
-
-@pytest.mark.parametrize("name", ["channel", "channel, dense"])
-def test_mean_room_in_a_channel(name):
-    """⟨1/(A − S)⟩ = ∂lnV/∂A / N over the drawn heights; five sigma."""
-    scene = GASES[name]
-    # The inverse has a finite variance for N ≥ 2.
-    seen = 1 / free_length(scene, initial.states(scene, 20_000, 4))
-    true = n_discs.known_derivatives(scene, hops=False).per_width / scene.discs
-    assert abs(seen.mean() - true) < 5 * seen.std() / math.sqrt(seen.size)
 
 
 @pytest.mark.parametrize("name", ["channel", "channel, upright", "chain", "rejection, ring"])

@@ -5,7 +5,6 @@ import itertools
 import numpy as np
 import pytest
 
-from twodiscs.model.checks import InputError
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import insertions
 from twodiscs.theory import n_discs
@@ -71,9 +70,3 @@ def test_errors_are_those_of_repetitions(scene):
     ratio = spread[error > 0] / error[error > 0]
     assert np.all(spread[error == 0] == 0)
     assert np.all(np.abs(ratio - 1) < 5 / np.sqrt(2 * 199))
-
-
-def test_no_room_is_a_sentence():
-    scene = Scene(1.5, 1.0, 0.13, discs=16)
-    with pytest.raises(InputError, match="in none of them 16 discs fit"):
-        insertions.sample(scene, 1000, 1)

@@ -135,22 +135,6 @@ def test_weighted_hits_have_their_exact_probability(scene, shell):
         assert_binomial(sampled.hits, samples, expected / sampled.measure)
 
 
-@pytest.mark.parametrize("scene", [*SCENES.values(), *MORE_SCENES], ids=repr)
-def test_weighted_shells_stay_inside_the_box(scene):
-    """No thicker, as lengths, than the discs or than the room they have."""
-    for event in scene.events:
-        epsilon = montecarlo.shell_thickness(scene, event, 0.999)
-        assert 0 < epsilon < min(scene.radii)
-        relative = epsilon * math.sqrt(sum(1 / mass for mass in scene.masses))
-        if event in (*HOPS, "disc_collision"):
-            assert relative <= math.sqrt(2) * min(scene.radii)
-            continue
-        for disc, mass in enumerate(scene.masses):
-            if disc == 0 or event == "any_wall":
-                room = min(scene.side(axis) - 2 * scene.radii[disc] for axis in scene.walled)
-                assert epsilon / math.sqrt(mass) < room
-
-
 def test_the_sampler_suits_the_scene():
     scene = Scene(1.5, 1.0, 0.38, mass_ratio=2.0)
     samples = 2 * montecarlo.BLOCK
@@ -159,10 +143,3 @@ def test_the_sampler_suits_the_scene():
     assert montecarlo.SamplingRun(*arguments).run() == montecarlo.sample_point(*arguments)
     with pytest.raises(ValueError, match="scene must be plain for conditioned draws"):
         montecarlo.conditioned_point(*arguments)
-
-
-def test_what_has_no_place_is_refused():
-    with pytest.raises(ValueError, match="quantity must be one of volume, disc_collision_area,"):
-        montecarlo.sample_point(SCENES["torus"], ["any_wall_area"], 1, 0.1, 1)
-    with pytest.raises(ValueError, match="event must be one of vertical_hop, disc_collision, "):
-        montecarlo.shell_thickness(SCENES["channel"], "right_wall", 0.1)

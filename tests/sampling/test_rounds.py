@@ -8,13 +8,14 @@ import pytest
 from factory import all_reached, through_json
 from hypothesis import given
 from hypothesis import strategies as st
+from marks import slow
 
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.points.base import reached
-from twodiscs.sampling import montecarlo, rounds
+from twodiscs.sampling import rounds
 
 PAPER = Box(1.5, 1.0)
 UNEQUAL = Box(1.5, 1.0, {"radius_ratio": 0.6, "mass_ratio": 3.0})
@@ -154,7 +155,7 @@ TARGET = {"horizontal_hop": 0.01, "top_wall": 0.01, "any_wall": 0.003}
 
 
 #: Its kernels take seconds to compile.
-UNEQUAL_TOO = pytest.param(UNEQUAL, 0.15, marks=pytest.mark.slow)
+UNEQUAL_TOO = slow(UNEQUAL, 0.15)
 
 
 @pytest.mark.parametrize(("box", "radius"), [(PAPER, 0.24), UNEQUAL_TOO])
@@ -194,15 +195,6 @@ def test_planned_events_follow_the_errors_asked_for_as_far_as_the_budget_goes(bu
         for parts in (coarse, fine):
             events = sum(one.planned * one.block_events for one in parts.values())
             assert 0.9 * budget < events < (1 + 1 / 16) * 1.05 * budget
-
-
-@pytest.mark.parametrize(("box", "radius"), [(PAPER, 0.2), (PAPER, 0.3838), (UNEQUAL, 0.15)])
-def test_samples_in_pieces_are_those_of_one_process(box, radius):
-    scene, quantities = box.scene(radius), ["volume", "right_wall_area"]
-    run = montecarlo.SamplingRun(scene, quantities, 3 * 2**20, 0.02, 5)
-    found = [run.point({"all": done_in_pieces(run.parts["all"], n)}) for n in (1, 2)]
-    assert found[0] == found[1] == run.run()
-    assert found[0] == montecarlo.SamplingRun(scene, quantities, 3 * 2**20, 0.02, 5).run()
 
 
 @pytest.mark.parametrize(("box", "radius"), [(PAPER, 0.1), UNEQUAL_TOO])

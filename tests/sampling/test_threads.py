@@ -1,11 +1,10 @@
 """Threads could change the order, hide an error or keep a process from ending."""
 
-import subprocess
-import sys
 import threading
 import time
 
 import pytest
+from commands import python
 
 from twodiscs.model.checks import InputError
 from twodiscs.sampling.rounds import in_threads
@@ -62,8 +61,7 @@ list(in_threads(work, [{call}], waiting=sys.exit))
 
 @pytest.mark.parametrize(("call", "said"), [((3600, False), ""), ((2, True), "done\n")])
 def test_a_process_that_ends_waits_for_a_compilation_alone(call, said):
-    code = [sys.executable, "-c", ENDING.format(call=call)]
-    run = subprocess.run(code, capture_output=True, text=True, timeout=60, check=True)
+    run = python("-c", ENDING.format(call=call), timeout=60, check=True)
     assert (run.stdout, run.stderr) == (said, "")
 
 
