@@ -202,15 +202,6 @@ def test_every_number_of_the_prose_is_declared_and_every_declared_one_is_used(pr
     }
 
 
-def test_no_number_is_declared_twice():
-    text = (PAPER / "numbers.typ").read_text()
-    declared = re.findall(
-        r"(?<=[ ,(])(\w+): (?=\w+\()", "".join(re.findall(r"^  \w.*", text, re.M))
-    )
-    assert len(declared) > 90
-    assert len({*declared}) == len(declared)
-
-
 def test_every_number_has_rows_in_the_expected_tables(printed):
     assert {name for name, number in printed.items() if number is None} == TIMED_NUMBERS
 

@@ -63,12 +63,9 @@ def test_point_discs():
         *(((w, 1.0), event, 1) for event in EVENTS for w in (1.2, 1.0, 2.0)),
         *(((1.0, h), event, 1) for event in EVENTS for h in (1.2, 2.0)),
         ((3.0, 1.0), "horizontal_hop", 1),
-        ((3.0, 1.0), "disc_collision", 2),
-        ((3.0, 1.0), "right_wall", 2),
-        ((3.0, 1.0), "vertical_hop", 2),
+        *(((3.0, 1.0), event, 2) for event in ("disc_collision", "right_wall", "vertical_hop")),
         ((1.0, 3.0), "vertical_hop", 1),
-        ((1.0, 3.0), "horizontal_hop", 2),
-        ((1.0, 3.0), "any_wall", 2),
+        *(((1.0, 3.0), event, 2) for event in ("horizontal_hop", "any_wall")),
     ],
 )
 def test_laws_at_the_threshold(box, event, order):
@@ -107,11 +104,9 @@ def test_the_leading_law_is_that_of_the_threshold_in_powers(box, event):
         assert law(scene.radius) == pytest.approx(expected, rel=2 * distance + 1e-5)
 
 
-# Bad input --------------------------------------------------------------------------------------
-
+# Tails ------------------------------------------------------------------------------------------
 
 BOUND = 1e-13
-PAPER = (1.5, 1.0)
 GOOD = Scene(*PAPER, 0.3)
 
 

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import time
 
+import psutil
 import pytest
 from checkout import folder, fresh
 
@@ -19,25 +20,11 @@ ENDLESS = {
 }
 
 
-def processes(folder):
-    """Return {pid: command line} of the jobs that work in a folder."""
-    found = {}
-    for entry in os.scandir("/proc"):
-        try:
-            if entry.name.isdecimal() and os.readlink(f"{entry.path}/cwd") == str(folder):
-                with open(f"{entry.path}/cmdline", encoding="utf-8") as file:
-                    found[int(entry.name)] = file.read().replace("\0", " ")
-        except OSError:
-            continue
-    return {pid: line for pid, line in found.items() if ".snakemake/scripts/" in line}
-
-
-def threads(pid):
-    """Return the number of threads of a process, 0 if it has ended."""
-    try:
-        return len(os.listdir(f"/proc/{pid}/task"))
-    except OSError:
-        return 0
+def jobs(folder):
+    """Return the processes of the jobs that work in a folder."""
+    every = (one.info for one in psutil.process_iter(["cwd", "cmdline", "num_threads"]))
+    own = (one for one in every if one["cwd"] == str(folder))
+    return [one for one in own if ".snakemake/scripts/" in " ".join(one["cmdline"] or ())]
 
 
 def wait_until(condition, seconds=300):
@@ -51,18 +38,16 @@ def begun(checkout, *words):
     """Return a process of a Python module, as of a terminal, when a job of it is at work.
 
     A job that is at work has a second thread, which ends it with the workflow.
-    The file ``printed`` of the checkout has what it prints.
     """
-    with open(checkout.path / "printed", "w", encoding="utf-8") as printed:
-        run = subprocess.Popen(
-            [sys.executable, "-m", *words],
-            cwd=checkout.path,
-            env=os.environ | {"PYTHONPATH": str(checkout.path / "src")},
-            stdout=printed,
-            stderr=printed,
-            start_new_session=True,
-        )
-    wait_until(lambda: any(threads(pid) > 1 for pid in processes(checkout.path)))
+    run = subprocess.Popen(
+        [sys.executable, "-m", *words],
+        cwd=checkout.path,
+        env=os.environ | {"PYTHONPATH": str(checkout.path / "src")},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    wait_until(lambda: any(job["num_threads"] > 1 for job in jobs(checkout.path)))
     return run
 
 
@@ -92,8 +77,8 @@ def test_a_killed_run_leaves_no_job_and_the_next_one_resumes(tmp_path, command, 
     status = run.wait(60)
     if command != "snakemake" and name == "SIGINT":
         assert status not in (0, -signal.SIGINT)  # Snakemake has cleaned up
-        assert not processes(checkout.path)
-    wait_until(lambda: not processes(checkout.path))
+        assert not jobs(checkout.path)
+    wait_until(lambda: not jobs(checkout.path))
 
     if name == "SIGKILL":
         (checkout.path / JOB).write_text("{")  # as far as the job had come
