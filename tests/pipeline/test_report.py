@@ -6,7 +6,6 @@ from io import BytesIO
 from pathlib import PurePosixPath
 
 import pytest
-from browser import ABSENT, BROWSER, browser
 from checkout import REPOSITORY
 from PIL import Image
 
@@ -87,50 +86,24 @@ def test_an_animation_stands_still_at_the_picture_that_is_shown_longest(tmp_path
         assert image.convert("RGB").tobytes() == frames[12].tobytes()
 
 
-#: Scenes whose names are long, with words in them or none, or whose sides are.
-LONG = [
-    {"name": "plate-of-the-air-table-in-metres", "box": "1.2 × 0.8", "effects": {}},
-    {
-        "name": "a" * 64, "box": "2 × 1", "effects": {"discs": 3, "periodic": "x"},
-        "detected": ["disc_collision", "top_wall"],
-    },
-    {"name": "micro", "box": "3.25e-06 × 1.25e-05", "effects": {"mass_ratio": 0.5}},
-]  # fmt: skip
-
-
-@pytest.fixture(scope="module")
-def report():
-    """The report of ``LONG`` scenes, each with a table."""
-    files = [f"{scene['name']}/mean_times.csv" for scene in LONG]
-    shown = contents(REPOSITORY, files, LONG)
-    row = {"radii": 12, "comparisons": 1234, "tests": 1234, "failed": 0, "largest": 3.21}
-    wide = ["horizontal hop", "1.23456789e-06", "1.2e-12", "1.23456789e-06", "-0.12"]
-    shown["measured"] = {scene["name"]: {0.249975: [wide] * 6} for scene in LONG}
-    shown["agreements"] = [row | scene | {"events": 4.4e10} for scene in LONG]
+def test_boxes_are_described_with_their_effects_and_events():
+    scenes = [
+        {"name": "plain", "box": "1.2 × 0.8", "effects": {}},
+        {
+            "name": "three", "box": "2 × 1", "effects": {"discs": 3, "periodic": "x"},
+            "detected": ["disc_collision", "top_wall"],
+        },
+        {"name": "micro", "box": "3.25e-06 × 1.25e-05", "effects": {"mass_ratio": 0.5}},
+    ]  # fmt: skip
+    files = [f"{scene['name']}/mean_times.csv" for scene in scenes]
     template = REPOSITORY / "workflow" / "report" / "front.html"
-    return page(template.read_text(encoding="utf-8"), shown)
-
-
-def test_boxes_are_described_with_their_effects_and_events(report):
+    report = page(template.read_text(encoding="utf-8"), contents(REPOSITORY, files, scenes))
     for text in ("1.2 × 0.8", "2 × 1, with 3 discs, periodic x", "with mass ratio 0.5"):
         assert f"{text}.</p>" in report
     plain, three, unequal = report.split("Effects compiled: ")[1:]
     assert plain.startswith("none. Events detected:\nnone.")
     assert three.startswith("periodic x. Events detected:\ndisc collision, top wall.")
     assert unequal.startswith("mass ratio 0.5.")
-
-
-@pytest.mark.skipif(BROWSER is None, reason=ABSENT)
-@pytest.mark.parametrize("width", [1280, 390])
-def test_long_names_are_not_wider_than_the_window(report, width, tmp_path):
-    (tmp_path / "report.html").write_text(report, encoding="utf-8")
-    with browser(tmp_path) as chromium:
-        chromium.open((tmp_path / "report.html").as_uri(), width=width)
-        assert chromium.look("document.documentElement.scrollWidth") <= width
-        # A wide table scrolls in its own place.
-        of = "...[...document.querySelectorAll('main *:not(.wide *)')].map"
-        assert chromium.look(f"Math.max({of}(e => e.getBoundingClientRect().right))") <= width
-        assert chromium.look("document.querySelectorAll('.numbers tr').length") == 3 * 8
 
 
 def test_the_section_on_accuracy_has_the_worst_error_and_the_time_of_others(tmp_path):
