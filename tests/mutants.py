@@ -210,6 +210,15 @@ MUTANTS = [
     ("moves of one disc counted as steps", 'MOVES = {"kicked": 2, "singly": 2}', 'MOVES = {"kicked": 2, "singly": 1}'),
     ("disc that moves along the channel alone", "y = folded(y + step * b, breadth)", "y = folded(y, breadth)"),
     ("error of a ratio without its correlation", '- 2 * ratio * counts["passage*crossings"] / pairs', '+ 2 * ratio * counts["passage*crossings"] / pairs'),
+    ("speeds of strata in a field over the energy, not its root", "speed /= math.sqrt(kinetic_fraction_of(state, self.prism))", "speed /= kinetic_fraction_of(state, self.prism)"),
+    ("unit of a density of intervals", '"density": RATE(', '"density": TIME('),
+    ("units of balls as of discs", "dimensions = self.discs * len(self.axes)", "dimensions = self.discs * 2"),
+    ("wall time of the source with another coefficient", "denominator = a * b**2 - mp.pi / 2 * b * r**2 + mpf(16) / 3 * r**3", "denominator = a * b**2 - mp.pi / 2 * b * r**2 + mpf(8) / 3 * r**3"),
+    ("fraction that is called per cent", 'at-most(single-file, "stderr/estimate", n: 1, scale: 100)', 'at-most(single-file, "stderr/estimate", n: 1)'),
+    ("thickness of shells in the cost of the shell", "twodiscs.cost(scene, options.errors, shell=options.shell)", "twodiscs.cost(scene, options.errors)"),
+    ("cost of insertions of a pilot as of a block", "(one.estimate.relative_stderr**2 * blocks, 0.0)", "(one.estimate.relative_stderr**2, 0.0)"),
+    ("scores of the explorer with the other sign", "exact && (DURATION / exact - mean) / (relative * mean)", "exact && (mean - DURATION / exact) / (relative * mean)"),
+    ("jobs beside one that measures seconds", "threads: lambda w: ALL_CORES if w.table in MADE_BY[w.table].timed else 1", "threads: lambda w: 1"),
 ]
 # fmt: on
 

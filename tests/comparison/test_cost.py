@@ -11,6 +11,7 @@ from twodiscs.comparison.scene_tables import shortfall
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.runs import DAY, CountingRun, replica_duration
 from twodiscs.model.checks import format_seconds
+from twodiscs.sampling.many import insertions
 from twodiscs.sampling.rounds import MARGIN
 from twodiscs.theory import exact
 from twodiscs_paper.pipeline.forecast import of_dynamics
@@ -92,6 +93,17 @@ def test_prices_of_volume_and_areas_are_those_of_samples(monkeypatch, scene, met
         else:
             row = measured.frame().loc[name]
             assert price.floor == pytest.approx(abs(row["bias"] / row["exact"]))
+
+
+def test_prices_of_insertions_are_those_of_samples(blocks):
+    """The errors of 32 blocks of another seed are known within some per cent."""
+    three = td.Scene(1.5, 1.0, 0.15, discs=3)
+    measured = td.sample(three, 32 * insertions.BLOCK)
+    prices = [*cost._prices_of_samples(three, 0.02)]
+    assert {price.quantity for price in prices} == {*measured}
+    for price in prices:
+        due = 32e-3 * measured[price.quantity].relative_stderr ** 2
+        assert price.c == pytest.approx(due, rel=0.2)
 
 
 def test_a_budget_ends_a_run_at_the_error_that_the_forecast_says(blocks):

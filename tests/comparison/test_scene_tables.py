@@ -9,13 +9,22 @@ from factory import BOX, RADII, Laws, counts_point, hits_point, rows_of, scenes,
 from scipy.special import ndtri, stdtr
 
 import twodiscs as td
-from twodiscs.comparison.scene_tables import Areas, HopHistogram, MeanTimes, Volume, _sampled_row
+from twodiscs.comparison.scene_tables import (
+    Areas,
+    HopHistogram,
+    MeanTimes,
+    Theory,
+    Volume,
+    _sampled_row,
+)
+from twodiscs.dynamics import runs
 from twodiscs.dynamics.many import engine
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.dynamics import StripCount
 from twodiscs.points.intervals import Bins
+from twodiscs.sampling.montecarlo import SamplingRun
 from twodiscs.theory.exact import rate, replicas_needed
 
 
@@ -198,6 +207,36 @@ def test_rows_of_the_histogram(theory, laws):
     assert second["stderr"] > 0
     few = HopHistogram.rows(theory, {"intervals": [laws[2].intervals(rng, chains=99)]})
     assert few[0]["z"] is few[0]["mean_stderr"] is None
+
+
+# Units ------------------------------------------------------------------------------------------
+
+
+#: Powers of the length; the speed is 1.
+POWERS = {"": 0, "length": 1, "time": 1, "1/time": -1, "length³": 3, "length⁴": 4}
+
+
+def test_columns_scale_as_their_units_say():
+    """Of equal random numbers, in two boxes of which one is twice as large."""
+    found = []
+    for unit in (1, 2):
+        box, radius = Box(1.5 * unit, 1.0 * unit), 0.2 * unit
+        scene, theory = box.scene(radius), Theory.rows(box, [radius])
+        sampled = ["volume", "vertical_hop_area", "disc_collision_area"]
+        points = {
+            "dynamics": [runs.CountingRun(scene, {"any_wall": 1.0}, 1, 7).run()],
+            "intervals": [runs.IntervalRun(scene, "vertical_hop", 1, 7).run()],
+            "monte_carlo": [SamplingRun(scene, sampled, 1, 0.02, 7).run()],
+        }
+        rows = [(Volume, row) for row in Volume.rows(theory, points)]
+        rows += [(Areas, row) for row in Areas.rows(box, theory, points)]
+        rows += [(MeanTimes, row) for row in MeanTimes.rows(box, theory, points)]
+        rows += [(HopHistogram, row) for row in HopHistogram.rows(theory, points)]
+        found.append([(name, c, row[name]) for t, row in rows for name, c in t.columns.items()])
+    for (name, column, one), (*_, other) in zip(*found, strict=True):
+        if column.type is float and one is not None:
+            one = pytest.approx(one * 2.0 ** POWERS[column.unit], rel=1e-9, abs=1e-12)
+        assert other == one, name
 
 
 # With effects -----------------------------------------------------------------------------------

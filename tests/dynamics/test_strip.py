@@ -101,6 +101,19 @@ def test_starts_fill_the_strata_as_their_exact_shares_say(scene, hop):
     assert scores.chi2_p(chi2, starts.size - 1) > 1e-6
 
 
+def test_strata_in_a_field_compare_a_speed_with_the_energy_that_is_left():
+    (scene, hop), lanes = NECKS["field"], np.zeros(1)
+    sampler, shape = start_sampler(scene, hop, 0.1), (3, strip.PARTS, strip.PARTS)
+    hops = strip.HopsInStrip(
+        1.0, 1.0, 0.1 / strip.PARTS, scene.fastest / strip.PARTS, sampler.prism, True,
+        lanes, np.zeros((2, 1)), np.zeros(shape), lanes,
+    )  # fmt: skip
+    for x1, y1, x2, y2, u1, v1, u2, v2 in states(scene, 20, 1)[:8].T:
+        hops.begin(0, (x1, y1, x2, y2, u1, v1, u2, v2))
+        most = math.sqrt(2 * (u1**2 + v1**2 + u2**2 + v2**2))  # u1 = −u2, and v1 = v2 = 0
+        assert hops.stratum[1, 0] == int(strip.PARTS * abs(u1 - u2) / most)
+
+
 @pytest.mark.parametrize(("scene", "hop"), [(PAPER, "vertical_hop"), *NECKS.values()])
 def test_the_share_is_that_of_draws_from_everywhere(scene, hop):
     """Five sigma of a binomial count."""

@@ -7,6 +7,7 @@ to see them turn.
 import dataclasses
 import re
 from functools import cache
+from pathlib import Path
 
 import pytest
 from factory import written
@@ -80,12 +81,21 @@ RATIOS = {
     "AreaH": 2, "hoptau": 1 / mp.sqrt(2), "hoptaulimit": 0.5, "eq:surface-area": 1 / mp.sqrt(2),
     "limit of thin shells": mp.sqrt(2), "A_whole": 4, "app:colgeneral as a quarter": 4,
     "factor of 2 or 4": 0.5, "pasoraro": 0, "volumeabd": 1,
+    # At r = 0.2, where a = 0.55 and b = 0.3: 2/3 r³ in place of 16/3 r³, and no √2.
+    "impactwall": (0.0495 - 0.006 * mp.pi + 0.016 / 3)
+    / (0.0495 - 0.006 * mp.pi + 0.128 / 3) / mp.sqrt(2),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("label", RATIOS)
 def test_ratios(label):
     assert verdicts()[label]["ratio"] == pytest.approx(float(RATIOS[label]), rel=1e-15)
+
+
+def test_ratios_are_those_of_the_expected_table():
+    for row in Errata.read(Path(__file__).parents[2] / "paper" / "expected" / "errata.csv"):
+        due = row["ratio"] and pytest.approx(row["ratio"], rel=1e-12)
+        assert verdicts()[row["label"]]["ratio"] == due, row["label"]
 
 
 def test_a_ratio_is_that_in_the_box_of_the_source_at_the_radius_of_the_row():

@@ -228,6 +228,8 @@ def check_largest_radius(scene):
 def test_momenta_that_are_conserved_and_0_do_not_count(effects, conserved, components):
     scene = Scene(1.5, 1.0, 0.2, **effects)
     assert (scene.conserved, scene.velocity_components) == (conserved, components)
+    units = ["length⁶", "length⁵"] if scene.depth else ["length⁴", "length³"]
+    assert [scene.unit(quantity) for quantity in ("volume", "any_wall_area")] == units
 
 
 @pytest.mark.parametrize(

@@ -190,6 +190,7 @@ def test_motion_is_that_of_theory(tmp_path):
                 assert measured["count"] == 0, (effects, event)
             elif measured["error"]:
                 assert abs(measured["time"] - times[event]) < SIGMAS * measured["error"], effects
+                assert (measured["z"] > 0) == (measured["time"] > times[event]), effects
                 compared += 1
         # The invariant measure stays as it is.
         assert max(map(abs, seen["changes"])) < SIGMAS, (effects, seen["changes"])

@@ -224,8 +224,9 @@ def expected(results):
         paths = [results / scene["name"] / f"{name}.csv" for scene in SCENES]
         tables[name] = [row for path in paths for row in TABLES[name].read(path)]
     kept = PAPER / "long_run"
-    files = TABLES["passages"].read(kept / "files" / "passages.csv")
-    return tables | {"long_run": MeanTimes.read(kept / "far" / "mean_times.csv"), "files": files}
+    for name in ("files", "displacements"):
+        tables[name] = TABLES["passages"].read(kept / name / "passages.csv")
+    return tables | {"long_run": MeanTimes.read(kept / "far" / "mean_times.csv")}
 
 
 def of(rows, **where):
@@ -281,6 +282,9 @@ BY_HAND = {
     ),
     "passages_files_error": lambda t: max(
         r["stderr"] for n in (4, 8) for r in of(t["files"], quantity="diffusion", discs=n)
+    ),
+    "long_files_law_error": lambda t: 100 * max(
+        r["stderr"] / r["estimate"] for r in of(t["displacements"], quantity="single_file")
     ),
     "more_discs_exact": lambda t: sum(
         r["exact"] is not None and r["z"] is not None and r["event"] != "virial"
