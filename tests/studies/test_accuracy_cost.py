@@ -197,29 +197,6 @@ def long():
     return AccuracyCost.read(FOLDER / "accuracy_cost.csv")
 
 
-def series(rows):
-    """Return the rows of each method, radius and setting."""
-    found = {}
-    for row in rows:
-        key = row["method"], row["quantity"], row["radius"], row["setting"]
-        found.setdefault(key, []).append(row)
-    return found
-
-
-def test_its_errors_are_those_of_c_and_its_powers_a_half(long):
-    """Root mean squares of independent runs, to five standard errors; the last ones are few."""
-    powers = []
-    for first, *rows in series(long).values():
-        for row in (first, *rows):
-            expected = math.sqrt(row["c"] / row["seconds"] + row["floor"] ** 2)
-            if row["repetitions"] >= 32:
-                assert abs(row["error"] - expected) < SIGMA * figure._spread(row) + 0.02 * expected
-        if first["slope"] is not None and rows[-1]["error"] > 3 * first["floor"]:
-            assert abs(first["slope"] + 0.5) < SIGMA * first["slope_stderr"] <= SIGMA * 0.03
-            powers.append(first["slope"])
-    assert len(powers) >= 7
-
-
 # The figures --------------------------------------------------------------------------------------
 
 

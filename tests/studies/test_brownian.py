@@ -191,24 +191,6 @@ def test_the_counts_are_those_of_the_configuration(monkeypatch, configuration, c
     assert Brownian.part(**configuration) == tuple(configuration.values())
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("kind", "program", "step", "halvings"),
-    [
-        ("crossing", "reflected", 2.0**-3, 3),
-        ("crossing", "together", 2.0**-5, 3),
-        ("passage", "reflected", 2.0**-2, 4),
-    ],
-)
-def test_points_of_the_long_run_are_the_same_again(
-    configuration, counts, kind, program, step, halvings
-):
-    (point,) = of(counts[f"{kind}s"], program=program, step=step, halvings=halvings)
-    for seed, own in zip(configuration["seeds"], point["seeds"], strict=True):
-        samples = own.get("pairs") or sum(number for _, number in own["sizes"])
-        assert getattr(study, f"{kind}_counts")(seed, program, step, halvings, samples) == own
-
-
 def test_seeds_and_methods_agree(kept):
     judged = [row["seeds_z"] for row in kept if row["seeds_z"] is not None]
     judged += [row["z"] for row in kept if row["z"] is not None and row["program"] != "kicked"]

@@ -9,10 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from marks import slow
 from scipy.stats import chi2
 
-from twodiscs.comparison.transmission import by_clusters, of_clusters, plateau
-from twodiscs.dynamics.two.passages import cluster_sizes
 from twodiscs.figures import style
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
@@ -117,7 +116,7 @@ def test_two_discs_in_a_file_move_as_their_hops_are_correlated():
     assert abs(moved.value - due["estimate"]) < 5 * math.hypot(moved.stderr, due["stderr"])
 
 
-@pytest.mark.parametrize("inertia", [None, 0.5])
+@pytest.mark.parametrize("inertia", [None, slow(0.5)])
 def test_hops_in_a_file_are_those_of_monte_carlo(inertia):
     scene = Scene(2.25, 1.0, 0.2, discs=3, periodic="x", moment_of_inertia=inertia)
     _, hops = walked(scene, 16.0, 2048, 3)
@@ -301,27 +300,6 @@ def test_the_error_of_an_exponent_is_that_of_a_line_through_two_logarithms(inert
 
 
 # Friction ----------------------------------------------------------------------------------------
-
-#: {rate of kicks: {halvings of the distance below h/4: κ}}, measured by another program with errors
-#: of 0.002 to 0.005.
-WITH_FRICTION = {
-    10.0: {4: 0.278, 8: 0.648, 12: 0.881, 16: 0.967},
-    40.0: {8: 0.319, 12: 0.703},
-    160.0: {8: 0.097, 12: 0.341},
-}
-
-
-def test_passages_with_friction_are_those_of_another_program():
-    """Within three standard errors: 8 differences have a false alarm in 2 % of the seeds."""
-    for friction, due in WITH_FRICTION.items():
-        for n, expected in due.items():
-            scene = Box(1.5, 1.0, {"friction": friction}).scene(measure.radius_at(0.25, n))
-            sizes, _ = cluster_sizes(scene, HOP, 12.0, 64 if friction < 100 else 32, n)
-            kappa = plateau(
-                by_clusters(sizes), 12.0, 1 / exact.passing_rate(scene, HOP), of_clusters
-            )
-            error = math.hypot(kappa.stderr, 0.004)
-            assert abs(kappa.value - expected) <= 3 * error, (friction, n, kappa)
 
 
 def test_rows_with_friction():

@@ -67,11 +67,8 @@ def hard_scenes(draw):
     elif where == "threshold":
         radius = threshold * (1 + draw(offsets))
     else:
-        radius = draw(
-            st.sampled_from(
-                [threshold, math.nextafter(threshold, 0), math.nextafter(threshold, math.inf)]
-            )
-        )
+        ends = (threshold, 0, math.inf)
+        radius = draw(st.sampled_from([math.nextafter(threshold, end) for end in ends]))
     assume(Box(width, height).fits(radius))
     return Scene(width, height, radius)
 

@@ -9,6 +9,7 @@ import time
 import psutil
 import pytest
 from checkout import folder, fresh
+from marks import slow
 
 JOB = "results/one/points/monte_carlo/0.2.json"
 ENDLESS = {
@@ -49,10 +50,6 @@ def begun(checkout, *words):
     )
     wait_until(lambda: any(job["num_threads"] > 1 for job in jobs(checkout.path)))
     return run
-
-
-def slow(*case):
-    return pytest.param(*case, marks=pytest.mark.slow)
 
 
 @pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="processes are found in /proc")
