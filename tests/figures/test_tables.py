@@ -165,12 +165,16 @@ def of_passages():
         ring = of(rows, quantity="diffusion", discs=2, moment_of_inertia=inertia)
         yield "diffusion", "ring", look, columns(ring, "distance")
     for rate, look in friction.LOOKS.items():
-        own = of(rows, friction=rate, quantity="coefficient")
-        yield "friction", "kappa", look, [of_row(scaled(row), row) for row in own]
-        # The first distance has no exponent.
-        middle = [math.sqrt(scaled(a) * scaled(b)) for a, b in pairwise(own)]
-        steps = of(rows, friction=rate, quantity="local_exponent")
-        yield "friction", "exponent", look, [*map(of_row, middle, steps)]
+        kappa, exponents = [], []
+        for some in (rows, long_run("passages")):
+            own = of(some, friction=rate, quantity="coefficient")
+            kappa += [of_row(scaled(row), row) for row in own]
+            # The first distance has no exponent.
+            middle = [math.sqrt(scaled(a) * scaled(b)) for a, b in pairwise(own)]
+            steps = of(some, friction=rate, quantity="local_exponent")
+            exponents += map(of_row, middle, steps)
+        yield "friction", "kappa", look, kappa
+        yield "friction", "exponent", look, exponents
 
 
 def of_long_files():

@@ -20,31 +20,38 @@ DIFFUSIVE = 3 / 4
 
 
 def draw(box, tables):
-    """Draw the rows of passages.csv with friction."""
-    rows = [row for row in tables["passages"] if row["friction"] is not None]
+    """Draw the rows of passages.csv with friction, and those of a long run, the ``kept`` ones."""
+    rows, kept = (
+        [row for row in tables[name] if row["friction"] is not None]
+        for name in ("passages", "kept")
+    )
     figure, (upper, lower) = panels.stacked(kappa=2.3, exponent=1.8)
     if is_empty(figure, upper, rows, box):
         return figure
     panels.title(upper, "a", first_scene(rows, box)[0])
     for friction, look in LOOKS.items():
-        own = select(rows, friction=friction, quantity="coefficient")
-        if own:
-            value, error = columns(own, "estimate", "stderr")
-            points(upper, scaled(own), value, error, look, rf"$\gamma={friction:g}$")
-        # An exponent belongs between its two distances.
-        steps = select(rows, friction=friction, quantity="local_exponent")
-        before = [_before(row, own) for row in steps]
-        if steps:
-            value, error = columns(steps, "estimate", "stderr")
-            points(lower, np.sqrt(scaled(steps) * scaled(before)), value, error, look)
+        for some, filled in ((rows, False), (kept, True)):
+            own = select(some, friction=friction, quantity="coefficient")
+            if own:
+                value, error = columns(own, "estimate", "stderr")
+                name = None if filled else rf"$\gamma={friction:g}$"
+                points(upper, scaled(own), value, error, look, name, filled)
+            # An exponent belongs between its two distances.
+            steps = select(some, friction=friction, quantity="local_exponent")
+            before = [_before(row, own) for row in steps]
+            if steps:
+                value, error = columns(steps, "estimate", "stderr")
+                points(
+                    lower, np.sqrt(scaled(steps) * scaled(before)), value, error, look, None, filled
+                )
     x = np.geomspace(*SHOWN, 2)
     style = {"color": BLACK, "lw": 0.8, "ls": (0, (4, 2)), "zorder": 5}
     upper.plot(x, np.ones(2), **style)
     large = np.array([DIFFUSIVE, SHOWN[1]])
     upper.plot(large, DIFFUSIVE / large, label=r"$1$ and $3/(4x)$", **style)
     for exponent, name, side in (
-        (-1.5, r"$-\frac{3}{2}$  long necks: $u$ diffuses", 5),
-        (-2.0, r"$-2$  short necks: one flight", 3),
+        (-1.5, r"$-\frac{3}{2}$  long necks", 5),
+        (-2.0, r"$-2$  short necks", 3),
     ):
         lower.axhline(exponent, color=GREY, lw=0.8, ls=(0, (4, 2)), zorder=1)
         at = (SHOWN[0], exponent) if exponent == -1.5 else (SHOWN[1], exponent)

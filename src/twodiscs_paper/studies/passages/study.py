@@ -262,10 +262,11 @@ STUDY = Study(
                 discs that diffuse through the neck, 3/(4x). (b) The local power of the distance r_c
                 − r with which the time τ/κ between passages grows, from one distance to the next.
                 Dashed: the powers of a pair that diffuses through the neck, and of one that crosses
-                it in one flight. Error bars are one standard error.
+                it in one flight. Full symbols are a long run. Error bars are one standard error.
                 """
             ),
             tables=("passages",),
+            kept={"kept": "paper/long_run/passages/passages.csv"},
         ),
         "brownian": Entry(
             "Passages in Brownian dynamics",
