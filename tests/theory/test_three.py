@@ -8,9 +8,7 @@ import pytest
 from mpmath import mp, mpf
 
 from twodiscs.model.many import largest_known_radius as largest_radius
-from twodiscs.model.scene import Scene
 from twodiscs.theory import three
-from twodiscs.theory.virial import rates, virial_sum
 
 BOUND = 1e-12
 
@@ -95,17 +93,3 @@ def test_hops_agree_with_an_integral_of_one_dimension(width, radius):
         direct = hops_in_y(*sides[::-1], sigma)
         found = three.integrals(*sides, sigma)[4]
         assert found == pytest.approx(float(direct), rel=BOUND, abs=1e-300)
-
-
-def test_the_value_of_another_derivation():
-    """Scrambled Sobol points, 2e-4 at worst."""
-    scene = Scene(1.5, 1.0, 0.15, discs=3)
-    known = three.derivatives(scene)
-    assert math.exp(known.log_volume) == pytest.approx(0.2455841, rel=2e-6)
-    found = rates(scene, known)
-    expected = {
-        "disc_collision": 1.3936, "right_wall": 1.10890, "top_wall": 1.85397,
-        "horizontal_hop": 0.57494,
-    }  # fmt: skip
-    assert {event: found[event] for event in expected} == pytest.approx(expected, rel=2e-4)
-    assert virial_sum(scene, found) == pytest.approx(1, rel=1e-13)

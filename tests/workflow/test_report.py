@@ -100,8 +100,6 @@ def test_key_figures_have_their_captions_beneath_them_and_the_rest_are_thumbnail
     for figure in key:
         text = titles[figure["title"]].caption().replace("_", "")
         assert text in plain(figure["caption"]) or "Scene walls" in figure["caption"]
-        # Who does not see the picture hears what it shows.
-        assert figure["alt"].startswith(figure["title"])
         assert len(figure["alt"]) > len(figure["title"]) + 20
     results = complete.path / "results"
     drawn = [*results.glob("*/figures/*.png"), *results.glob("figures/*.png")]
