@@ -29,15 +29,6 @@ WRONG = {
 }  # fmt: skip
 RIGHT_IN_RANGE = {"AreaChoque", "colltau", "collision time goes to zero", "exponential tails"}
 
-#: The labels of all equations in the source.
-LABELS = {
-    "cambiocoor01", "meanfreetime", "condchoque", "volindic", "integraltotal", "volumeabd",
-    "volumewhd", "VolumenCasoFeo", "eq:surface-area", "eq:surface-dirac", "AreaH", "AreaChoque",
-    "areaindic", "areax1p", "areawalls", "hoptau", "hoptaulimit", "colltau", "colltaulim0",
-    "impactwall", "VolumenGeneral", "app:volcyl", "Volrtheta", "app:voldot", "ahopcart", "pasoraro",
-    "app:colgeneral", "areachoquexy",
-}  # fmt: skip
-
 BY_LABEL = {statement.label: statement for statement in STATEMENTS}
 
 
@@ -65,7 +56,6 @@ def test_verdicts_are_those_found_by_hand():
     found = {label: row["verdict"] for label, row in verdicts().items()}
     assert {label for label in found if found[label] == "wrong"} == WRONG
     assert {label for label in found if found[label] == "right-in-range"} == RIGHT_IN_RANGE
-    assert set(found) >= LABELS
     assert len(found) == len(STATEMENTS)
 
 
@@ -92,31 +82,12 @@ def test_ratios(label):
     assert verdicts()[label]["ratio"] == pytest.approx(float(RATIOS[label]), rel=1e-15)
 
 
-def test_ratios_are_those_of_the_expected_table():
-    for row in Errata.read(Path(__file__).parents[2] / "paper" / "expected" / "errata.csv"):
-        due = row["ratio"] and pytest.approx(row["ratio"], rel=1e-12)
-        assert verdicts()[row["label"]]["ratio"] == due, row["label"]
-
-
-def test_a_ratio_is_that_in_the_box_of_the_source_at_the_radius_of_the_row():
-    reported = {REGIMES[name][0][2] for name in REGIMES}
-    compared = {}
-    for label, row in verdicts().items():
-        if row["ratio"] is not None and row["radius"] in reported:
-            q = MpScene.of(errata.WIDTH, errata.HEIGHT, row["radius"])
-            compared[label] = float(errata.ratio_of(BY_LABEL[label], q))
-            assert row["ratio"] == pytest.approx(compared[label], rel=1e-12), label
-    assert len({*compared.values()}) > 5
-
-
-def test_a_formula_is_reported_where_it_fails():
-    assert verdicts()["AreaChoque"]["radius"] == 0.3
-    assert verdicts()["AreaChoque"]["ratio"] < 0
-    assert verdicts()["areax1p"]["radius"] == 0.2
-    assert verdicts()["hoptaulimit"]["radius"] == 0
-    assert verdicts()["hop time near w/4"]["radius"] == 0.375
-    # It fails in long boxes only, so no radius in the box of the source shows it.
-    assert verdicts()["collision time goes to zero"]["radius"] is None
+def test_ratios_and_radii_are_those_of_the_expected_table():
+    rows = Errata.read(Path(__file__).parents[2] / "paper" / "expected" / "errata.csv")
+    assert [row["label"] for row in rows] == [*verdicts()]
+    for row in rows:
+        found, due = verdicts()[row["label"]], row["ratio"] and pytest.approx(row["ratio"], 1e-12)
+        assert (found["ratio"], found["radius"]) == (due, row["radius"]), row["label"]
 
 
 @pytest.mark.parametrize(
