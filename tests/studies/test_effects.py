@@ -167,9 +167,10 @@ def costs():
 
 def test_curves_go_through_the_exact_ratios(rows, monkeypatch):
     monkeypatch.setattr(curves, "FEWER", 28)
-    table = [*EffectsCurves.rows(BOXES)]
+    names = "channel", "field", "rough", "torus"  # whose exact values take less time
+    table = [*EffectsCurves.rows({name: BOXES[name] for name in names})]
     for event in figure.SHOWN_EVENTS:
-        for name in NAMES:
+        for name in names:
             x, y = figure._curve(table, name, event)
             own = [r for r in rows if r["scene"] == name and r["quantity"] == f"{event}_time"]
             inside = np.isfinite(y)
