@@ -194,14 +194,6 @@ def test_times_are_written_in_their_unit(seconds, text):
     assert format_seconds(seconds) == text
 
 
-def test_a_table_says_where_it_was_measured_and_has_a_row_for_all(blocks):
-    found = td.cost(SCENE, [1e-2, 1e-4])
-    assert found.machine in str(found).splitlines()[-1]
-    assert list(found.frame().columns[-2:]) == ["seconds_0.01", "seconds_0.0001"]
-    assert found["all of these", "exact"].floor == 1e-15
-    assert math.isnan(found.frame().loc[("any_wall_area", "shells, rejection"), "seconds_0.0001"])
-
-
 # Pilots -------------------------------------------------------------------------------------------
 
 
