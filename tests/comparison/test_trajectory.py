@@ -4,17 +4,14 @@ import numpy as np
 import pandas as pd
 import pytest
 from effect_scenes import SCENES
-from marks import slow
 
 import twodiscs as td
 
-KINDS = {name: SCENES[name] for name in ("unequal", "combination", "channel")}
-KINDS |= {"plain": td.Scene(1.5, 1.0, 0.2), "three": td.Scene(1.5, 1.0, 0.15, discs=3)}
+KINDS = {"plain": td.Scene(1.5, 1.0, 0.2), "three": td.Scene(1.5, 1.0, 0.15, discs=3)}
+KINDS |= {"combination": SCENES["combination"]}
 
 
-@pytest.fixture(
-    scope="module", params=[slow(kind) if kind == "combination" else kind for kind in KINDS]
-)
+@pytest.fixture(scope="module", params=KINDS)
 def path(request):
     return td.trajectory(KINDS[request.param], 6, seed=2)
 

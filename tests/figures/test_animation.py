@@ -8,6 +8,7 @@ from io import BytesIO
 
 import numpy as np
 import pytest
+from effect_scenes import SCENES
 from figure_cases import unclear
 from PIL import Image
 
@@ -117,20 +118,15 @@ def test_the_hop_is_a_frame_and_the_only_one_that_stops(stage, rows, frames):
     assert marked == list(range(BEFORE, BEFORE + MARKED))
 
 
-#: Effects that bend paths, go on beyond the box, or need a long heading.
-EFFECTS = [
-    {},
-    {"field": 1.5},
-    {"periodic": "x", "mass_ratio": 3.0},
-    {"depth": 1.2},
-    {"radius_ratio": 0.625, "mass_ratio": 0.125, "moment_of_inertia": 0.375},
-]
+#: Effects that need a long heading.
+ROUGH = {"radius_ratio": 0.625, "mass_ratio": 0.125, "moment_of_inertia": 0.375}
+#: Paths that are straight, that bend and go on beyond the box, and of discs that turn.
+DRAWN = [td.Scene(1.5, 1.0, 0.2), SCENES["combination"], td.Scene(1.5, 1.0, 0.2, **ROUGH)]
 
 
-@pytest.mark.parametrize("effects", EFFECTS, ids=str)
-def test_discs_are_where_the_trajectory_has_them(effects):
+@pytest.mark.parametrize("scene", DRAWN, ids=str)
+def test_discs_are_where_the_trajectory_has_them(scene):
     """On a periodic axis they go on beyond the box; what is drawn is folded into it."""
-    scene = td.Scene(1.5, 1.0, 0.2, **effects)
     path = td.trajectory(scene, duration=60)
     with style.context():
         stage = animation.Stage(Box.of(scene), scene.radius, path.to_dict("records"))
@@ -152,8 +148,8 @@ def test_discs_are_where_the_trajectory_has_them(effects):
 @pytest.mark.parametrize(
     ("box", "radius"),
     [
-        (Box(1.0, 4.0, EFFECTS[-1]), 0.125),
-        (Box(3.0, 1.0, EFFECTS[-1]), 0.125),
+        (Box(1.0, 4.0, ROUGH), 0.125),
+        (Box(3.0, 1.0, ROUGH), 0.125),
         (Box(12.0, 1.0), 0.2),
         (Box(50.0, 1.0), 0.2),
         (Box(1e-5, 3e-6), 6e-7),
@@ -200,7 +196,7 @@ def test_what_leaves_a_ring_comes_in_at_the_other_end():
 
 def test_marks_of_rough_discs_turn_with_them():
     """Angles against the times between rows."""
-    scene = td.Scene(1.5, 1.0, 0.2, **EFFECTS[-1])
+    scene = DRAWN[-1]
     path = td.trajectory(scene, 200, seed=1)
     with style.context():
         stage = animation.Stage(Box.of(scene), 0.2, path.to_dict("records"))
@@ -216,9 +212,9 @@ def test_marks_of_rough_discs_turn_with_them():
 
 
 def test_the_nearer_ball_is_in_front():
-    path = td.trajectory(td.Scene(1.5, 1.0, 0.2, depth=1.2), seed=2)
+    path = td.trajectory(SCENES["combination"], seed=2)
     with style.context():
-        stage = animation.Stage(Box.of(path.scene), 0.2, path.to_dict("records"))
+        stage = animation.Stage(Box.of(path.scene), path.scene.radius, path.to_dict("records"))
     nearer = set()
     for time in stage.times:
         (state,) = path.states_at(time)

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from effect_scenes import SCENES
+from marks import slow
 from sampling.uniformity import FALSE_ALARM
 from scipy.special import bdtr
 
@@ -109,10 +110,10 @@ MORE_SCENES = [
     Scene(1.5, 1.0, 0.1, radius_ratio=4.0, mass_ratio=1e3),
     Scene(1.5, 1.0, 0.05, field=1.5),
     Scene(1.5, 1.0, 0.3, field=1.5),
-    Scene(1.5, 1.0, 0.3, field=0.1, periodic="x", moment_of_inertia=1.0),
+    slow(Scene(1.5, 1.0, 0.3, field=0.1, periodic="x", moment_of_inertia=1.0)),
     Scene(1.5, 1.0, 0.37, moment_of_inertia=0.1),
     Scene(1.0, 1.0, 0.26, depth=1.0),
-    Scene(1.0, 1.0, 0.3, depth=1.0, periodic="xyz"),
+    slow(Scene(1.0, 1.0, 0.3, depth=1.0, periodic="xyz")),
 ]
 
 
