@@ -6,13 +6,14 @@ from functools import cached_property
 
 import numpy as np
 
-from twodiscs.comparison.scene_tables import Theory
+from twodiscs.comparison.tables import Theory
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.points.base import content_of, with_arrays, write_json
 from twodiscs.points.dynamics import DynamicsPoint
 from twodiscs.points.intervals import Bins, IntervalsPoint
 from twodiscs.points.monte_carlo import Hits, MonteCarloPoint
+from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
 
 BOX = Box(1.5, 1.0)
@@ -21,6 +22,28 @@ RADII = (0.02, 0.1, 0.2, 0.24, 0.3, 0.36, 0.38)
 
 #: The class of the points of each stage.
 POINTS = {point.stage: point for point in (MonteCarloPoint, DynamicsPoint, IntervalsPoint)}
+
+
+def empty(table, **values):
+    """Return a row of a ``Table`` in which only these ``values`` are not empty."""
+    return dict.fromkeys(table.columns) | values
+
+
+def drawn(sampler, samples):
+    """Return the point of a ``Sampler`` from at least this number of samples, whole blocks."""
+    blocks = -(-samples // sampler.block)
+    return sampler.point({(0, blocks): [sampler.count(0, blocks)]})
+
+
+def sample_point(scene, quantities, samples, shell, seed):
+    """Return the point of samples of the prism of two discs."""
+    sampler = montecarlo.in_prism if scene.is_plain else montecarlo.weighted
+    return drawn(sampler(scene, quantities, shell, seed), samples)
+
+
+def conditioned_point(scene, quantities, samples, shell, seed):
+    """Return the point of conditioned draws of a plain scene."""
+    return drawn(montecarlo.conditioned(scene, quantities, shell, seed), samples)
 
 
 def scenes(radii=RADII):
@@ -34,7 +57,7 @@ def theory_rows(radii=RADII):
 
 def rows_of(values):
     """Return the rows of theory.csv that say ``values``, {(radius, quantity): exact value}."""
-    return [Theory.empty(radius=r, quantity=q, exact=value) for (r, q), value in values.items()]
+    return [empty(Theory, radius=r, quantity=q, exact=value) for (r, q), value in values.items()]
 
 
 # As a test says -------------------------------------------------------------------------------

@@ -7,7 +7,7 @@ from unittest.mock import patch
 import numpy as np
 from matplotlib.text import Text
 
-from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.tables import SCENE_TABLES
 from twodiscs.dynamics.runs import wide_edges
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.draw import draw as draw_figure

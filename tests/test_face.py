@@ -18,7 +18,7 @@ from figure_cases import unclear
 import twodiscs as td
 from twodiscs.comparison.measurements import Measurement, measurement
 from twodiscs.comparison.result import seed_of
-from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.tables import SCENE_TABLES
 from twodiscs.dynamics.trajectory import state_of
 from twodiscs.figures import style
 from twodiscs.model.box import Box

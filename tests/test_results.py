@@ -13,10 +13,9 @@ from effect_scenes import SCENES
 
 import twodiscs as td
 from twodiscs.comparison import result as progress_module
-from twodiscs.dynamics import runs
 from twodiscs.model.checks import PRESETS
-from twodiscs.points.base import content_of, pieces_of, reached, write_json
-from twodiscs.sampling.rounds import joined
+from twodiscs.points.base import content_of, reached, write_json
+from twodiscs_paper.pipeline.points import KINDS, joined, pieces_of, run_of
 
 SCENE = td.Scene(1.5, 1.0, 0.2)
 NARROW = td.Scene(1.5, 1.0, 0.249)
@@ -88,21 +87,21 @@ JOBS = {
 def kept(path, stage, scene, settings, parts):
     """Write the file of a job of the pipeline."""
     parameters = td.Box.of(scene).parameters() | {"radius": scene.radius}
-    write_json(path, content_of(runs.KINDS[stage], parameters, settings, parts))
+    write_json(path, content_of(KINDS[stage], parameters, settings, parts))
 
 
 @pytest.mark.parametrize("stage", JOBS)
 def test_a_point_of_the_pipeline_goes_on_and_a_saved_result_adds_up(stage, tmp_path):
     settings, larger, function = JOBS[stage]
     settings = settings | {"seed": 3, "name": "paper"}
-    run = runs.run_of(stage, NARROW, settings)
+    run = run_of(stage, NARROW, settings)
     kept(tmp_path / "0.2.json", stage, NARROW, settings, run.run().parts)
     read, made = td.load_result(tmp_path / "0.2.json"), function(NARROW, **settings)
     assert read == made
     assert bits(read.more(**larger)) == bits(function(NARROW, **settings | larger))
     # The pipeline adds up what the result has and the shards of the rest.
     made.save(tmp_path / "saved.json")
-    paths, run = [tmp_path / "saved.json"], runs.run_of(stage, NARROW, settings | larger)
+    paths, run = [tmp_path / "saved.json"], run_of(stage, NARROW, settings | larger)
     for name, part in run.parts.items():
         _, stop = reached(made.parts[name]["sums"])
         piece = {(stop, part.planned): part.work(stop, part.planned)}

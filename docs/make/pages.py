@@ -12,6 +12,7 @@ import shlex
 from contextlib import redirect_stdout
 from io import StringIO
 from pathlib import Path
+from textwrap import fill
 from unittest.mock import patch
 
 from twodiscs import cli
@@ -32,8 +33,9 @@ def literals():
     quantities = ("volume", *(f"{event}_area" for event in EVENTS))
     text = ""
     for name, values in {"Event": EVENTS, "Hop": HOPS, "Quantity": quantities}.items():
-        lines = "".join(f'        "{value}",\n' for value in values)
-        text += f"    {name} = Literal[\n{lines}    ]\n"
+        names, indent = "".join(f'"{value}", ' for value in values), " " * 8
+        lines = fill(names, 100, initial_indent=indent, subsequent_indent=indent)
+        text += f"    {name} = Literal[\n{lines}\n    ]  # fmt: skip\n"
     return text
 
 

@@ -37,11 +37,10 @@ if TYPE_CHECKING:
     from twodiscs.comparison.intervals import Intervals, intervals
     from twodiscs.comparison.load import load, load_result
     from twodiscs.comparison.measurements import Measurement, Measurements, sample, simulate
-    from twodiscs.comparison.observe import Observed, diffusion, observe
+    from twodiscs.comparison.observe import Observed, diffusion, observe, starts
     from twodiscs.comparison.pressure import free_energy, pressure
     from twodiscs.comparison.quantities import areas, exact, exact_table, mean_times
     from twodiscs.comparison.scan import Scan, scan
-    from twodiscs.comparison.states import starts
     from twodiscs.comparison.trajectory import Trajectory, trajectory
     from twodiscs.comparison.transmission import Transmission, transmission
     from twodiscs.figures.plot import animate, plot
@@ -66,26 +65,15 @@ if TYPE_CHECKING:
 
     # Names that an editor completes; python docs/make/pages.py renews them.
     Event = Literal[
-        "vertical_hop",
-        "horizontal_hop",
-        "disc_collision",
-        "right_wall",
-        "top_wall",
-        "any_wall",
-    ]
+        "vertical_hop", "horizontal_hop", "disc_collision", "right_wall", "top_wall", "any_wall",
+    ]  # fmt: skip
     Hop = Literal[
-        "vertical_hop",
-        "horizontal_hop",
-    ]
+        "vertical_hop", "horizontal_hop",
+    ]  # fmt: skip
     Quantity = Literal[
-        "volume",
-        "vertical_hop_area",
-        "horizontal_hop_area",
-        "disc_collision_area",
-        "right_wall_area",
-        "top_wall_area",
-        "any_wall_area",
-    ]
+        "volume", "vertical_hop_area", "horizontal_hop_area", "disc_collision_area",
+        "right_wall_area", "top_wall_area", "any_wall_area",
+    ]  # fmt: skip
     # end of names
     Axis = Literal["x", "y", "z"]
 
@@ -98,11 +86,10 @@ _NAMES = {
     "comparison.intervals": "Intervals intervals",
     "comparison.load": "load load_result",
     "comparison.measurements": "Measurement Measurements sample simulate",
-    "comparison.observe": "Observed diffusion observe",
+    "comparison.observe": "Observed diffusion observe starts",
     "comparison.pressure": "free_energy pressure",
     "comparison.quantities": "areas exact exact_table mean_times",
     "comparison.scan": "Scan scan",
-    "comparison.states": "starts",
     "comparison.trajectory": "Trajectory trajectory",
     "comparison.transmission": "Transmission transmission",
     "figures.plot": "animate plot",

@@ -15,7 +15,7 @@ from argcomplete.completers import ChoicesCompleter
 import twodiscs
 from twodiscs.comparison.load import plugin
 from twodiscs.model.box import Box
-from twodiscs.model.checks import PRESETS, InputError, decimal_hint, did_you_mean, format_number
+from twodiscs.model.checks import PRESETS, InputError, did_you_mean, format_number
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS
 
@@ -56,39 +56,29 @@ def unrecognized(words, names):
     return f"unrecognized arguments: {' '.join(words)}{hint}"
 
 
-def number(text):
-    """Return ``text`` as a float, for ``type=`` of an argument."""
-    try:
-        return float(text)
-    except ValueError:
-        message = f"must be a number, not {text!r}{decimal_hint(text)}"
-        raise argparse.ArgumentTypeError(message) from None
-
-
-def whole_number(text):
-    """Return ``text``, such as 12 or 1e7, as an integer, for ``type=`` of an argument."""
+def value(text):
+    """Return ``text`` as a number, or unchanged, for ``type=`` of an argument; the face checks."""
     try:
         return int(text)
     except ValueError:
-        value = number(text)
-    if not value.is_integer():
-        raise argparse.ArgumentTypeError(f"must be an integer, not {text!r}")
-    return int(value)
+        pass
+    try:
+        number = float(text)
+    except ValueError:
+        return text
+    return int(number) if number.is_integer() else number
 
 
 def add_scene(parser):
     """Add the arguments of a ``Scene``: sides, a radius, the number of discs and effects."""
     for length in ("width", "height", "radius"):
-        parser.add_argument(f"--{length}", type=number, required=True, help="a length")
-    parser.add_argument(
-        "--discs", type=whole_number, default=2, help="their number (2), at most 1024"
-    )
+        parser.add_argument(f"--{length}", type=value, required=True, help="a length")
+    parser.add_argument("--discs", type=value, default=2, help="their number (2), at most 1024")
     effects = parser.add_argument_group("effects", "absent by default")
     for effect in EFFECTS.values():
-        kind = {"type": number} if effect.is_number else {"nargs": "+", "metavar": "AXIS"}
-        option = effects.add_argument(
-            f"--{effect.name.replace('_', '-')}", help=_help(effect), **kind
-        )
+        kind = {"type": value} if effect.is_number else {"nargs": "+", "metavar": "AXIS"}
+        name = effect.name.replace("_", "-")
+        option = effects.add_argument(f"--{name}", help=_help(effect), **kind)
         if not effect.is_number:
             option.completer = lambda **_: "xyz"
 
@@ -175,10 +165,10 @@ EXAMPLE = "--width 1.5 --height 1 --radius 0.2"
 
 #: {option that several commands have: its settings}
 SHARED = {
-    "--seed": {"type": whole_number, "default": 1, "help": "of the random numbers (1)"},
+    "--seed": {"type": value, "default": 1, "help": "of the random numbers (1)"},
     "--name": {"help": "of a scene in a configuration, for its numbers"},
-    "--cores": {"type": whole_number, "default": 1, "help": "to work on (1)"},
-    "--shell": {"type": number, "default": 0.02, "help": "thickness, a fraction (0.02)"},
+    "--cores": {"type": value, "default": 1, "help": "to work on (1)"},
+    "--shell": {"type": value, "default": 0.02, "help": "thickness, a fraction (0.02)"},
 }
 
 
@@ -233,26 +223,26 @@ def _parser():
     text = "mean times by molecular dynamics, beside the exact ones"
     add = of_scene("simulate", _simulate, text)
     text = f"relative, or {', '.join(PRESETS)} (1e-3)"
-    add("--error", type=error, help=text, completer=ChoicesCompleter(PRESETS))
-    add("--duration", type=number, help="the time to simulate, instead of an error")
-    add("--budget", type=whole_number, help="events at most (those of a day)")
+    add("--error", type=value, help=text, completer=ChoicesCompleter(PRESETS))
+    add("--duration", type=value, help="the time to simulate, instead of an error")
+    add("--budget", type=value, help="events at most (those of a day)")
     text = f"of {', '.join(EVENTS)} (all)"
     add("--events", nargs="+", metavar="EVENT", help=text, completer=ChoicesCompleter(EVENTS))
     _add_shared(add, "--seed", "--name", "--cores")
     text = "volume and areas by Monte Carlo, beside the exact ones"
     add = of_scene("sample", _sample, text)
-    add("--samples", type=whole_number, default=10**7, help="at least this number (1e7)")
+    add("--samples", type=value, default=10**7, help="at least this number (1e7)")
     known = ChoicesCompleter(("volume", *(f"{event}_area" for event in EVENTS)))
     text = "volume, <event>_area"
     add("--quantities", nargs="+", metavar="QUANTITY", help=text, completer=known)
     _add_shared(add, "--shell", "--seed", "--name", "--cores")
     text = "the processor time of relative errors, by each method"
     add = of_scene("cost", _cost, text)
-    add("--errors", type=error, nargs="+", help="relative (1e-2 1e-3 1e-4 1e-5 1e-6)")
+    add("--errors", type=value, nargs="+", help="relative (1e-2 1e-3 1e-4 1e-5 1e-6)")
     _add_shared(add, "--shell")
     add = of_scene("trajectory", _trajectory, "one trajectory, event by event")
-    add("--duration", type=number, help="a time (some hops of the rarer kind)")
-    add("--start", type=number, nargs="+", metavar="X", help="x1 y1 x2 y2 u1 v1 …")
+    add("--duration", type=value, help="a time (some hops of the rarer kind)")
+    add("--start", type=value, nargs="+", metavar="X", help="x1 y1 x2 y2 u1 v1 …")
     _add_shared(add, "--seed", "--name")
 
     epilog = None
@@ -268,7 +258,7 @@ def _parser():
     text = "a name or a file of results (report)"
     add("targets", nargs="*", default=[], metavar="TARGET", help=text, completer=_targets)
     text = "to work on (all, or those of SNAKEMAKE_PROFILE)"
-    add("--cores", type=whole_number, help=text)
+    add("--cores", type=int, help=text)
     text = "print a table of the jobs, but run nothing"
     add("-n", "--dry-run", action="store_true", help=text)
     new = command("new", _new, "write a commented configuration")
@@ -280,16 +270,6 @@ def _add_shared(add, *options):
     """Add options that several commands have."""
     for option in options:
         add(option, **SHARED[option])
-
-
-def error(text):
-    """Return ``text`` as a number, or unchanged if it is a preset, for ``type=`` of an argument."""
-    try:
-        return text if text in PRESETS else number(text)
-    except argparse.ArgumentTypeError:
-        allowed = ", ".join(PRESETS)
-        message = f"must be a number or one of {allowed}, not {text!r}{decimal_hint(text)}"
-        raise argparse.ArgumentTypeError(message) from None
 
 
 def _targets(**_):
@@ -325,7 +305,7 @@ def _exact(scene, options):
 
     numbers = exact(scene)
     if options.csv:
-        from twodiscs.comparison.scene_tables import Theory
+        from twodiscs.comparison.tables import Theory
 
         _print_csv(Theory.rows(Box.of(scene), [scene.radius]))
     elif options.json:

@@ -15,7 +15,6 @@ import numpy as np
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import engine
-from twodiscs.dynamics.runs import hop_intervals
 from twodiscs.model.events import EVENTS, SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
@@ -49,13 +48,13 @@ def in_long_box(discs, hops, events=1_000_000):
 
 def lockstep_intervals(intervals=5_000_000):
     """Record exact intervals between vertical hops; events are their time times the event rate."""
-    summary, seconds = timed(lambda: hop_intervals(SCENE, "vertical_hop", intervals, 1))
+    summary, seconds = timed(lambda: runs.IntervalRun(SCENE, "vertical_hop", intervals, 1).run())
     return summary.intervals * summary.mean * event_rate(SCENE), seconds
 
 
 def scalar_engine(blocks=BLOCKS // 8):
     """Do the same as ``lockstep``, one trajectory after the other."""
-    duration = runs.replica_duration(SCENE)
+    duration = runs.engine_of(SCENE).replica_duration(SCENE)
     draw = separation_sampler(SCENE)
     arguments = (REPLICAS, duration, SCENE.contact_distance, draw, (0, 0))
     counted, seconds = timed(lambda: scalar.count_blocks(np.uint64(1), 0, blocks, *arguments))
@@ -65,7 +64,7 @@ def scalar_engine(blocks=BLOCKS // 8):
 def plain_python(replicas=200):
     """Do the same without a compiler."""
     starts = [tuple(map(float, state)) for state in states(SCENE, replicas, 1)[:8].T]
-    end = runs.replica_duration(SCENE), SCENE.range_x / 2, SCENE.range_y / 2, 0.4
+    end = runs.engine_of(SCENE).replica_duration(SCENE), SCENE.range_x / 2, SCENE.range_y / 2, 0.4
     counts, seconds = timed(lambda: [scalar.count_replica.py_func(*s, *end) for s in starts])
     return sum(map(scalar.simulated_events, counts)), seconds
 
@@ -75,9 +74,9 @@ QUANTITIES = ("volume", *(f"{event}_area" for event in EVENTS))
 
 def sampling_engine(blocks=100):
     """Sample the volume and all shells with the compiled kernel."""
-    samples = blocks * montecarlo.BLOCK
-    point, seconds = timed(lambda: montecarlo.sample_point(SCENE, QUANTITIES, samples, 0.02, 1))
-    return point.samples, seconds
+    sampler = montecarlo.in_prism(SCENE, QUANTITIES, 0.02, 1)
+    _, seconds = timed(lambda: sampler.count(0, blocks))
+    return blocks * montecarlo.BLOCK, seconds
 
 
 def numpy_sampler(chunks=1000, chunk=16384):

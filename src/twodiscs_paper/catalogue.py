@@ -8,7 +8,7 @@ library only: the Snakefile imports this module.
 from importlib import import_module
 from pathlib import Path
 
-from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.tables import SCENE_TABLES
 from twodiscs_paper.captions import ANIMATION, SCENE_FIGURES
 from twodiscs_paper.studies.effects.study import Benchmark
 from twodiscs_paper.study import Study

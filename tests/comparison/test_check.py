@@ -9,8 +9,8 @@ import pytest
 from effect_scenes import SCENES
 from factory import BOX, RADII, Laws, rows_of, scenes, theory_rows
 
-from twodiscs.comparison import check, scene_tables, scores
-from twodiscs.comparison.scene_tables import Areas, ExactValues, HopHistogram, MeanTimes, Volume
+from twodiscs.comparison import check, scores, tables
+from twodiscs.comparison.tables import Areas, HopHistogram, MeanTimes, Volume, exact_values
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
@@ -61,7 +61,7 @@ def table_of(points, theory, alarm=scores.FALSE_ALARM, scene=SCENE):
 
 @pytest.fixture
 def theory():
-    return ExactValues(theory_rows())
+    return exact_values(theory_rows())
 
 
 def failed(rows):
@@ -113,7 +113,7 @@ def test_a_number_off_by_one_percent_is_named(points, theory, name, monkeypatch)
     def shell_expectation(scene, of, epsilon):
         return exact.shell_expectation(scene, of, epsilon) * (1.01 if f"{of}_area" == name else 1)
 
-    monkeypatch.setattr(scene_tables, "shell_expectation", shell_expectation)
+    monkeypatch.setattr(tables, "shell_expectation", shell_expectation)
     event, _, kind = name.rpartition("_")
     radii = possible_radii(event or "any_wall")
     for radius in radii if kind != "area" else ():
@@ -188,7 +188,7 @@ def errors_times(factor, point):
 def test_errors_of_the_wrong_size_show_in_the_spread(factor, sign):
     radii = tuple(np.linspace(0.05, 0.23, 40))
     rng = np.random.default_rng(4)
-    theory = ExactValues(theory_rows(radii))
+    theory = exact_values(theory_rows(radii))
     dynamics = [
         errors_times(factor, Laws(scene).dynamics(rng, 128, 5e-3, ("right_wall", "any_wall")))
         for scene in scenes(radii)
@@ -208,7 +208,7 @@ def test_errors_of_the_wrong_size_show_in_the_spread(factor, sign):
 def test_a_common_shift_below_one_error_shows_in_the_mean():
     radii = tuple(np.linspace(0.05, 0.23, 40))
     rng = np.random.default_rng(5)
-    theory = ExactValues(theory_rows(radii))
+    theory = exact_values(theory_rows(radii))
     dynamics = [
         Laws(scene).dynamics(rng, 1024, 3e-4, ("disc_collision",)) for scene in scenes(radii)
     ]

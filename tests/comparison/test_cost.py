@@ -7,9 +7,9 @@ import pytest
 import twodiscs as td
 from twodiscs.comparison import cost
 from twodiscs.comparison.result import seed_of
-from twodiscs.comparison.scene_tables import shortfall
+from twodiscs.comparison.tables import shortfall
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.runs import DAY, CountingRun, replica_duration
+from twodiscs.dynamics.runs import DAY, CountingRun, engine_of
 from twodiscs.model.checks import format_seconds
 from twodiscs.sampling.many import insertions
 from twodiscs.sampling.rounds import MARGIN
@@ -54,7 +54,7 @@ def test_a_rare_hop_has_a_price_from_ordinary_states_too(blocks):
     strips, ordinary = (found["horizontal_hop_time", m] for m in ("strips", "dynamics"))
     assert ordinary.c > 1e4 * strips.c
     # Few counts do not tell their variance; it then follows from the exact rate.
-    block = td.rate(NEAR, "horizontal_hop") * replica_duration(NEAR) * REPLICAS
+    block = td.rate(NEAR, "horizontal_hop") * engine_of(NEAR).replica_duration(NEAR) * REPLICAS
     assert ordinary.c == pytest.approx(cost.CLUSTER / block * 1e-3)
 
 

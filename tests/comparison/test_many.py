@@ -9,7 +9,7 @@ import scalar_many
 from factory import POINTS
 
 import twodiscs as td
-from twodiscs.comparison.scene_tables import Check, Theory
+from twodiscs.comparison.tables import Check, Theory
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import engine
@@ -58,7 +58,7 @@ def measured(request):
     target = dict.fromkeys(scene.events, 5e-3)
     quantities = ["volume", *(f"{event}_area" for event in scene.events)]
     points = {
-        "dynamics": [runs.count_events(scene, target, 5 * 10**6, 3)],
+        "dynamics": [runs.CountingRun(scene, target, 5 * 10**6, 3).run()],
         "monte_carlo": [montecarlo.SamplingRun(scene, quantities, 100_000, 0.02, 4).run()],
     }
     box = Box.of(scene)
@@ -102,8 +102,8 @@ def test_a_wrong_rate_is_found_without_an_exact_value(measured):
 def test_expected_rates_are_near_what_is_counted():
     for name in ("four", "four on a ring"):
         scene = SCENES[name]
-        duration = runs.replica_duration(scene)
-        sums, _ = runs.run_blocks(scene, scene.events, 8, 0, 2, duration)
+        duration = runs.engine_of(scene).replica_duration(scene)
+        sums, _ = runs.engine_of(scene).run_blocks(scene, scene.events, 8, 0, 2, duration)
         for event, rate in engine.expected_rates(scene).items():
             seen = sums[EVENTS.index(event)] / duration / 2 / REPLICAS
             assert rate == pytest.approx(seen, rel=0.05), (name, event)
@@ -146,7 +146,7 @@ def test_the_mean_interval_is_compared_where_it_is_known(name):
     first, second = found.density[:2]
     assert found.at_zero.value == pytest.approx((3 * first - second) / 2, rel=1e-12)
     assert found.more(3e5).rows == td.intervals(scene, hop, 3e5, seed=2, name=name).rows
-    point = runs.hop_intervals(scene, hop, 10**5, 6)
+    point = runs.IntervalRun(scene, hop, 10**5, 6).run()
     theory = Theory.rows(box, [scene.radius])
     (row,) = (
         row

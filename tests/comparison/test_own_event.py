@@ -14,7 +14,7 @@ LAST = '        Event("any_wall", "walls"),\n'
 #: Scenes whose walls have different multiplicities, and more discs with and without exact values.
 MEASURED = """
 import sys
-from twodiscs.comparison.scene_tables import Check, Theory
+from twodiscs.comparison.tables import Check, Theory
 from twodiscs.dynamics import runs
 from twodiscs.model.box import Box
 from twodiscs.model.events import DECLARED
@@ -34,7 +34,7 @@ for scene in (
     assert (own in scene.events) == (DECLARED[own].axis in scene.walled)
     quantities = ["volume", *(f"{event}_area" for event in scene.events)]
     points = {
-        "dynamics": [runs.count_events(scene, dict.fromkeys(scene.events, 5e-3), 10**7, 3)],
+        "dynamics": [runs.CountingRun(scene, dict.fromkeys(scene.events, 5e-3), 10**7, 3).run()],
         "monte_carlo": [montecarlo.SamplingRun(scene, quantities, 400_000, 0.1, 4).run()],
     }
     rows = Check.rows(Box.of(scene), Theory.rows(Box.of(scene), [scene.radius]), points)

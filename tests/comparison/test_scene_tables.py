@@ -9,7 +9,7 @@ from factory import BOX, RADII, Laws, counts_point, hits_point, rows_of, scenes,
 from scipy.special import ndtri, stdtr
 
 import twodiscs as td
-from twodiscs.comparison.scene_tables import (
+from twodiscs.comparison.tables import (
     Areas,
     HopHistogram,
     MeanTimes,

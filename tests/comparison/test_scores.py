@@ -9,7 +9,6 @@ import mpmath
 import numpy as np
 import pytest
 from scipy.special import ndtr, ndtri, stdtr
-from scipy.stats import chi2
 
 from twodiscs.comparison import scores
 
@@ -167,12 +166,6 @@ def test_scores_of_scores_say_on_which_side_they_are():
     assert scores.z_mean(z + 1) > 5 > -5 > scores.z_mean(z - 1)
     assert scores.z_spread([0.0] * 52) == -math.inf
     assert 100 < scores.z_spread(z * 1e3) < math.inf
-
-
-@pytest.mark.parametrize("degrees", [1, 5, 100])
-@pytest.mark.parametrize("value", [0.0, 0.3, 7.0, 200.0])
-def test_the_probability_of_a_larger_chi_square(value, degrees):
-    assert scores.chi2_p(value, degrees) == pytest.approx(chi2.sf(value, degrees), rel=1e-12)
 
 
 @pytest.mark.parametrize("size", [5, 40, 300])

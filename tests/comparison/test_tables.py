@@ -7,10 +7,11 @@ import factory
 import numpy as np
 import pytest
 from commands import python
+from factory import empty
 
-from twodiscs.comparison import load, scene_tables
+from twodiscs.comparison import load, tables
 from twodiscs.comparison.load import plugin
-from twodiscs.comparison.scene_tables import (
+from twodiscs.comparison.tables import (
     SCENE_TABLES,
     Areas,
     Check,
@@ -18,10 +19,10 @@ from twodiscs.comparison.scene_tables import (
     Grid,
     HopHistogram,
     MeanTimes,
+    Table,
     Theory,
     Trajectory,
 )
-from twodiscs.comparison.table import Table
 from twodiscs.model.box import Box
 
 EVERY_TABLE = plugin("tables")
@@ -30,7 +31,7 @@ EVERY_TABLE = plugin("tables")
 
 
 def test_an_empty_row_has_every_column_and_nothing_in_it(tmp_path):
-    row = Cost.empty(radius=0.1, events=3)
+    row = empty(Cost, radius=0.1, events=3)
     assert row == {"stage": None, "radius": 0.1, "events": 3, "seconds": None}
     Cost.write(tmp_path / "x.csv", [row])
     assert (tmp_path / "x.csv").read_text() == "stage,radius,events,seconds\n,0.1,3,\n"
@@ -39,7 +40,7 @@ def test_an_empty_row_has_every_column_and_nothing_in_it(tmp_path):
 def test_every_table_of_a_scene_is_known_and_makes_its_rows():
     declared = {
         table.name()
-        for table in vars(scene_tables).values()
+        for table in vars(tables).values()
         if isclass(table) and issubclass(table, Table)
     }
     assert declared - {"table"} == {*SCENE_TABLES}
@@ -52,7 +53,7 @@ def test_every_table_of_a_scene_is_known_and_makes_its_rows():
 
 # Files ----------------------------------------------------------------------------------------
 
-CHECK_ROW = Check.empty(
+CHECK_ROW = empty(Check, 
     comparison="area", quantity="right_wall_area", radius=0.1, method="monte_carlo", exact=1 / 3,
     z=-math.inf, p=0.0, bound=5, passed=False, independent=True, status="none-seen",
     test="exact-tail",
@@ -161,7 +162,7 @@ def test_a_truth_value_is_spelled_in_one_way(tmp_path):
 @pytest.mark.parametrize(
     ("module", "absent"),
     [
-        ("twodiscs.comparison.scene_tables", ("numpy", "scipy", "pandas")),
+        ("twodiscs.comparison.tables", ("numpy", "scipy", "pandas")),
         ("twodiscs.theory.exact", ("numpy", "scipy", "pandas")),
         ("twodiscs.comparison.check", ("scipy.stats", "pandas", "numba", "matplotlib")),
         ("twodiscs_paper.catalogue", ("numpy", "scipy", "mpmath", "numba", "matplotlib")),

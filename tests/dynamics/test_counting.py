@@ -44,29 +44,29 @@ def test_any_duration_is_unbiased():
 
 
 def test_what_is_not_watched_is_not_detected():
-    walls = runs.run_blocks(PAPER, ("right_wall", "any_wall"), 7, 0, 1, 32.0)
-    everything = runs.run_blocks(PAPER, EVENTS, 7, 0, 1, 32.0)
+    walls = runs.engine_of(PAPER).run_blocks(PAPER, ("right_wall", "any_wall"), 7, 0, 1, 32.0)
+    everything = runs.engine_of(PAPER).run_blocks(PAPER, EVENTS, 7, 0, 1, 32.0)
     hop = np.isin(EVENTS, HOPS)
     assert np.array_equal(walls[0][~hop], everything[0][~hop])
     assert not walls[0][hop].any()
-    bare = runs.run_blocks(PAPER, ("disc_collision",), 7, 0, 1, 32.0)
+    bare = runs.engine_of(PAPER).run_blocks(PAPER, ("disc_collision",), 7, 0, 1, 32.0)
     assert bare[0][EVENTS.index("disc_collision")] == everything[0][EVENTS.index("disc_collision")]
     assert not bare[0][np.isin(EVENTS, (*HOPS, *WALLS))].any()
 
 
 def test_accuracy_is_reached_or_the_budget_is_spent():
-    point = runs.count_events(PAPER, {"vertical_hop": 2e-3, "any_wall": 0.01}, 10**9, 1)
+    point = runs.CountingRun(PAPER, {"vertical_hop": 2e-3, "any_wall": 0.01}, 10**9, 1).run()
     assert all_reached(point)
     assert point.products.keys() == {
         "vertical_hop*vertical_hop", "vertical_hop*any_wall", "any_wall*any_wall"
     }  # fmt: skip
     mean = point.duration * point.replicas / point.counts["vertical_hop"]
     assert abs(mean / mean_times(PAPER)["vertical_hop"] - 1) <= 5 * 2e-3
-    spent = runs.count_events(PAPER, {"horizontal_hop": 1e-6}, 2 * 10**7, 1)
+    spent = runs.CountingRun(PAPER, {"horizontal_hop": 1e-6}, 2 * 10**7, 1).run()
     assert not all_reached(spent)
     # The last round may run over the budget by the scatter of the events in it, not by more.
     assert 1.8e7 < spent.events < 2.02e7
-    assert spent == runs.count_events(PAPER, {"horizontal_hop": 1e-6}, 2 * 10**7, 1)
+    assert spent == runs.CountingRun(PAPER, {"horizontal_hop": 1e-6}, 2 * 10**7, 1).run()
 
 
 def test_relative_errors_are_those_of_the_replicas():
@@ -80,7 +80,7 @@ def test_relative_errors_are_those_of_the_replicas():
 
 def test_a_blocked_hop_is_not_waited_for():
     scene = PAPER.with_radius(0.3)
-    point = runs.count_events(scene, {"horizontal_hop": 1e-9}, 10**9, 1)
+    point = runs.CountingRun(scene, {"horizontal_hop": 1e-9}, 10**9, 1).run()
     assert point.counts == {"horizontal_hop": 0}
     assert [*point.parts["all"]["sums"]] == [(0, 32)]
 

@@ -83,7 +83,7 @@ def test_rare_hops_have_their_exact_rate():
     """In a strip, with kicks before and after a start: none, one or several hops."""
     for rate in (3.0, 100.0):
         scene, hop = Scene(1.5, 1.0, 0.2495, friction=rate), "horizontal_hop"
-        point = runs.count_events(scene, {hop: 0.02}, 10**8, 7)
+        point = runs.CountingRun(scene, {hop: 0.02}, 10**8, 7).run()
         found = point.strips[hop].estimate()
         assert abs(found.value - exact.mean_times(scene)[hop]) <= 5 * found.stderr
         assert found.relative_stderr < 0.025

@@ -25,7 +25,7 @@ PAPER = Scene(1.5, 1.0, 0.2)
 @pytest.mark.parametrize("scene", [PAPER.with_radius(0.05), PAPER, slow(SCENES["field"])], ids=repr)
 def test_hop_intervals_have_the_exact_mean(event, scene):
     """In a field the box cannot be turned by a quarter: horizontal hops have separate starts."""
-    found = runs.hop_intervals(scene, event, 1_000_000, 9)
+    found = runs.IntervalRun(scene, event, 1_000_000, 9).run()
     assert abs(found.mean - mean_times(scene)[event]) <= 5 * found.stderr
     assert sum(found.equal.counts) + found.overflow == found.intervals >= 1_000_000
     assert math.frexp(found.bin_width)[0] == 0.5  # a power of two
@@ -35,7 +35,7 @@ def test_hop_intervals_have_the_exact_mean(event, scene):
 def test_hop_intervals_have_the_exact_density_at_zero(event, side):
     """p(0⁺) = 3√2 / (16 (side − 2r))."""
     scene = PAPER.with_radius(0.1)
-    found = runs.hop_intervals(scene, event, 1_000_000, 10)
+    found = runs.IntervalRun(scene, event, 1_000_000, 10).run()
     width, n = found.bin_width, found.intervals
     counts, squares = np.array(found.equal.counts[:2]), np.array(found.equal.squares[:2])
     error = np.sqrt(squares - counts**2 / found.chains) / (n * width)
@@ -94,7 +94,7 @@ MANY = {
 def test_intervals_of_many_have_the_mean_of_theory_or_monte_carlo(name):
     """Five sigma: the first interval of a replica, or one cut off at an end, would show."""
     scene, event = MANY[name]
-    found = runs.hop_intervals(scene, event, 2_000_000, 4)
+    found = runs.IntervalRun(scene, event, 2_000_000, 4).run()
     mean, error = mean_times(scene)[event], 0.0
     if mean is None:
         known, spread = (rates(scene, part) for part in insertions.sample(scene, 10**6, 5))

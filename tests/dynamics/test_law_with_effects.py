@@ -153,7 +153,7 @@ def test_a_trajectory_tells_the_same_events_as_the_ensemble(name):
             for disc in discs
         )
     seen["any_wall"] = sum(n for name, n in names.items() if name.startswith("wall"))
-    sums, _ = runs.run_blocks(scene, EVENTS, 3, 0, 1, 64.0, replicas=1, lanes=1)
+    sums, _ = runs.engine_of(scene).run_blocks(scene, EVENTS, 3, 0, 1, 64.0, replicas=1, lanes=1)
     counts = dict(zip(EVENTS, sums.tolist(), strict=True))
     assert {event: counts[event] for event in scene.events} == {
         event: seen[event] for event in scene.events

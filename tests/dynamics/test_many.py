@@ -15,8 +15,8 @@ from twodiscs.dynamics.runs import relative_errors
 from twodiscs.model.events import AXIS, EVENTS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial, insertions
-from twodiscs.theory import n_discs
-from twodiscs.theory.virial import rates, virial_sum, virial_weights
+from twodiscs.theory.virial import rates
+from twodiscs_paper.studies.more_discs.measure import known_derivatives, virial_sum, virial_weights
 
 
 def counted(scene, blocks, seed=1, replicas=REPLICAS, events=None):
@@ -70,7 +70,7 @@ def test_rates_are_exact(name):
     scene = (EXACT | COMPILED)[name]
     large = initial.large_grid(scene) is not None
     found, errors, covariance = counted(scene, 2 if large else 6, events=256 if large else None)
-    check(found, errors, rates(scene, n_discs.known_derivatives(scene)))
+    check(found, errors, rates(scene, known_derivatives(scene)))
     check_virial(scene, found, covariance, 0.05)
 
 

@@ -18,8 +18,7 @@ from twodiscs.dynamics.many import passages as of_many
 from twodiscs.dynamics.two import passages
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
-from twodiscs.theory import exact
-from twodiscs_paper.studies.passages.measure import by_time, of_order
+from twodiscs_paper.studies.passages.measure import by_time, of_order, passing_rate
 
 HOP = "horizontal_hop"
 TIMES = [0.2, 1.0, 5.0, 10.0]
@@ -82,7 +81,7 @@ EFFECTS = {
 def test_both_estimates_of_effects_agree(name):
     """By clusters and by κ(t), where passages are rare; corrected for those in the gap."""
     (hop, scene), gap = EFFECTS[name], 6.0
-    mean = 1 / exact.passing_rate(scene, hop)
+    mean = 1 / passing_rate(scene, hop)
     early = by_clusters(passages.cluster_sizes(scene, hop, gap, 128, 6)[0])
     (late,) = by_time(passages.hop_sums(scene, hop, [gap], 256, 7)[0])
     kappa, other = plateau(early, gap, mean, of_clusters), plateau(late, gap, mean, of_order)
@@ -96,14 +95,14 @@ def test_hops_on_a_ring_have_their_exact_rate(effects):
     scene = Scene(1.5, 1.0, 0.2, periodic="x", **effects)
     sums, _ = passages.hop_sums(scene, HOP, [20.0], 256, 8, on_surface=False)
     counts = sums[:, 2, 0] / (20.0 * passages.HOPS_OF_BLOCK)
-    five(counts.mean(), exact.passing_rate(scene, HOP), counts.std(ddof=1) / 16)
+    five(counts.mean(), passing_rate(scene, HOP), counts.std(ddof=1) / 16)
 
 
 def test_displacements_grow_as_the_correlations_say():
     """d⟨n²⟩/dt = Γ C(t), between t = 20 and 40 where C has its limit."""
     scene = Scene(1.5, 1.0, 0.22, periodic="x")
     sums, _ = passages.hop_sums(scene, HOP, [20.0, 40.0], 512, 9, on_surface=False)
-    rate = exact.passing_rate(scene, HOP)
+    rate = passing_rate(scene, HOP)
     grown = (sums[:, 1, 1] - sums[:, 1, 0]) / (20.0 * passages.HOPS_OF_BLOCK * rate)
     (due,) = by_time(passages.hop_sums(scene, HOP, [30.0], 512, 10)[0])
     error = grown.std(ddof=1) / math.sqrt(len(grown))

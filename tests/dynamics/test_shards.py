@@ -33,7 +33,7 @@ MANY = {
 
 
 def of_two(scene):
-    return lambda first, stop, **lanes: runs.run_blocks(
+    return lambda first, stop, **lanes: runs.engine_of(scene).run_blocks(
         scene, EVENTS, 3, first, stop, 8.0, replicas=100, **lanes
     )
 
@@ -88,10 +88,10 @@ effects = {"periodic": "x", "field": 0.3, "radius_ratio": 1.2, "mass_ratio": 2.0
 bent = Scene(1.5, 1.0, 0.2, moment_of_inertia=0.4, **effects)
 areas = ["volume", *(event + "_area" for event in EVENTS)]
 for point in (
-    runs.count_events(scene, {event: 0.02 for event in EVENTS}, 10**6, 11),
-    runs.hop_intervals(scene, "vertical_hop", 1, 11),
-    montecarlo.sample_point(scene, areas, 1, 0.02, 11),
-    runs.count_events(bent, {"vertical_hop": 0.02, "any_wall": 0.02}, 10**6, 11),
+    runs.CountingRun(scene, {event: 0.02 for event in EVENTS}, 10**6, 11).run(),
+    runs.IntervalRun(scene, "vertical_hop", 1, 11).run(),
+    sample_point(scene, areas, 1, 0.02, 11),
+    runs.CountingRun(bent, {"vertical_hop": 0.02, "any_wall": 0.02}, 10**6, 11).run(),
 ):
     print(content_of("", {}, {}, point.parts))
 scenes = [Scene(1.5, 1.0, 0.15, discs=3), Scene(2.3, 0.6, 0.18, discs=8)]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from effect_scenes import SCENES
 
-from twodiscs.comparison.scene_tables import Trajectory
+from twodiscs.comparison.tables import Trajectory
 from twodiscs.dynamics import trajectory
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene

@@ -15,7 +15,7 @@ from twodiscs.model.events import HOPS
 from twodiscs.model.two import LEAST_DISTANCE
 from twodiscs.sampling.starts import require_room
 from twodiscs.theory import exact
-from twodiscs.theory.weighted import CROSSINGS_PER_EVENT
+from twodiscs.theory.exact import CROSSINGS_PER_EVENT
 
 
 def decades(low, high):
@@ -49,13 +49,13 @@ def passes(scene, duration):
 @pytest.mark.parametrize("width", [1.0, 1.5])
 def test_too_close_to_the_largest_radius_dynamics_is_refused(width):
     box = Box(width, 1.0)
-    for run in (lambda scene: runs.count_events(scene, {"any_wall": 0.5}, 1, 1),
+    for run in (lambda scene: runs.CountingRun(scene, {"any_wall": 0.5}, 1, 1).run(),
                 lambda scene: trajectory.followed(scene, 1)):  # fmt: skip
         with pytest.raises(InputError, match=r"must not exceed .* for molecular dynamics"):
             run(box.scene(box.largest_radius * (1 - 1e-13)))
     # It holds at the closest radius: five standard errors.
     scene = box.scene(box.largest_radius * (1 - LEAST_DISTANCE))
-    found = runs.count_events(scene, {"disc_collision": 3e-4}, 10**8, 1)
+    found = runs.CountingRun(scene, {"disc_collision": 3e-4}, 10**8, 1).run()
     mean = found.counts["disc_collision"] / found.replicas / found.duration
     assert mean == pytest.approx(exact.rate(scene, "disc_collision"), rel=5 * 3e-4)
     # If each disc spans the short side, no digit is lost.
@@ -70,7 +70,7 @@ def test_the_work_of_a_replica_is_bounded(width, height, effects, share):
         require_room(scene)
     except InputError:
         return
-    events, leaves = passes(scene, runs.replica_duration(scene))
+    events, leaves = passes(scene, runs.engine_of(scene).replica_duration(scene))
     # A duration is rounded to a power of two.
     assert events <= 2**0.5 * lockstep.EVENTS_PER_REPLICA
     assert leaves <= 2**0.5 * lockstep.EVENTS_PER_REPLICA * CROSSINGS_PER_EVENT
@@ -81,7 +81,7 @@ def test_the_work_of_a_replica_is_bounded(width, height, effects, share):
 def test_starts_that_are_too_rare_are_refused(effects):
     box = Box(1.5, 1.0, effects)
     scene = box.scene(box.last_radius * 0.999)
-    for start in (lambda: runs.count_events(scene, {"any_wall": 0.1}, 1000, 1),
+    for start in (lambda: runs.CountingRun(scene, {"any_wall": 0.1}, 1000, 1).run(),
                   lambda: require_room(scene)):  # fmt: skip
         with pytest.raises(InputError, match="a scene with effects needs"):
             start()
@@ -133,7 +133,7 @@ def test_what_is_too_rare_to_be_drawn_is_waited_for_in_vain_and_that_ends(
 ):
     scene = Box(width, height, effects).scene(radius)
     assert strip.rare_hops(scene) == ()
-    point = runs.count_events(scene, dict.fromkeys(HOPS, 0.01), 10**6, 1)
+    point = runs.CountingRun(scene, dict.fromkeys(HOPS, 0.01), 10**6, 1).run()
     assert point.counts["horizontal_hop"] == 0
     assert point.events <= 10**6
 

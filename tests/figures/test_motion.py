@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from figure_cases import tables_of, unclear
 
-from twodiscs.comparison.scene_tables import Trajectory
+from twodiscs.comparison.tables import Trajectory
 from twodiscs.figures import motion, style
 from twodiscs.model.box import Box
 

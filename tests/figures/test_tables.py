@@ -10,10 +10,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from factory import empty
 from figure_cases import PAPER, bars, draw, points
 from matplotlib.patches import StepPatch
 
-from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.tables import SCENE_TABLES
 from twodiscs.comparison.transmission import box_time
 from twodiscs.figures import style
 from twodiscs.figures.style import LOOKS
@@ -42,7 +43,7 @@ def table(name):
     if name == "effects_cost":
         variants = ["plain", *dict.fromkeys(row["scene"] for row in table("effects"))]
         return [
-            TABLES[name].empty(variant=v, ratio=1 / (1 + i), instructions=4000 + i)
+            empty(TABLES[name], variant=v, ratio=1 / (1 + i), instructions=4000 + i)
             for i, v in enumerate(variants)
         ]
     folder = EXPECTED / "paper" if name in SCENE_TABLES else EXPECTED

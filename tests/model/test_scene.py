@@ -22,7 +22,7 @@ from scipy.sparse.csgraph import connected_components
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, WALLS
-from twodiscs.model.scene import REGIMES, Scene, check_two
+from twodiscs.model.scene import REGIMES, Scene
 from twodiscs.model.two import ENERGY
 
 
@@ -76,9 +76,6 @@ def test_scenes_of_two_discs_and_of_more_are_told_apart():
     assert [one.family for one in (plain, unequal, many)] == ["plain", "effects", "many"]
     assert (many.radii, many.masses) == ((0.15,) * 3, (1.0,) * 3)
     assert (unequal.radii, unequal.masses) == ((0.2, 0.2), (1.0, 2.0))
-    assert check_two(unequal, "shells") is unequal
-    with pytest.raises(InputError, match=r"^discs must be 2 for shells, not 3$"):
-        check_two(many, "shells")
 
 
 SCENES = [

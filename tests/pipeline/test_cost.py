@@ -3,10 +3,11 @@
 from itertools import pairwise
 
 import pytest
+from factory import empty
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from twodiscs.comparison.scene_tables import Cost, MeanTimes
+from twodiscs.comparison.tables import Cost, MeanTimes
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.load import load
 from twodiscs_paper.pipeline import cost
@@ -162,7 +163,7 @@ def test_a_build_says_which_accuracies_it_did_not_reach(tmp_path):
     folder.mkdir()
     assert cost.missed(tmp_path, DESCRIBED) == []
     rows = [
-        MeanTimes.empty(radius=r, event=e, target=1e-5, relative_stderr=error, status=s)
+        empty(MeanTimes, radius=r, event=e, target=1e-5, relative_stderr=error, status=s)
         for r, e, error, s in [
             (0.2, "any_wall", 0.9e-5, "reached"), (0.2, "top_wall", 1e-5, "reached"),
             (0.3, "any_wall", 2e-5, "budget"), (0.3, "top_wall", 3e-5, "budget"),
@@ -175,7 +176,7 @@ def test_a_build_says_which_accuracies_it_did_not_reach(tmp_path):
     )
     # The speed is that of the fastest job: the first ones compile.
     jobs = [
-        Cost.empty(stage="dynamics", radius=radius, events=events, seconds=seconds)
+        empty(Cost, stage="dynamics", radius=radius, events=events, seconds=seconds)
         for radius, events, seconds in ((0.2, 10**9, 10.0), (0.3, 2 * 10**9, 99.0))
     ]
     Cost.write(folder / "cost.csv", jobs)

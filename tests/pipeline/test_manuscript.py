@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from typst import TypstError
 
-from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.tables import SCENE_TABLES
 from twodiscs.figures import style
 from twodiscs_paper.captions import SCENE_FIGURES
 from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES

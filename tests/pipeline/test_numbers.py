@@ -9,14 +9,15 @@ import numpy as np
 import pytest
 import typst
 
-from twodiscs.comparison.scene_tables import SCENE_TABLES, MeanTimes, Theory
+from twodiscs.comparison.tables import SCENE_TABLES, MeanTimes, Theory
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.model.events import EVENTS
-from twodiscs.points.base import pieces_of, reached
+from twodiscs.points.base import reached
 from twodiscs.points.dynamics import DynamicsPoint
 from twodiscs_paper.catalogue import STUDY_TABLES, TABLES
 from twodiscs_paper.configuration.load import load, read
 from twodiscs_paper.pipeline.documents.manuscript import CONSTANTS
+from twodiscs_paper.pipeline.points import pieces_of, read_point
 
 PAPER = Path(__file__).resolve().parents[2] / "paper"
 SOURCE = (PAPER / "paper.typ").read_text()
@@ -313,7 +314,7 @@ def test_numbers_are_those_of_a_second_method(printed, expected, name):
 def test_the_long_run_is_what_its_shards_counted_and_agrees():
     folder = PAPER / "long_run" / "far"
     scene = load(read(folder / "config.yaml")).scenes[0]
-    point = DynamicsPoint.read(folder / "dynamics.json")
+    point = read_point(DynamicsPoint, folder / "dynamics.json")
     assert point.radius == scene.radii[0]
     theory = list(Theory.rows(scene.box, scene.radii))
     made = MeanTimes.rows(scene.box, theory, {"dynamics": [point]})

@@ -7,9 +7,10 @@ from pathlib import PurePosixPath
 
 import pytest
 from checkout import REPOSITORY
+from factory import empty
 from PIL import Image
 
-from twodiscs.comparison.scene_tables import Cost, MeanTimes
+from twodiscs.comparison.tables import Cost, MeanTimes
 from twodiscs_paper.pipeline.documents.report import (
     ERRORS,
     KEY,
@@ -50,7 +51,7 @@ def test_the_events_of_the_agreement_are_those_of_dynamics(tmp_path):
     for name in ("check", "grid"):
         shutil.copy(REPOSITORY / "paper" / "expected" / "paper" / f"{name}.csv", tmp_path / "paper")
     counts = {"dynamics": 7, "monte_carlo": 100}
-    rows = [Cost.empty(stage=stage, radius=0.1, events=n) for stage, n in counts.items()]
+    rows = [empty(Cost, stage=stage, radius=0.1, events=n) for stage, n in counts.items()]
     Cost.write(tmp_path / "paper" / "cost.csv", rows)
     assert agreement(tmp_path, {"name": "paper"})["events"] == 7
 
@@ -111,14 +112,14 @@ def test_the_section_on_accuracy_has_the_worst_error_and_the_time_of_others(tmp_
     assert accuracies(tmp_path, scene) == []
     (tmp_path / "a").mkdir()
     rows = [
-        MeanTimes.empty(radius=0.2, event=event, estimate=2.0, stderr=error, target=1e-2)
+        empty(MeanTimes, radius=0.2, event=event, estimate=2.0, stderr=error, target=1e-2)
         for event, error in (("any_wall", 0.001), ("top_wall", 0.02), ("right_wall", None))
     ]
     MeanTimes.write(tmp_path / "a" / "mean_times.csv", rows)
     assert accuracies(tmp_path, scene) == []
     # The job took three seconds, most of them to compile; at the speed of the other it takes one.
     jobs = [
-        Cost.empty(stage="dynamics", radius=radius, events=events, seconds=seconds)
+        empty(Cost, stage="dynamics", radius=radius, events=events, seconds=seconds)
         for radius, events, seconds in ((0.2, 10**7, 3.0), (0.3, 10**8, 10.0))
     ]
     Cost.write(tmp_path / "a" / "cost.csv", jobs)

@@ -10,11 +10,11 @@ import pytest
 from factory import BOX, POINTS, RADII, Laws, scenes, write
 from snakemake.iocontainers import Namedlist
 
-from twodiscs.comparison.scene_tables import SCENE_TABLES
-from twodiscs.dynamics.runs import run_of
+from twodiscs.comparison.tables import SCENE_TABLES
 from twodiscs.model.checks import InputError
 from twodiscs.points.base import digest, read_json, write_json
 from twodiscs_paper.pipeline import job
+from twodiscs_paper.pipeline.points import read_point, run_of
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "workflow" / "scripts"
 PARAMETERS = BOX.parameters()
@@ -59,7 +59,7 @@ def point(run, stage, output, shards=()):
     """Make a point, of ``shards`` if there are any."""
     params, where = {"box": PARAMETERS, "work": WORK[stage]}, {"stage": stage, "radius": "0.2"}
     run("point", params, where, {"shards": [*shards]}, point=output)
-    return POINTS[stage].read(output)
+    return read_point(POINTS[stage], output)
 
 
 def shards(run, stage, pieces):

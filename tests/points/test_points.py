@@ -15,6 +15,7 @@ from twodiscs.points.base import KEY, read_json, write_json
 from twodiscs.points.dynamics import StripCount
 from twodiscs.points.intervals import Bins
 from twodiscs.points.monte_carlo import Hits, InsertionPoint, MonteCarloPoint, Weights
+from twodiscs_paper.pipeline.points import read_point
 
 LAW = Laws(BOX.scene(0.1))
 RNG = np.random.default_rng(6)
@@ -48,13 +49,13 @@ RESULTS = {
 def test_a_saved_result_is_a_point_and_no_other_point(tmp_path, stage, name):
     result, path = RESULTS[stage](SCENES[name]), tmp_path / "a.json"
     result.save(path)
-    point = POINTS[stage].read(path)
+    point = read_point(POINTS[stage], path)
     assert point.radius == SCENES[name].radius
     assert point == type(point).of(point.radius, result.parts)
     assert point.parts.keys() == result.parts.keys()
     for other in POINTS.keys() - {stage}:
         with pytest.raises(InputError, match=rf"must be a point of {other}, but was made by"):
-            POINTS[other].read(path)
+            read_point(POINTS[other], path)
 
 
 def places(content, above=()):
@@ -85,7 +86,7 @@ def test_a_file_that_was_edited_anywhere_is_refused_in_one_sentence(tmp_path, va
         ):
             td.load_result(path)
         with pytest.raises(InputError, match="is not what its job wrote; delete it"):
-            POINTS["dynamics"].read(path)
+            read_point(POINTS["dynamics"], path)
 
 
 def test_a_point_gives_estimates_by_name():

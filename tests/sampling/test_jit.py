@@ -127,7 +127,7 @@ import sys, numba
 from twodiscs.model.box import Box
 from twodiscs.dynamics import runs
 scene = Box(1.5, 1.0).scene(0.2)
-runs.run_blocks(scene, ("any_wall",), 1, 0, 0, 1.0)
+runs.engine_of(scene).run_blocks(scene, ("any_wall",), 1, 0, 0, 1.0)
 print("scipy.linalg" in sys.modules)
 import numpy as np
 import scipy.linalg.cython_blas

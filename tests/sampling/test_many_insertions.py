@@ -7,7 +7,7 @@ import pytest
 
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import insertions
-from twodiscs.theory import n_discs
+from twodiscs_paper.studies.more_discs.measure import known_derivatives
 
 GASES = [
     Scene(1.5, 1.0, 0.2, discs=2),
@@ -24,7 +24,7 @@ GASES = [
 def test_volume_and_areas_are_exact(scene):
     """Five sigma of each."""
     found, errors = insertions.sample(scene, 200_000, 2)
-    for value, error, true in zip(found, errors, n_discs.known_derivatives(scene), strict=True):
+    for value, error, true in zip(found, errors, known_derivatives(scene), strict=True):
         assert abs(value - true) <= 5 * error
         assert error > 0 or true == 0
 

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from effect_scenes import SCENES
+from factory import sample_point
 from marks import slow
 from sampling.uniformity import FALSE_ALARM
 from scipy.special import bdtr
@@ -37,7 +38,7 @@ def assert_binomial(hits, samples, probability):
 def test_hits_have_their_exact_probability(width, height, radius, shell):
     """Also for thick shells, whose bias is large: the expectation is that of the shell."""
     scene = Scene(width, height, radius)
-    point = montecarlo.sample_point(scene, EVERYTHING, SAMPLES, shell, 21)
+    point = sample_point(scene, EVERYTHING, SAMPLES, shell, 21)
     samples, found = point.samples, point.quantities
     volume = found["volume"]
     assert_binomial(volume.hits, samples, exact.volume(scene) / volume.measure)
@@ -49,7 +50,7 @@ def test_hits_have_their_exact_probability(width, height, radius, shell):
 
 def test_joint_hits_of_two_walls():
     """Disc 1 in the corner, where the shells of two walls overlap, and disc 2 out of its way."""
-    point = montecarlo.sample_point(PAPER, ["any_wall_area"], SAMPLES, 0.3, 1)
+    point = sample_point(PAPER, ["any_wall_area"], SAMPLES, 0.3, 1)
     assert point.quantities.keys() == {"right_wall_area", "top_wall_area"}
     epsilon = point.quantities["right_wall_area"].epsilon
     assert epsilon == point.quantities["top_wall_area"].epsilon
@@ -66,11 +67,11 @@ def test_joint_hits_of_two_walls():
 
 
 def test_only_what_is_asked_for_is_sampled():
-    point = montecarlo.sample_point(PAPER, ["volume"], 1, 0.02, 1)
+    point = sample_point(PAPER, ["volume"], 1, 0.02, 1)
     assert point.quantities.keys() == {"volume"}
     assert point.samples == montecarlo.BLOCK
     assert point.right_and_top is None
-    point = montecarlo.sample_point(PAPER, ["vertical_hop_area"], 1, 0.02, 1)
+    point = sample_point(PAPER, ["vertical_hop_area"], 1, 0.02, 1)
     assert point.quantities.keys() == {"vertical_hop_area"}
 
 
@@ -94,7 +95,7 @@ def test_shells_at_the_ends_of_a_long_box_keep_to_the_room_along_it():
 
 
 def test_a_radius_on_the_threshold_has_a_shell():
-    point = montecarlo.sample_point(PAPER.with_radius(0.25), ["horizontal_hop_area"], 1, 0.02, 1)
+    point = sample_point(PAPER.with_radius(0.25), ["horizontal_hop_area"], 1, 0.02, 1)
     assert point.quantities["horizontal_hop_area"].epsilon == 0.02 * 0.25
 
 
@@ -124,7 +125,7 @@ def everything(scene):
 @pytest.mark.parametrize("scene", [*SCENES.values(), *MORE_SCENES], ids=repr)
 @pytest.mark.parametrize("shell", [0.05, 0.8])
 def test_weighted_hits_have_their_exact_probability(scene, shell):
-    point = montecarlo.sample_point(scene, everything(scene), 2 * montecarlo.BLOCK, shell, 21)
+    point = sample_point(scene, everything(scene), 2 * montecarlo.BLOCK, shell, 21)
     samples, found = point.samples, point.quantities
     assert found.keys() == set(everything(scene))
     assert point.right_and_top is None
@@ -141,6 +142,4 @@ def test_the_sampler_suits_the_scene():
     samples = 2 * montecarlo.BLOCK
     assert montecarlo.plan(scene, samples - 1) == (montecarlo.weighted, samples)
     arguments = scene, ["volume", "any_wall_area"], samples, 0.1, 5
-    assert montecarlo.SamplingRun(*arguments).run() == montecarlo.sample_point(*arguments)
-    with pytest.raises(ValueError, match="scene must be plain for conditioned draws"):
-        montecarlo.conditioned_point(*arguments)
+    assert montecarlo.SamplingRun(*arguments).run() == sample_point(*arguments)

@@ -16,6 +16,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.points.base import reached
 from twodiscs.sampling import rounds
+from twodiscs_paper.pipeline import points
 
 PAPER = Box(1.5, 1.0)
 UNEQUAL = Box(1.5, 1.0, {"radius_ratio": 0.6, "mass_ratio": 3.0})
@@ -23,8 +24,8 @@ UNEQUAL = Box(1.5, 1.0, {"radius_ratio": 0.6, "mass_ratio": 3.0})
 
 def done_in_pieces(run, per_piece):
     """Return the pieces of a run, last one first, by way of JSON."""
-    ends = rounds.pieces(run.planned, per_piece)[::-1]
-    return rounds.joined(run, through_json({each: run.work(*each) for each in ends}))
+    ends = points.pieces(run.planned, per_piece)[::-1]
+    return points.joined(run, through_json({each: run.work(*each) for each in ends}))
 
 
 def fabricated(error, budget=math.inf, block_events=1000):
@@ -47,12 +48,12 @@ def fabricated(error, budget=math.inf, block_events=1000):
 
 @given(st.integers(0, 10**6), st.integers(4, 20))
 def test_pieces_are_those_of_an_absolute_grid(blocks, k):
-    found = rounds.pieces(blocks, 2**k)
+    found = points.pieces(blocks, 2**k)
     assert [first for first, _ in found] == [0, *(stop for _, stop in found[:-1])][: len(found)]
     assert all(first % 2**k == 0 and 0 < stop - first <= 2**k for first, stop in found)
     assert sum(stop - first for first, stop in found) == blocks
     # All but the last one are pieces of more blocks, too.
-    assert found[:-1] == rounds.pieces(2 * blocks, 2**k)[: max(0, len(found) - 1)]
+    assert found[:-1] == points.pieces(2 * blocks, 2**k)[: max(0, len(found) - 1)]
 
 
 @given(st.floats(0.001, 1e12))
@@ -72,13 +73,13 @@ def test_pieces_that_miss_or_repeat_a_block_are_refused(ends):
     run, counts = fabricated(0.01)
     parts = {(a, b): [counts[a:b].sum()] for a, b in ends}
     with pytest.raises(ValueError, match=r"pieces must cover blocks 0 to 1000 without gap or over"):
-        rounds.joined(run, parts)
+        points.joined(run, parts)
 
 
 def test_sums_beyond_64_bits_are_exact():
     run, _ = fabricated(0.01)
     pieces = {(500 * i, 500 * (i + 1)): [np.array([2**62, i])] for i in range(2)}
-    (sums,), _ = reached(through_json(rounds.joined(run, pieces)))
+    (sums,), _ = reached(through_json(points.joined(run, pieces)))
     assert sums.tolist() == [2**63, 1]
     (sums,), _ = reached(through_json({(0, 1): [sums]}))
     assert sums.tolist() == [2**63, 1]
@@ -171,7 +172,7 @@ def test_counts_in_pieces_are_those_of_their_blocks_and_reach_what_is_asked(box,
     assert found[0] == found[1]
     blocks = found[0].replicas // REPLICAS
     assert blocks == run.parts["all"].planned
-    sums, _ = runs.run_blocks(scene, [*TARGET], 3, 0, blocks, found[0].duration)
+    sums, _ = runs.engine_of(scene).run_blocks(scene, [*TARGET], 3, 0, blocks, found[0].duration)
     assert [*found[0].counts.values()] == [sums[EVENTS.index(event)] for event in found[0].counts]
     assert all_reached(found[0])
     for hop, one in found[0].strips.items():

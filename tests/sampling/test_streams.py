@@ -5,13 +5,13 @@ import math
 import numpy as np
 from sampling.uniformity import assert_uniform
 
+from twodiscs.sampling.separations import second_largest_of
 from twodiscs.sampling.streams import (
     GOLDEN,
     exponential,
     largest_of,
     next_bits,
     open_stream,
-    second_largest_of,
     signed_uniform,
     splitmix,
     uniform,

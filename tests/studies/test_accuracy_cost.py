@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from factory import empty
 from figure_cases import points
 
 from twodiscs.figures import style
@@ -174,7 +175,7 @@ def test_rows_are_those_of_all_methods_and_of_all_distances(given, monkeypatch):
     exact_one = SimpleNamespace(quantity="all", method="exact", c=0.0, floor=0.0)
     of_cost = SimpleNamespace(prices=[price, exact_one])
     monkeypatch.setattr(costs.twodiscs, "cost", lambda scene: of_cost, raising=False)
-    rows = [AccuracyCost.empty(**row) for row in AccuracyCost.rows(seconds=7.0, seed=1)]
+    rows = [empty(AccuracyCost, **row) for row in AccuracyCost.rows(seconds=7.0, seed=1)]
     assert len(of(rows, part="error")) == len(costs.methods(1))
     assert sum(seconds for seconds, _ in given) == pytest.approx(7)
     by_radius = of(rows, part="radius")
@@ -218,7 +219,7 @@ def rows(long):
         )
         for distance in costs.DISTANCES
     ]  # fmt: skip
-    made = [AccuracyCost.empty(**row) for row in [*costs.exact_rows(), *prices]]
+    made = [empty(AccuracyCost, **row) for row in [*costs.exact_rows(), *prices]]
     return build + made
 
 

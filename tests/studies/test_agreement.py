@@ -3,9 +3,9 @@
 import math
 
 import pytest
-from factory import written
+from factory import empty, written
 
-from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.tables import SCENE_TABLES
 from twodiscs.model.events import HOPS
 from twodiscs_paper.studies.agreement import measure
 from twodiscs_paper.studies.agreement.study import Agreement
@@ -35,7 +35,7 @@ def check_rows():
         {"comparison": "flux"}, {"passed": None},
     ):  # fmt: skip
         rows.append(start | other)
-    return [SCENE_TABLES["check"].empty(**row) for row in rows]
+    return [empty(SCENE_TABLES["check"], **row) for row in rows]
 
 
 def histogram_rows():
@@ -45,7 +45,7 @@ def histogram_rows():
     bins = {"left": 1.0, "right": 1.0 + width, "intervals": n, "event": "vertical_hop"}
     bins |= {"radius": 0.4}
     return [
-        SCENE_TABLES["hop_histogram"].empty(**bins | row)
+        empty(SCENE_TABLES["hop_histogram"], **bins | row)
         for row in (
             {"bins": "wide", "count": n // 2, "stderr": 3 * error, "density": 9.0},
             {"bins": "equal", "count": 10, "stderr": 100 * error, "density": 1.3},

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from factory import empty
 from scipy.integrate import quad
 from scipy.stats import norm
 
@@ -170,7 +171,7 @@ def test_positions_stay_uniform(program):
 
 
 def test_the_table_is_that_of_its_counts(kept, counts):
-    made = [Brownian.empty(**row) for row in Brownian.rows(counts)]
+    made = [empty(Brownian, **row) for row in Brownian.rows(counts)]
     assert len(made) == len(kept)
     for one, other in zip(made, kept, strict=True):
         for column, value in other.items():

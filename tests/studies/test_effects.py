@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from factory import Laws, written
+from factory import Laws, empty, written
 from numba.core.errors import NumbaError
 
-from twodiscs.comparison.scene_tables import MeanTimes, Theory
+from twodiscs.comparison.tables import MeanTimes, Theory
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.trajectory import events_of
@@ -20,11 +20,12 @@ from twodiscs.model.events import EVENTS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.starts import draw_states, start_sampler
 from twodiscs.sampling.streams import open_stream
-from twodiscs.theory import exact, laws
+from twodiscs.theory import exact
 from twodiscs_paper.configuration.load import load, read
 from twodiscs_paper.studies.effects import cost, figure
 from twodiscs_paper.studies.effects import measure as effects
 from twodiscs_paper.studies.effects.study import SCENES, Effects, EffectsCost, EffectsCurves
+from twodiscs_paper.studies.single import tail_constant
 
 NAMES = [*SCENES]
 FILES = [Path(__file__).parents[2] / "config" / "scenes" / f"{name}.yaml" for name in NAMES]
@@ -147,7 +148,7 @@ def test_rows_of_shares(rows):
     assert rows[5]["estimate"] is None
     # P(none within t) is the integral of P(T > s)/τ beyond t, with P → C/s³.
     scene, s = PLAIN.scene(0.24), np.geomspace(100.0, 1e7, 4001)
-    tail = laws.tail_constant(scene, "disc_collision") / s**3
+    tail = tail_constant(scene, "disc_collision") / s**3
     assert smooth["plain"] == pytest.approx(
         np.trapezoid(tail * s, np.log(s)) / exact.mean_times(scene)["disc_collision"], rel=1e-4
     )
@@ -162,7 +163,7 @@ def costs():
     """Return rows of effects_cost.csv: ratios of 0.5, 0.6, … in their order."""
     ratios = RATIOS | {name: 0.5 + 0.1 * i for i, name in enumerate((*NAMES, *cost.MORE))}
     given = enumerate((ratios | {"all effects": 0.007}).items())
-    return [EffectsCost.empty(variant=v, ratio=r, instructions=4000 + i) for i, (v, r) in given]
+    return [empty(EffectsCost, variant=v, ratio=r, instructions=4000 + i) for i, (v, r) in given]
 
 
 def test_curves_go_through_the_exact_ratios(rows, monkeypatch):

@@ -17,10 +17,10 @@ from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.many import insertions
-from twodiscs.theory import exact
 from twodiscs.theory.virial import rates
 from twodiscs_paper.studies.estimates import LinearFit, mean_of
 from twodiscs_paper.studies.passages import figure, figure_diffusion, figure_transmission, measure
+from twodiscs_paper.studies.passages.measure import passing_rate
 from twodiscs_paper.studies.passages.models import file
 from twodiscs_paper.studies.passages.study import Passages
 
@@ -112,7 +112,7 @@ def test_two_discs_in_a_file_move_as_their_hops_are_correlated():
     due = next(row for row in rows if row["quantity"] == "diffusion" and row["method"] == "hops")
     assert due["radius"] == scene.radius
     moved, hops = walked(Scene(1.5, 1.0, scene.radius, discs=2, periodic="x"), 64.0, 4096, 2)
-    assert abs(hops.value - exact.passing_rate(scene, HOP)) < 5 * hops.stderr
+    assert abs(hops.value - passing_rate(scene, HOP)) < 5 * hops.stderr
     assert abs(moved.value - due["estimate"]) < 5 * math.hypot(moved.stderr, due["stderr"])
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from factory import written
+from factory import conditioned_point, sample_point, written
 from mpmath import mpf
 
 from twodiscs.dynamics.law import Law, law_of
@@ -121,8 +121,8 @@ QUANTITIES = ["volume", *(f"{event}_area" for event in EVENTS)]
 def test_conditioned_agrees_with_rejection():
     """Also in the number of samples in the shells of both walls."""
     values = []
-    for sample, number in (("conditioned_point", 2**20), ("sample_point", 2**22)):
-        point = getattr(montecarlo, sample)(PAPER.scene(0.36), QUANTITIES, number, 0.3, 1)
+    for sample, number in ((conditioned_point, 2**20), (sample_point, 2**22)):
+        point = sample(PAPER.scene(0.36), QUANTITIES, number, 0.3, 1)
         parts = {q: (p.hits, p.measure) for q, p in point.quantities.items()}
         parts["both"] = point.right_and_top, point.quantities["volume"].measure
         values.append({q: (m * n / point.samples, n) for q, (n, m) in parts.items()})

@@ -16,8 +16,8 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
-from twodiscs.theory.laws import tail_constant
 from twodiscs_paper.studies.estimates import mean_of
+from twodiscs_paper.studies.single import tail_constant
 from twodiscs_paper.studies.tails import measure as tails
 from twodiscs_paper.studies.tails.study import Tails
 

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from factory import written
+from factory import empty, written
 
-from twodiscs.comparison.scene_tables import MeanTimes
+from twodiscs.comparison.tables import MeanTimes
 from twodiscs.figures import style
 from twodiscs.model.box import Box
 from twodiscs.theory import exact
@@ -26,8 +26,13 @@ def times_of(event, radii, noise=0.0, relative=1e-3, box=PAPER, seed=2):
         time = exact.mean_times(box.scene(radius))[event]
         value = time * (1 + noise * relative * rng.standard_normal())
         rows.append(
-            MeanTimes.empty(
-                radius=radius, event=event, exact=time, estimate=value, stderr=relative * time
+            empty(
+                MeanTimes,
+                radius=radius,
+                event=event,
+                exact=time,
+                estimate=value,
+                stderr=relative * time,
             )
         )
     return rows
@@ -36,8 +41,7 @@ def times_of(event, radii, noise=0.0, relative=1e-3, box=PAPER, seed=2):
 def passages_of(name, box, rows, last=None):
     """Return rows of distributions.csv: first passages half as long again as the mean times."""
     return [
-        Distributions.empty(
-            scene=name, width=box.width, height=box.height, radius=row["radius"],
+        empty(Distributions, scene=name, width=box.width, height=box.height, radius=row["radius"],
             event=row["event"], quantity="first_passage", last=last, exact_mean=row["exact"],
             estimate=1.5 * row["exact"], stderr=row["stderr"], count=9,
         )

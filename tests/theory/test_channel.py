@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from twodiscs.model.scene import Scene
-from twodiscs.theory import channel, n_discs, three
+from twodiscs.theory import channel, three
 from twodiscs.theory.virial import Derivatives
+from twodiscs_paper.studies.more_discs.measure import known_derivatives
+from twodiscs_paper.studies.passages.models.file import limit
 
 BOUND = 1e-10
 
@@ -24,7 +26,7 @@ def agree(found, expected, rel):
 @pytest.mark.parametrize("width", [1.5, 1.0, 6.0])
 def test_two_discs_have_the_plain_theory(width):
     scene = Scene(width, 0.6, 0.18, discs=2)
-    agree(channel.derivatives(scene), n_discs.known_derivatives(scene), BOUND)
+    agree(channel.derivatives(scene), known_derivatives(scene), BOUND)
 
 
 @pytest.mark.parametrize(
@@ -115,7 +117,7 @@ def test_hops_of_many_discs_are_those_of_the_sum_without_a_series(monkeypatch):
 def test_many_discs_tend_to_the_largest_eigenvalue():
     """At the same force only the two ends differ, by 1/N."""
     height, radius, force = 0.6, 0.18, 20.0
-    ideal = channel.limit(height, radius, force)
+    ideal = limit(height, radius, force)
     differences = []
     for discs in (64, 128, 256):
         scene = Scene(ideal.length * discs + radius, height, radius, discs=discs)

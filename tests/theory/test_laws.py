@@ -10,7 +10,8 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.theory import exact
-from twodiscs.theory.laws import small_radius_time, tail_constant, threshold_time
+from twodiscs.theory.laws import small_radius_time, threshold_time
+from twodiscs_paper.studies.single import tail_constant
 from twodiscs_paper.studies.stability.closed_form import closed_form
 from twodiscs_paper.studies.thresholds.measure import leading_law
 

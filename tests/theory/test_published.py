@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from twodiscs.model.scene import Scene
-from twodiscs.theory import channel, plain, three
+from twodiscs.theory import plain, three
+from twodiscs_paper.studies.passages.models.file import limit
 
 
 def cluster_integrals(side):
@@ -46,7 +47,7 @@ def test_residue_at_close_packing_in_a_channel(share):
     least = math.sqrt((1 - across) * (1 + across))
 
     def residue(force):
-        return force * (channel.limit(1 + across, 0.5, force).length - least)
+        return force * (limit(1 + across, 0.5, force).length - least)
 
     extrapolated = 2 * residue(2e5) - residue(1e5)
     assert extrapolated == pytest.approx(2, rel=1e-7)

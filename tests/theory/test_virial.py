@@ -8,7 +8,8 @@ import pytest
 from effect_scenes import SCENES
 
 from twodiscs.model.scene import Scene
-from twodiscs.theory import exact, n_discs, virial
+from twodiscs.theory import exact, virial
+from twodiscs_paper.studies.more_discs.measure import known_derivatives, virial_sum, virial_weights
 
 PAPER = Scene(1.5, 1.0, 0.2)
 
@@ -102,9 +103,9 @@ KNOWN = [
 
 @pytest.mark.parametrize("scene", KNOWN, ids=repr)
 def test_the_virial_theorem_holds(scene):
-    found = virial.rates(scene, n_discs.known_derivatives(scene, hops=False))
-    size = found["right_wall"] * virial.virial_weights(scene)["right_wall"]
-    assert virial.virial_sum(scene, found) == pytest.approx(1, abs=1e-11 * (1 + size))
+    found = virial.rates(scene, known_derivatives(scene, hops=False))
+    size = found["right_wall"] * virial_weights(scene)["right_wall"]
+    assert virial_sum(scene, found) == pytest.approx(1, abs=1e-11 * (1 + size))
 
 
 def test_overlap_on_a_ring():

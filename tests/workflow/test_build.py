@@ -63,7 +63,7 @@ def test_on_one_core_the_bytes_are_the_same(complete, tmp_path_factory):
 
 def test_a_formula_off_by_one_percent_fails_the_check_and_is_named(built):
     wrong = '"exact": 1.01 * x if q == "disc_collision_time" else x}'
-    built.replace("src/twodiscs/comparison/scene_tables.py", '"exact": x}', wrong)
+    built.replace("src/twodiscs/comparison/tables.py", '"exact": x}', wrong)
     # Points do not change: exact values are made again, and all comparisons with them.
     again = "--rerun-triggers", "mtime", "--forcerun", "exact"
     run = built.snakemake("--cores", "2", *again, "--", "check", passes=False)

@@ -78,7 +78,9 @@ def study_figures(study):
 # The sources that jobs run, by groups. An edit reruns all jobs that have its group among their inputs.
 PHYSICS = ("model", "theory", "sampling", "dynamics", "points")
 CODE = {
-    "physics": modules(*(f"twodiscs/{part}/**/*.py" for part in PHYSICS)),
+    "physics": modules(
+        *(f"twodiscs/{part}/**/*.py" for part in PHYSICS), "twodiscs_paper/pipeline/points.py"
+    ),
     "tables": modules("twodiscs/comparison/**/*.py"),
     "figures": modules(
         *(f"twodiscs/figures/*.{kind}" for kind in ("py", "mplstyle", "html")),
@@ -93,6 +95,7 @@ for name, study in STUDIES.items():
     shared = (
         "twodiscs_paper/study.py",
         "twodiscs_paper/studies/estimates.py",
+        "twodiscs_paper/studies/single.py",
         "twodiscs_paper/reference.py",
         CURVES,
     )

@@ -3,11 +3,10 @@
 import time
 
 import twodiscs.sampling.jit  # noqa: F401 - start saves collections of what is imported before it
-from twodiscs.dynamics.runs import KINDS, run_of
 from twodiscs.model.box import Box
-from twodiscs.points.base import content_of, pieces_of, read_seconds, write_json
-from twodiscs.sampling.rounds import joined
+from twodiscs.points.base import content_of, write_json
 from twodiscs_paper.pipeline.job import start
+from twodiscs_paper.pipeline.points import KINDS, joined, pieces_of, read_seconds, run_of
 
 start(snakemake.log[0])
 wildcards, shards = snakemake.wildcards, snakemake.input.get("shards", [])

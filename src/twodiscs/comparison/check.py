@@ -154,9 +154,8 @@ def comparisons(box, volume, areas, times, histogram, dynamics, monte_carlo=()):
             rows.append(_flux(box.scene(row["radius"]), row, point, derived))
     for (radius, event), bins in groupby(histogram, key=lambda row: (row["radius"], row["event"])):
         row = next(bins)
-        values = _normal_values(
-            radius, row["exact_mean"], row["mean"], row["mean_stderr"], row["z"]
-        )
+        mean = (row[name] for name in ("exact_mean", "mean", "mean_stderr", "z"))
+        values = _normal_values(radius, *mean)
         if row["exact_mean"] is None:
             values["status"] = "counted"
         rows.append(_comparison("hop_interval", f"{event}_interval", "intervals", values))

@@ -460,9 +460,6 @@ def cost(
     check_fraction("shell", shell)
     run = CountingRun(check_scene(scene), dict.fromkeys(scene.events, 1.0), 10**15, 0)
     measured = pilots(run)
-    prices = [
-        *_prices_of_times(scene, measured),
-        *_prices_of_samples(scene, shell),
-        *_price_of_exact(scene),
-    ]
+    prices = [*_prices_of_times(scene, measured), *_prices_of_samples(scene, shell)]
+    prices += _price_of_exact(scene)
     return Cost(scene, errors, prices, measured)

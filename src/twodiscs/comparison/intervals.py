@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from twodiscs.comparison.measurements import Measurement, frame_of, table_of, theory_rows
 from twodiscs.comparison.result import Result, note_of_number, progress_bar, seed_of
-from twodiscs.comparison.scene_tables import HopHistogram
+from twodiscs.comparison.tables import HopHistogram
 from twodiscs.model.checks import InputError, answering, check_choice, check_count
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene, check_scene
@@ -99,18 +99,17 @@ class Intervals(Result):
             point.intervals, status, "time",
         )  # fmt: skip
         density = point.estimate("density_at_zero")
-        few = min(self.counts[:2]) < MIN_EVENTS
-        exact = None if not scene.is_plain else laws.density_at_zero(scene, self.hop)
+        exact = laws.density_at_zero(scene, self.hop) if scene.is_plain else None
         at_zero, error, status = density.value, density.stderr, "extrapolated"
-        if few:
+        if min(self.counts[:2]) < MIN_EVENTS:
             error, status = None, "too-few"
-        if _events_of_pair(scene) * point.bin_width > RESOLVED_EVENTS:
-            at_zero = error = None
-            status = "not-resolved"
-        self.at_zero = Measurement(
-            "density_at_zero",
-            at_zero, error, exact, None, sum(self.counts[:2]), status, "1/time",
-        )  # fmt: skip
+        from twodiscs.dynamics.runs import engine_of
+
+        events_of_pair = engine_of(scene).expected_event_rate(scene) * 2 / scene.discs
+        if events_of_pair * point.bin_width > RESOLVED_EVENTS:
+            at_zero, error, status = None, None, "not-resolved"
+        values = at_zero, error, exact, None, sum(self.counts[:2]), status, "1/time"
+        self.at_zero = Measurement("density_at_zero", *values)
 
     def __hash__(self):
         return hash((self.scene, self.hop))
@@ -143,13 +142,6 @@ class Intervals(Result):
         """
         names = "left", "right", "count", "density", "stderr"
         return frame_of([{n: row[n] for n in names} for row in self._bins], index="left")
-
-
-def _events_of_pair(scene):
-    """Return the rate of wall hits and collisions that two of the discs have on average."""
-    from twodiscs.dynamics.runs import expected_event_rate
-
-    return expected_event_rate(scene) * 2 / scene.discs
 
 
 @answering
@@ -211,9 +203,8 @@ def run_intervals(scene, hop, number, seed, name, cores=1, progress=None, kept=N
     number, stream = check_count("number", number), seed_of(scene, "intervals", seed, name)
     from twodiscs.dynamics.runs import BUDGET, IntervalRun
 
-    settings = {
-        "hop": hop, "number": number, "seed": int(seed), "name": name, "budget": budget or BUDGET,
-    }  # fmt: skip
+    settings = {"hop": hop, "number": number, "seed": int(seed), "name": name}
+    settings["budget"] = budget or BUDGET
     run = IntervalRun(scene, hop, number, stream, settings["budget"])
     with progress_bar(progress, f"intervals r = {scene.radius:g}") as progress:
         point = run.run(progress, cores, kept)

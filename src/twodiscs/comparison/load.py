@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import twodiscs
-from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.tables import SCENE_TABLES
 from twodiscs.model.box import Box, scene_of
 from twodiscs.model.checks import InputError, answering, quote
 from twodiscs.points.base import digest, read_json, with_arrays
@@ -166,15 +166,14 @@ def load_result(path: str | PathLike[str]) -> Measurements | Any:
     """
     if not isinstance(path, str | PathLike) or "\0" in str(path):
         raise InputError(f"path must be the path of a file, not {quote(path)}")
+    path = str(path)
     try:
         content = read_json(path)
     except OSError as error:
-        raise InputError(
-            f"path must be a file to read, not {str(path)!r}: {error.strerror}"
-        ) from None
+        raise InputError(f"path must be a file to read, not {path!r}: {error.strerror}") from None
     except InputError:
         raise InputError(
-            f"path must be a file that save() wrote, or a point of a build, not {str(path)!r}"
+            f"path must be a file that save() wrote, or a point of a build, not {path!r}"
         ) from None
     # Numbers may change with the second digit of a version, not with the third.
     known, version = twodiscs.__version__.rpartition(".")[0], content.get("twodiscs")

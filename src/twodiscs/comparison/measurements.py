@@ -16,8 +16,7 @@ import numpy as np
 
 from twodiscs.comparison.quantities import Quantities
 from twodiscs.comparison.result import Result, note_of_number, progress_bar, seed_of
-from twodiscs.comparison.scene_tables import Areas, MeanTimes, Theory, Volume, shortfall
-from twodiscs.comparison.table import quantity_of
+from twodiscs.comparison.tables import Areas, MeanTimes, Theory, Volume, quantity_of, shortfall
 from twodiscs.model.box import Box
 from twodiscs.model.checks import (
     AccuracyWarning,
@@ -32,7 +31,7 @@ from twodiscs.model.checks import (
 )
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene, check_scene, why_absent
-from twodiscs.points.estimates import normal_quantile
+from twodiscs.points.estimates import Estimate
 from twodiscs.points.monte_carlo import WALL_AREAS, wall_weights
 
 if TYPE_CHECKING:
@@ -155,10 +154,7 @@ class Measurement:
         >>> low < volume.value < high
         True
         """
-        half = normal_quantile(confidence)
-        if self.stderr is None or self.value is None:
-            return None
-        return self.value - half * self.stderr, self.value + half * self.stderr
+        return Estimate(self.value, self.stderr, self.count).interval(confidence)
 
     def __float__(self) -> float:
         if self.value is None:
@@ -293,7 +289,7 @@ class Measurements(Result, Mapping[str, Measurement]):
         from uncertainties import correlated_values
 
         names, means, covariances = self.point.moments()
-        known = [k for k, name in enumerate(names) if self._has_error(name)]
+        known = [k for k, n in enumerate(names) if n in self and self[n].stderr is not None]
         if not known:
             return {}
         numbers = correlated_values(means[known], covariances[np.ix_(known, known)])
@@ -311,9 +307,6 @@ class Measurements(Result, Mapping[str, Measurement]):
 
     def _again(self, settings, options):
         return MAKERS[self.kind](self.scene, **settings, **options, kept=self.parts)
-
-    def _has_error(self, name):
-        return name in self and self[name].stderr is not None
 
     def __getitem__(self, name: str) -> Measurement:
         return self._measurements[name]
@@ -498,15 +491,13 @@ def run_simulation(
     budget = None if budget is None else check_count("budget", budget)
     stream = seed_of(scene, "dynamics", seed, name)
     settings = {"seed": int(seed), "budget": budget, "events": tracked, "name": name}
-    if timed:
-        from twodiscs.dynamics.runs import TimedRun
+    from twodiscs.dynamics.runs import CountingRun, TimedRun
 
+    if timed:
         duration = check_length("duration", duration)
         settings |= {"error": None, "duration": duration}
         run = TimedRun(scene, target, budget, stream, duration)
     else:
-        from twodiscs.dynamics.runs import CountingRun
-
         settings["error"] = target if errors is error else check_error("error", error)
         run = CountingRun(scene, target, budget, stream)
     with progress_bar(progress, f"simulate r = {scene.radius:g}") as progress:
@@ -598,10 +589,8 @@ def run_sampling(scene, samples, seed, quantities, shell, name, cores=1, progres
     quantities = _named("quantities", "quantity", quantities, allowed, scene)
     samples = check_count("samples", samples)
     shell, stream = check_fraction("shell", shell), seed_of(scene, "monte_carlo", seed, name)
-    settings = {
-        "samples": samples, "seed": int(seed), "quantities": quantities, "shell": shell,
-        "name": name,
-    }  # fmt: skip
+    settings = {"samples": samples, "seed": int(seed), "quantities": quantities}
+    settings |= {"shell": shell, "name": name}
     from twodiscs.sampling.montecarlo import SamplingRun
     from twodiscs.sampling.starts import require_free_fraction
 

@@ -1,4 +1,4 @@
-"""Averages over the invariant measure of the values of a user's function, with their errors."""
+"""States of the invariant measure, and averages over it of the values of a user's function."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from twodiscs.model.checks import InputError, answering, as_list, check_count, f
 from twodiscs.model.many import LARGE
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.sampling.rounds import in_threads
-from twodiscs.sampling.starts import as_records, components, states
+from twodiscs.sampling.starts import MOST_NUMBERS, as_records, components, states
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,6 +28,55 @@ BLOCK = 4096
 
 #: The most numbers of the states of a block at several times that are in memory together.
 KEPT = 2**22
+
+
+@answering
+def starts(
+    scene: Scene,
+    number: float,
+    *,
+    seed: int = 1,
+    name: str | None = None,
+    progress: bool | None = None,
+) -> np.ndarray:
+    """Draw independent states of the invariant measure: an array with named columns.
+
+    If N discs are too dense for rejection, each state is the end of a chain of trial moves.
+
+    Parameters
+    ----------
+    scene : Scene
+        The box, the discs and their effects.
+    number : float
+        The number of states, an integer from 1 to 1.5e7 for two plain discs. All states together
+        have at most 1.2e8 numbers.
+    seed, name, progress : optional
+        See ``help(twodiscs)``.
+
+    Returns
+    -------
+    structured array, shape (number,)
+        Fields x1, y1, x2, y2 are the centres, from the centre of the box; u1, v1, u2, v2 are the
+        velocities. Balls also have z1, z2, w1, w2, and rough discs s1, s2, the speeds of their
+        surfaces. N discs have x1 … xN, then y, u, v and, if they are rough, s.
+
+    Raises
+    ------
+    InputError
+        For a number out of range, and if initial states cannot be drawn.
+
+    Examples
+    --------
+    >>> states = td.starts(scene, 1000, seed=1)
+    >>> bool(abs(states["x1"].mean()) < 5 * 0.32 / 1000**0.5)  # the centre of the box is the mean
+    True
+    """
+    most = MOST_NUMBERS // len(components(check_scene(scene)))
+    number = check_count("number", number, most=most)
+    seed = seed_of(scene, "trajectory", seed, name)
+
+    with progress_bar(progress, f"starts r = {scene.radius:g}") as progress:
+        return as_records(scene, states(scene, number, seed, progress=progress))
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,10 +122,8 @@ class Observed:
     def __eq__(self, other):
         if type(other) is not type(self):
             return NotImplemented
-        return (self.scene, self.settings) == (other.scene, other.settings) and all(
-            np.array_equal(getattr(self, name), getattr(other, name), equal_nan=True)
-            for name in ("times", "mean", "stderr")
-        )
+        same = (self.scene, self.settings) == (other.scene, other.settings)
+        return same and self.frame().equals(other.frame())
 
     __hash__ = None
 
@@ -97,15 +144,12 @@ class Observed:
         """
         import pandas as pd
 
-        columns = {}
-        for name, values in (("mean", self.mean), ("stderr", self.stderr)):
-            flat = values.reshape(len(values), -1)
-            numbered = [f"{name}_{k}" for k in range(flat.shape[1])]
-            heads = [f"{n}_stderr" if name == "stderr" else n for n in self.names] or (
-                numbered if len(numbered) > 1 else [name]
-            )
-            columns |= dict(zip(heads, flat.T, strict=True))
-        return pd.DataFrame(columns, index=pd.Index(self.times, name="time"))
+        mean, stderr = (values.reshape(len(values), -1) for values in (self.mean, self.stderr))
+        names = [*self.names, *(f"{name}_stderr" for name in self.names)]
+        if not names:
+            numbers = [f"_{k}" for k in range(mean.shape[1])] if mean.shape[1] > 1 else [""]
+            names = [f"{name}{number}" for name in ("mean", "stderr") for number in numbers]
+        return pd.DataFrame(np.hstack([mean, stderr]), pd.Index(self.times, name="time"), names)
 
     def __str__(self) -> str:
         note = f"\n\n{self.note}" if self.note else ""
@@ -376,7 +420,5 @@ def diffusion(
         slopes = np.diff(values, axis=1, prepend=before[:, None]) / (2 * steps)
         return np.stack([values, slopes], axis=2)
 
-    names = "squared_displacement", "diffusion"
-    return averages(
-        scene, squared, times, replicas, seed, name, cores, progress, names, with_slopes
-    )
+    more = cores, progress, ("squared_displacement", "diffusion"), with_slopes
+    return averages(scene, squared, times, replicas, seed, name, *more)

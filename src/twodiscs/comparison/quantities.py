@@ -5,16 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Unpack
 
-from twodiscs.comparison.scene_tables import Theory
+from twodiscs.comparison.tables import Theory
 from twodiscs.model.box import Box
-from twodiscs.model.checks import (
-    LARGEST_INTEGER,
-    InputError,
-    answering,
-    check_length,
-    did_you_mean,
-    quote,
-)
+from twodiscs.model.checks import InputError, answering, check_length, did_you_mean, quote
 from twodiscs.model.events import EVENTS
 from twodiscs.theory import exact as theory
 
@@ -179,7 +172,7 @@ def exact_table(
     rows += [{"radius": radius, "regime": why} for radius, why in refused.items()]
     frame = pd.DataFrame(rows).set_index("radius")
     parts = [row.get("ergodic_components") for row in rows]
-    if any(part is None or part > LARGEST_INTEGER for part in parts):
+    if any(part is None or part.bit_length() > 63 for part in parts):
         frame["ergodic_components"] = pd.Series(parts, frame.index, object)
     times = [f"{event}_time" for event in EVENTS]
     known = ["volume", *(f"{event}_area" for event in EVENTS), *times]
@@ -208,7 +201,6 @@ def scenes_of(box, radii):
         except InputError as error:
             refused[radius] = str(error)
     if not scenes:
-        raise InputError(
-            [*refused.values(), "radii must have at least one radius, but has none"][0]
-        )
+        why = [*refused.values(), "radii must have at least one radius, but has none"]
+        raise InputError(why[0])
     return scenes, refused

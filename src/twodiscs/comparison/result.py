@@ -6,7 +6,7 @@ import sys
 from contextlib import contextmanager
 from html import escape
 from os import PathLike
-from typing import TYPE_CHECKING, ClassVar, Self
+from typing import ClassVar, Self
 
 import twodiscs
 from twodiscs.model.box import Box, key, parameters_of, stream_seed
@@ -14,19 +14,15 @@ from twodiscs.model.checks import InputError, quote, writing_to
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.points.base import content_of, write_json
 
-if TYPE_CHECKING:
-    import pandas as pd
-
 
 class Printed:
-    """The base of objects that print as their ``scene``, a table and maybe a ``note``."""
+    """The base of objects that print as their ``scene``, a table and maybe a ``note``.
+
+    A class has a method ``_texts``, which returns the texts of the printed table.
+    """
 
     scene: Scene
     note: str | None = None
-
-    def _texts(self) -> pd.DataFrame:
-        """Return the texts of the printed table."""
-        raise NotImplementedError
 
     def __str__(self) -> str:
         parts = self.scene, self._texts().to_string(index=False), self.note
@@ -45,7 +41,8 @@ class Result(Printed):
 
     ``settings`` are its arguments beside the scene, {name: value}, with the seed and the error that
     was asked for; ``version`` is the version of the package. ``parts`` are the parts of its run
-    (see ``points.base``), from which it goes on.
+    (see ``points.base``), from which it goes on. A class has a method ``_again(settings, options)``
+    that returns the result of these ``settings`` and uses the sums of this one.
     """
 
     kind: ClassVar[str]
@@ -109,10 +106,6 @@ class Result(Printed):
                 f"{' or '.join(f'{name}=' for name in names)}"
             )
         return self._again(self.settings | larger, {"cores": cores, "progress": progress})
-
-    def _again(self, settings, options):
-        """Return the result of these ``settings``, which uses the sums of this one."""
-        raise NotImplementedError
 
     def to_dict(self) -> dict[str, object]:
         """Return the result as ``save`` writes it.

@@ -143,11 +143,6 @@ def mean_time_z(total, squares, replicas, duration, exact, mean=None):
     return _signed(size, expected * replicas - total), "cluster-bound"
 
 
-def chi2_p(chi2, degrees):
-    """Return the probability of a larger χ² with ``degrees`` of freedom."""
-    return float(scipy.special.gammaincc(degrees / 2, chi2 / 2))
-
-
 def bonferroni_bound(comparisons, alarm):
     """Return the |z| that one of ``comparisons`` exceeds randomly with probability ≤ ``alarm``."""
     return float(-scipy.special.ndtri(alarm / (2 * comparisons)))

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from twodiscs.comparison.result import progress_bar, seed_of
-from twodiscs.comparison.scene_tables import trajectory_columns
+from twodiscs.comparison.tables import trajectory_columns
 from twodiscs.dynamics.trajectory import followed
 from twodiscs.model.box import parameters_of, scene_of
 from twodiscs.model.checks import InputError, answering, as_list, quote, writing_to
@@ -161,11 +161,9 @@ class Trajectory(pd.DataFrame):
         scene = self.scene
         letters, discs = letters[: len(scene.axes)], range(1, scene.discs + 1)
         names = [f"{letter}{disc}" for disc in discs for letter in letters]
-        missing = [name for name in names if times is None and name not in self]
+        missing = ", ".join(name for name in names if times is None and name not in self)
         if missing:
-            raise InputError(
-                f"trajectory must have all of its columns, but has no {', '.join(missing)}"
-            )
+            raise InputError(f"trajectory must have all of its columns, but has no {missing}")
         columns = np.stack([np.asarray(states[name], float) for name in names], axis=1)
         return columns.reshape(-1, scene.discs, len(letters))
 
@@ -203,14 +201,12 @@ class Trajectory(pd.DataFrame):
         scene = self.scene
         at = self["time"].to_numpy() if times is None else np.atleast_1d(as_list(times))
         centres, velocities = self.positions(times), self.velocities(times)
-        discs, flat = scene.discs, len(scene.axes) == 2
-        radii, masses = scene.radii, scene.masses
+        discs, radii, masses = scene.discs, scene.radii, scene.masses
         sides = [scene.side(axis) for axis in scene.axes]
-        if flat:
+        if len(sides) == 2:
             sides.append(2 * max(radii))
-            centres, velocities = (
-                np.pad(a, ((0, 0), (0, 0), (0, 1))) for a in (centres, velocities)
-            )
+            flat = (0, 0), (0, 0), (0, 1)
+            centres, velocities = np.pad(centres, flat), np.pad(velocities, flat)
         centres = centres + np.array(sides) / 2
         lattice = " ".join(repr(float(side)) for side in np.diag(sides).flat)
         periodic = " ".join("T" if axis in scene.periodic else "F" for axis in "xyz")
@@ -329,16 +325,12 @@ def trajectory(
     seed = seed_of(scene, "trajectory", seed, name)
     with progress_bar(progress, f"trajectory r = {scene.radius:g}") as progress:
         rows = followed(scene, seed, start, duration, progress)
-    times, events, *discs, states = zip(*rows, strict=True)
+    times, events, first, second, states = zip(*rows, strict=True)
     known = dict(zip(components(scene), np.array(states).T, strict=True))
     known |= {"time": times, "event": events}
-    known |= {
-        name: pd.array(of, "Int64") for name, of in zip(("first", "second"), discs, strict=True)
-    }
+    known |= {"first": pd.array(first, "Int64"), "second": pd.array(second, "Int64")}
     by_disc = sorted(components(scene), key=lambda name: int(name[1:]))
-    names = dict.fromkeys(
-        name for name in (*trajectory_columns(scene.discs), *by_disc) if name in known
-    )
-    frame = Trajectory({name: known[name] for name in names})
+    names = dict.fromkeys((*trajectory_columns(scene.discs), *by_disc))
+    frame = Trajectory({name: known[name] for name in names if name in known})
     frame.attrs["scene"] = parameters_of(scene)
     return frame

@@ -13,8 +13,8 @@ from twodiscs.comparison.result import Result, note_of_number, progress_bar, str
 from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK
 from twodiscs.dynamics.runs import chains_of, engine_of
 from twodiscs.model.box import key, stream_seed
-from twodiscs.model.checks import answering, check_count
-from twodiscs.model.events import AXIS
+from twodiscs.model.checks import answering, check_choice, check_count
+from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.points.base import reached
 from twodiscs.points.estimates import MIN_EVENTS, Estimate
@@ -96,9 +96,8 @@ def by_total(sums, replicas):
     """
     net, square = sums[:2] / replicas
     errors = 2 * np.sqrt((square - net**2) / replicas)
-    return [
-        Estimate(1 + 2 * float(n), float(e), replicas) for n, e in zip(net, errors, strict=True)
-    ]
+    pairs = zip(net.tolist(), errors.tolist(), strict=True)
+    return [Estimate(1 + 2 * value, error, replicas) for value, error in pairs]
 
 
 def are_rare(scene, hop, mean):
@@ -231,9 +230,8 @@ class Transmission(Result):
         import pandas as pd
 
         rows = [(t, e.value, e.stderr) for t, e in zip(self.times, self.curve, strict=True)]
-        return pd.DataFrame(rows, columns=["time", "kappa", "stderr"], dtype=float).set_index(
-            "time"
-        )
+        frame = pd.DataFrame(rows, columns=["time", "kappa", "stderr"], dtype=float)
+        return frame.set_index("time")
 
     def _texts(self) -> pd.DataFrame:
         """Return the texts of the printed table, one row for each quantity."""
@@ -348,7 +346,7 @@ def transmission(
 
 def run_transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None):
     """Return the ``Transmission`` of ``transmission``; the parts ``kept`` are not done again."""
-    passages_of(check_scene(scene)).require_coefficient(scene, hop)
+    passages_of(check_scene(scene)).require_coefficient(scene, check_choice("hop", hop, HOPS))
     blocks = -(-check_count("hops", hops, most=10**9) // HOPS_OF_BLOCK)
     mean, gap = exact.mean_times(scene)[hop], quiet_time(scene, hop)
     neighbour_mean, others = passages_of(scene).neighbours(scene, hop)

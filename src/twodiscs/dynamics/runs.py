@@ -21,16 +21,9 @@ import numpy as np
 
 from twodiscs.dynamics.ensemble import RETURNS, nearest_power_of_two
 from twodiscs.dynamics.two import lockstep, returns, strip
-from twodiscs.model.box import key, stream_seed
-from twodiscs.model.checks import (
-    InputError,
-    check_choice,
-    check_error,
-    check_integer,
-    format_number,
-)
-from twodiscs.model.events import EVENTS, HOPS
-from twodiscs.model.scene import Scene, check_scene, why_absent
+from twodiscs.model.checks import InputError, format_number
+from twodiscs.model.events import EVENTS
+from twodiscs.model.scene import Scene, why_absent
 from twodiscs.points.dynamics import DynamicsPoint, simulated_events
 from twodiscs.points.intervals import BINS, GRAIN, IntervalsPoint, wide_edges
 from twodiscs.sampling.rounds import Run, SequentialRun, fixed, on_grid
@@ -43,63 +36,21 @@ CHAINS, BUDGET = 256, 10**11
 #: The work of a day, the most without a budget, in events of the plain ensemble: 1e8 a second.
 DAY = 86400 * 10**8
 
-#: The function of the face that does the work of a stage.
-KINDS = {"monte_carlo": "sample", "dynamics": "simulate", "intervals": "intervals"}
-
-
-def run_of(stage, scene, settings):
-    """Return the run of a ``stage`` for a ``Scene``: monte_carlo, dynamics or intervals.
-
-    ``settings`` are the arguments of its function of the face. Only the module of the stage is
-    imported.
-    """
-    given = dict(settings)
-    seed = stream_seed(given.pop("seed"), given.pop("name"), stage, key(scene.radius))
-    if stage == "monte_carlo":
-        from twodiscs.sampling.montecarlo import SamplingRun
-
-        return SamplingRun(scene, seed=seed, **given)
-    if stage == "dynamics":
-        return CountingRun(scene, given["error"], given["budget"], seed)
-    return IntervalRun(scene, given["hop"], given["number"], seed, given["budget"])
-
-
 # Counts -----------------------------------------------------------------------------------------
 
 
 def engine_of(scene):
     """Return the module that counts the events of a ``Scene``: of two discs, or of many."""
-    if check_scene(scene).discs == 2:
+    if scene.discs == 2:
         return lockstep
     from twodiscs.dynamics.many import engine
 
     return engine
 
 
-def expected_event_rate(scene):
-    """Return the wall hits and disc collisions per unit of time, exactly if the rate is known.
-
-    For more than two discs it may be an estimate.
-    """
-    return engine_of(scene).expected_event_rate(scene)
-
-
-def replica_duration(scene):
-    """Return the time T of one replica, a power of two."""
-    return engine_of(scene).replica_duration(scene)
-
-
-def run_blocks(scene, events, seed, first, stop, duration, **shape):
-    """Count ``events`` in the blocks ``first`` … ``stop`` − 1 of the stream ``seed``.
-
-    A block is some initial states (``block_replicas``), each followed for ``duration``. Returns
-    (sums, products): Σ N_e (n) and Σ N_e N_f for e ≤ f (n, n), int64, in the order of EVENTS.
-    """
-    return engine_of(scene).run_blocks(scene, events, seed, first, stop, duration, **shape)
-
-
-def count_events(scene, target, budget, seed):
-    """Count the events of a ``Scene`` in independent replicas until each is known well enough.
+@dataclass(frozen=True)
+class CountingRun(Run):
+    """Counts of the events of a ``Scene`` in independent replicas until each is known well enough.
 
     ``target`` maps each tracked event to the relative standard error asked for (0 < target ≤ 1);
     blocked hops are counted, but their error is ignored. ``budget`` is the largest number of wall
@@ -108,16 +59,7 @@ def count_events(scene, target, budget, seed):
 
     Hops that are rare because of a neck are also counted in strips (``strip``). The budget is
     divided in proportion to the events that each error needs.
-
-    Returns a ``DynamicsPoint``. Raises ``InputError`` for an unknown event or a number out of
-    range.
     """
-    return CountingRun(scene, target, budget, seed).run()
-
-
-@dataclass(frozen=True)
-class CountingRun(Run):
-    """``count_events`` in blocks, with checked arguments."""
 
     scene: Scene
     target: dict
@@ -125,16 +67,6 @@ class CountingRun(Run):
     seed: int
 
     def __post_init__(self):
-        check_scene(self.scene)
-        if not isinstance(self.target, dict) or not self.target:
-            raise InputError(
-                f"target must name at least one event, with its error, not {self.target!r}"
-            )
-        for event, target in self.target.items():
-            check_error(f"target of {check_choice('event', event, EVENTS)}", target)
-        if self.budget is not None:
-            check_integer("budget", self.budget)
-        check_integer("seed", self.seed, 0)
         require_room(self.scene)
 
     @property
@@ -320,8 +252,9 @@ def recorded(scene, event, seed, first, stop, going):
     return record(scene, event, seed, first, stop, CHAINS, bins, sums, going), sums
 
 
-def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
-    """Draw intervals between hops of one kind, each one exact, and count them in bins.
+@dataclass(frozen=True)
+class IntervalRun(Run):
+    """Intervals between hops of one kind, each one exact, counted in bins.
 
     ``event`` is a hop that the ``Scene`` allows; ``intervals`` is the least number of intervals,
     within the ``budget`` of wall and disc events. Chains of ``RETURNS`` successive intervals start
@@ -329,16 +262,10 @@ def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
     every interval of a chain has the law of the interval between hops. Intervals within a chain are
     correlated, chains are independent.
 
-    Returns an ``IntervalsPoint``, whose bins have a power of two near τ/16 as width. Chains of more
-    than two discs differ in their number of intervals. Raises ``InputError`` for a hop that is
-    unknown or blocked, for one whose mean time is not known, or for a number out of range.
+    Bins have a power of two near τ/16 as width. Chains of more than two discs differ in their
+    number of intervals. Raises ``InputError`` for a hop that is blocked, and for one whose mean
+    time is not known.
     """
-    return IntervalRun(scene, event, intervals, seed, budget).run()
-
-
-@dataclass(frozen=True)
-class IntervalRun(Run):
-    """``hop_intervals`` in blocks, with checked arguments."""
 
     scene: Scene
     event: str
@@ -347,14 +274,10 @@ class IntervalRun(Run):
     budget: int = BUDGET
 
     def __post_init__(self):
-        scene = check_scene(self.scene)
-        check_choice("event", self.event, HOPS)
+        scene = self.scene
         if not scene.is_possible(self.event):
             why = why_absent(scene, self.event) or f" is blocked at radius {scene.radius!r}"
             raise InputError(f"event {self.event!r} has no intervals{why}")
-        check_integer("seed", self.seed, 0)
-        check_integer("budget", self.budget)
-        check_integer("intervals", self.intervals)
         require_room(scene)
         if not self._blocks:
             raise InputError(
@@ -376,11 +299,6 @@ class IntervalRun(Run):
         wanted = -(-self.intervals // self._each)
         return min(wanted, int(self.budget / (self._each * self._events)))
 
-    @property
-    def _grain(self):
-        """The unit in which the times of chains are integers, the finest that doubles have."""
-        return _width(self.scene, self.event) * GRAIN
-
     @cached_property
     def _going(self):
         """A flag that long kernels read: false when no thread waits for their result."""
@@ -398,7 +316,8 @@ class IntervalRun(Run):
         def work(first, stop):
             totals, sums = recorded(self.scene, self.event, self.seed, first, stop, self._going)
             totals, *numbers = np.atleast_2d(totals)
-            times = [int(time) for time in totals / self._grain]
+            # Integers in the finest unit that doubles have.
+            times = [int(time) for time in totals / (_width(self.scene, self.event) * GRAIN)]
             moments = [sum(times), sum(time * time for time in times)]
             for number in numbers:
                 n = [int(each) for each in number]

@@ -5,8 +5,7 @@ from itertools import islice, repeat
 import numpy as np
 
 from twodiscs.dynamics.two import path
-from twodiscs.model.checks import InputError, check_integer, check_length, format_number
-from twodiscs.model.scene import check_scene
+from twodiscs.model.checks import InputError, check_length, format_number
 from twodiscs.model.two import ENERGY
 from twodiscs.sampling.rounds import in_threads
 from twodiscs.sampling.starts import MOST_NUMBERS, ROUNDING, components, given_state, states
@@ -29,7 +28,7 @@ def path_of(scene):
     block)`` returns the kicks of the states of a block, from the streams of ``seed``; they go on
     from one call to the next, and are None without friction.
     """
-    if check_scene(scene).discs == 2:
+    if scene.discs == 2:
         return path
     from twodiscs.dynamics.many import engine
 
@@ -49,7 +48,7 @@ def events_of(scene, state, duration, seed=0):
 def state_of(scene, start):
     """Return ``start`` as a state of the ``Scene``, in the form that ``events_of`` takes.
 
-    ``start`` is one of ``sampling.starts.records``, or as many numbers. On periodic axes any image
+    ``start`` is one of ``starts.as_records``, or as many numbers. On periodic axes any image
     serves, and it stays. Raises ``InputError`` for anything else, for discs that overlap or lie
     outside, and for another energy than 1/2.
     """
@@ -99,7 +98,6 @@ def followed(scene, seed, start=None, duration=None, progress=None):
     ``MOST_EVENTS``. ``progress``, if given, is called now and then with the time that it has
     reached, and the ``duration``.
     """
-    seed = check_integer("seed", seed, 0)
     rate = path_of(scene).trajectory_rate(scene)
     most = min(MOST_EVENTS, MOST_NUMBERS / len(components(scene)))
     if duration is None:

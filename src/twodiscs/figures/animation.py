@@ -110,7 +110,8 @@ class Stage:
         beneath = BOTTOM + STRIP + GAP
         more = panels.of_radius(radius)
         up = 0 if panels.is_short(box, radius) else self.above
-        heading = LARGER * panels.heading_inches(box, more) + up / 72
+        lines = panels.heading(box, more)
+        heading = LARGER * panels.LINE * (len(lines) - 1) + up / 72
         self.figure = new_figure(beneath + inches * height + TOP + heading, ACROSS)
         self.figure.set_dpi(DPI)
         self.spare = spare
@@ -121,8 +122,7 @@ class Stage:
         else:
             drawing.rectangle(self.box, -x, x, -y, y, width=1.2)
         above = {"xycoords": "axes fraction", "ha": "left", "va": "bottom", "fontsize": 9}
-        text = ",\n".join(panels.heading(box, more))
-        drawing.label(self.box, text, (0, 1), (-72 * spare, 5 + up), **above)
+        drawing.label(self.box, ",\n".join(lines), (0, 1), (-72 * spare, 5 + up), **above)
         self.strip = panels.add_panel(self.figure, BOTTOM, STRIP, LEFT, ACROSS - LEFT - RIGHT)
         times = self.path(self.times[0], self.times[-1])
         self.strip.set(xlim=(times[0], times[-1]), xlabel="time $t$")
@@ -351,8 +351,6 @@ def animate(box, radius, rows, paths):
             ffmpeg()
         with writing_to(path):
             os.stat(Path(path).parent)  # raises for a folder that does not exist
-    if not rows:
-        raise InputError("trajectory must have rows, but is empty")
     stage = (StageOfMany if box.family == "many" else Stage)(box, radius, rows)
     canvas = stage.figure.canvas
     for artist in stage.moving.values():

@@ -129,9 +129,7 @@ def _cylinder(axes, half_length, radius):
         if facing > 0:
             corners = [at(angle, -1), at(later, -1), at(later, 1), at(angle, 1)]
             colour = tuple(dark + (light - dark) * facing)
-            axes.add_patch(
-                Polygon(corners, facecolor=colour, edgecolor=colour, lw=0.3, clip_on=False)
-            )
+            axes.add_patch(Polygon(corners, color=colour, lw=0.3, clip_on=False))
     for end in (-1, 1):
         # The two halves of an end lie in two faces of the prism.
         for first, normal in ((-pi / 2, _end_normal(end, True)), (pi / 2, _end_normal(end, False))):

@@ -40,9 +40,8 @@ def add_axes(figure, left, bottom, inches, extent):
     """
     x0, x1, y0, y1 = extent
     across, up = figure.get_size_inches()
-    axes = figure.add_axes(
-        (left / across, bottom / up, inches * (x1 - x0) / across, inches * (y1 - y0) / up)
-    )
+    size = inches * (x1 - x0) / across, inches * (y1 - y0) / up
+    axes = figure.add_axes((left / across, bottom / up, *size))
     axes.set(xlim=(x0, x1), ylim=(y0, y1))
     axes.set_axis_off()
     return axes
@@ -68,13 +67,6 @@ def arrow(axes, tail, head, style="-|>", colour=BLACK, width=0.7, size=7, **opti
     properties = {"arrowstyle": style, "color": colour, "linewidth": width, "mutation_scale": size}
     properties |= {"shrinkA": 0, "shrinkB": 0}
     axes.annotate("", head, tail, arrowprops=properties, annotation_clip=False, **options)
-
-
-def dimension(axes, start, end, text, offset, **options):
-    """Draw a dimension line, its text ``offset`` points from its middle."""
-    arrow(axes, start, end, "<|-|>", width=0.5, size=5)
-    middle = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2)
-    label(axes, text, middle, offset, **options)
 
 
 def line(axes, points, colour=GREY, width=0.5, style="-", **options):
@@ -120,7 +112,8 @@ def dimensions(axes, at, stops, texts, offset, marked=True, beyond=0, **options)
     for stop in stops if marked else ():
         line(axes, [at(stop, near), at(stop, far + beyond * point)], BLACK, 0.4)
     for (start, stop), text in zip(pairwise(stops), texts, strict=True):
-        dimension(axes, at(start, far), at(stop, far), f"${text}$", offset, **options)
+        arrow(axes, at(start, far), at(stop, far), "<|-|>", width=0.5, size=5)
+        label(axes, f"${text}$", at((start + stop) / 2, far), offset, **options)
 
 
 def disc(axes, number, centre, radius):

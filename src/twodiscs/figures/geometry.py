@@ -33,7 +33,12 @@ def draw_model(box):
 
     drawing.rectangle(axes, -right, right, -top, top, width=1.2)
     drawing.rectangle(axes, -a, a, -b, b, edge=GREY, width=0.6, linestyle=(0, (4, 2.5)))
-    _origin(axes, 0.14 * min(width, height))
+    # The axes x and y at the centre of the box.
+    length = 0.14 * min(width, height)
+    for head, name, offset in (((length, 0), "$x$", (4, -3)), ((0, length), "$y$", (-4, 2))):
+        drawing.arrow(axes, (0, 0), head, width=0.6, size=6)
+        drawing.label(axes, name, head, offset)
+    drawing.label(axes, "$0$", (0, 0), (-4, -4))
     for number, position, speed in zip((1, 2), CENTRES, VELOCITIES, strict=True):
         centre = (position[0] * a, position[1] * b)
         _disc(axes, number, centre, radius, (radius * speed[0], radius * speed[1]))
@@ -47,14 +52,6 @@ def draw_model(box):
     ):
         drawing.dimensions(axes, at, stops, [text], offset, beyond=4, rotation=turn)
     return figure
-
-
-def _origin(axes, length):
-    """Draw the axes x and y at the centre of the box."""
-    for head, name, offset in (((length, 0), "$x$", (4, -3)), ((0, length), "$y$", (-4, 2))):
-        drawing.arrow(axes, (0, 0), head, width=0.6, size=6)
-        drawing.label(axes, name, head, offset)
-    drawing.label(axes, "$0$", (0, 0), (-4, -4))
 
 
 def _disc(axes, number, centre, radius, velocity):
@@ -159,9 +156,8 @@ def _map(axes, box):
         drawing.label(axes, f"${long}/{short}={shape:g}$", (last - 0.25, 0.46), (-4, 0), ha="right")
     axes.set(xlim=(1, last), ylim=(0, 0.6), xlabel=f"${long}/{short}$", ylabel=f"$r/{short}$")
     axes.xaxis.set_major_locator(MultipleLocator(0.5))
-    drawing.label(
-        axes, "(b)", (0, 1), (2 - 72 * MAP_LEFT, 3), ha="left", va="top", xycoords="axes fraction"
-    )
+    corner = {"xycoords": "axes fraction", "ha": "left", "va": "top"}
+    drawing.label(axes, "(b)", (0, 1), (2 - 72 * MAP_LEFT, 3), **corner)
     clear = 2.3 if shape > 2.45 else 2.9
     drawing.label(axes, "both hops", (clear, 0.125))
     drawing.label(axes, f"{hops} hops", (clear, 0.375))
@@ -305,9 +301,8 @@ def draw_shells(box):
     square = drawing.add_axes(figure, left, SHELL_BELOW, side / (2 * b), (-b, b, -b, b))
     _hop(square, b, epsilon)
     extent = (0, sqrt(2) * a, 0, sqrt(2) * b)
-    quarter = drawing.add_axes(
-        figure, left + side + SHELL_GAP, SHELL_BELOW, side / (sqrt(2) * b), extent
-    )
+    left, inches = left + side + SHELL_GAP, side / (sqrt(2) * b)
+    quarter = drawing.add_axes(figure, left, SHELL_BELOW, inches, extent)
     _collision(quarter, a, b, radius, epsilon)
     return figure
 

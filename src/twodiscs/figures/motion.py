@@ -7,20 +7,8 @@ from matplotlib import colormaps
 from matplotlib.colors import to_rgb
 from matplotlib.ticker import MaxNLocator
 
-from twodiscs.figures import panels
-from twodiscs.figures.style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    SERIES,
-    SKY,
-    VERMILLION,
-    name_of,
-    new_figure,
-)
+from twodiscs.figures import panels, style
+from twodiscs.figures.style import BLACK, BLUE, GREY, LOOKS, SERIES, VERMILLION, name_of, new_figure
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.theory import laws
 
@@ -70,7 +58,8 @@ def draw_trajectory(box, rows, radius=None):
         axes.set(xlabel="time $t$", ylabel=f"${axis}_2-{axis}_1$")
     most = 1.08 * np.abs(apart).max()
     panel["a"].set(xlim=(times[0], times[-1]), ylim=(-most, most))
-    for name, (first, last), colour in zip(letters, stretches, (ORANGE, SKY), strict=False):
+    shades = style.ORANGE, style.SKY
+    for name, (first, last), colour in zip(letters, stretches, shades, strict=False):
         panel[name].set(xlim=(first, last), ylim=(-most, most))
         label = f"stretch in ({name})"
         panel["a"].axvspan(first, last, color=colour, alpha=0.45, lw=0, zorder=0, label=label)
@@ -124,8 +113,8 @@ def _crowded(hops, length, start, end):
 # Many discs ---------------------------------------------------------------------------------------
 
 
-#: The colours of up to six discs.
-FEW = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
+#: The colours of few discs.
+FEW = tuple(colour for colour, _ in LOOKS.values())
 
 #: The part of the map of colours of more discs that is neither too dark nor too light.
 LOW, HIGH = 0.05, 0.95
@@ -187,9 +176,8 @@ def world_lines(box, rows, radius=None):
             axes.plot(times, places[disc], color=shades[disc], lw=width)
     if box.discs <= NAMED:
         names = ["disc 1", *map(str, range(2, box.discs + 1))]
-        figure.legend(
-            close.get_lines(), names, loc="outside lower center", ncols=box.discs, handlelength=1
-        )
+        place = {"loc": "outside lower center", "ncols": box.discs}
+        figure.legend(close.get_lines(), names, handlelength=1, **place)
     panels.title(whole, "a", box, panels.of_radius(radius))
     if box.discs > LINES:
         close.set_title(f"{LINES} of the discs", loc="right", pad=3)
@@ -219,7 +207,7 @@ SYMBOLS, SYMBOLS_SHORT = 1.2, 0.4
 
 
 def draw_hop_histogram(box, rows):
-    """Draw the densities of hop_histogram.csv, in units of the mean interval (``unit_of``)."""
+    """Draw the densities of hop_histogram.csv, in units of the mean interval (``curve``)."""
     figure, (whole, short) = panels.stacked(whole=ALL, short=SHORT)
     groups = [list(group) for _, group in groupby(rows, key=lambda row: row["radius"])]
     radii = panels.numbers([group[0]["radius"] for group in groups])
@@ -235,10 +223,8 @@ def draw_hop_histogram(box, rows):
             wanted = apart * np.arange(0.4 + i / len(groups), middles[-1] / apart)
             at = np.unique(np.searchsorted(middles, wanted))
             axes.stairs(density, edges, baseline=None, color=colour, lw=0.7)
-            symbol = panels.open_symbol(colour, marker)
-            axes.errorbar(
-                middles[at], density[at], errors[at], ls="", label=f"$r={radii[i]}$", **symbol
-            )
+            symbol = panels.open_symbol(colour, marker) | {"label": f"$r={radii[i]}$"}
+            axes.errorbar(middles[at], density[at], errors[at], ls="", **symbol)
             if axes is whole:
                 low, last = min(low, density.min()), max(last, edges[-1])
         if box.is_plain:
@@ -264,19 +250,14 @@ def _mark_zero(axes, box, row, colour):
         axes.plot([-DASH, DASH], [value, value], color=colour, lw=1.8, clip_on=False, zorder=5)
 
 
-def unit_of(row):
-    """Return the exact mean interval of a row or, if that is not known, the measured one."""
-    return row["exact_mean"] or row["mean"]
-
-
 def curve(rows, fewest):
-    """Return (edges, density, standard error) in units of the mean interval (``unit_of``).
+    """Return (edges, density, standard error) in units of the mean interval, exact if it is known.
 
     ``rows`` are successive bins of one radius. The first bin with fewer than ``fewest`` intervals
     and all later ones are left out.
     """
     shown = list(takewhile(lambda row: row["count"] >= fewest, rows))
-    mean = unit_of(rows[0])
+    mean = rows[0]["exact_mean"] or rows[0]["mean"]
     edges = [rows[0]["left"], *(row["right"] for row in shown)]
     values = ([row[name] * mean for row in shown] for name in ("density", "stderr"))
     return np.array(edges) / mean, *map(np.array, values)

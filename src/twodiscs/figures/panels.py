@@ -205,11 +205,6 @@ def heading(box, more=""):
     return [",  ".join(pieces[i : i + PIECES]) for i in range(0, len(pieces), PIECES)]
 
 
-def heading_inches(box, more=""):
-    """Return the inches that lines of the ``heading`` beyond the first one take."""
-    return LINE * (len(heading(box, more)) - 1)
-
-
 def effects(box):
     """Return the number of discs of a ``Box``, if not two, and its effects, as texts in symbols."""
     named = box.calls_for | {"periodic": "$, $".join(box.effects.get("periodic", ""))}

@@ -14,8 +14,7 @@ from twodiscs.comparison.intervals import Intervals
 from twodiscs.comparison.measurements import Measurements
 from twodiscs.comparison.observe import Observed
 from twodiscs.comparison.scan import Scan
-from twodiscs.comparison.scene_tables import SCENE_TABLES
-from twodiscs.comparison.table import quantity_of
+from twodiscs.comparison.tables import SCENE_TABLES, quantity_of
 from twodiscs.comparison.transmission import Transmission, box_time
 from twodiscs.figures import panels, style
 from twodiscs.figures.catalogue import FIGURES
@@ -239,11 +238,8 @@ def _figures_of(rows, box):
         return ["hop_histogram"]
     shown, names = {*map(quantity_of, rows)}, []
     for table in ("mean_times", "volume", "areas"):
-        own = [
-            n
-            for n, e in FIGURES.items()
-            if e.tables == (table,) and e.is_called(shown, box.calls_for)
-        ]
+        entries = ((name, one) for name, one in FIGURES.items() if one.tables == (table,))
+        own = [name for name, one in entries if one.is_called(shown, box.calls_for)]
         if own and table in OVER_RADIUS and table != "volume":
             several = sum(name in OVER_RADIUS for name in own) > 1
             own.insert(0 if several else len(own), table)

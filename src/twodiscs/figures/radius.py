@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.lines import Line2D
 
-from twodiscs.comparison.table import quantity_of
+from twodiscs.comparison.tables import quantity_of
 from twodiscs.figures import curves, panels
 from twodiscs.figures.catalogue import FIGURES, Curves
 from twodiscs.figures.curves import hop_ends, limits
@@ -46,7 +46,10 @@ def draw(name, box, rows):
     if not by_quantity:
         raise InputError(f"the table of {name} has no row of {', '.join(shown.names)}")
     drawn = [row for part in by_quantity.values() for row in part.rows]
-    beneath = shown.approach and not _is_unknown(drawn)
+    # Without any exact value nothing approaches an end.
+    measured = [row for row in drawn if row.get("estimate") is not None]
+    known = not measured or any(row.get("exact") is not None for row in measured)
+    beneath = shown.approach and known
     figure, main, residuals, approach = panels.over_radius(
         box, shown.label, any(map(panels.is_judged, drawn)), beneath
     )
@@ -146,16 +149,9 @@ def series_of(box, rows, names, looks):
         own = [row for row in rows if quantity_of(row) == quantity]
         if own:
             measured = [row for row in own if "estimate" in row]
-            by_quantity[quantity] = panels.Series(
-                name, measured, exact[quantity], looks.get(quantity)
-            )
+            look = looks.get(quantity)
+            by_quantity[quantity] = panels.Series(name, measured, exact[quantity], look)
     return radii, by_quantity
-
-
-def _is_unknown(rows):
-    """Return whether the ``rows`` have estimates, but no exact value is known for any of them."""
-    measured = [row for row in rows if row.get("estimate") is not None]
-    return bool(measured) and all(row.get("exact") is None for row in measured)
 
 
 def _rooted(series):
@@ -271,10 +267,9 @@ def draw_pressure(box, rows):
 def _pressure_series(name, box, event, rows, radii, factor):
     """Return the ``Series`` of ``factor`` (scene, event) times the rate of an event."""
     scenes = [None if np.isnan(radius) else box.scene(float(radius)) for radius in radii]
-    rates = [None if s is None else rate(s, event) for s in scenes]
-    exact = [
-        np.nan if n is None else factor(s, event) * n for s, n in zip(scenes, rates, strict=True)
-    ]
+    rates = [None if scene is None else rate(scene, event) for scene in scenes]
+    pairs = zip(scenes, rates, strict=True)
+    exact = [np.nan if n is None else factor(scene, event) * n for scene, n in pairs]
     shown = []
     for row in rows:
         if row["event"] == event and row["stderr"] is not None:

@@ -373,7 +373,5 @@ def stream_seed(seed, scene, method, key):
     and the key of the radius. It does not depend on the order of a list or on other jobs.
     """
     seed = check_integer("seed", seed, 0)
-    if not isinstance(scene, str):
-        raise InputError(f"scene must be the name of a scene, not {quote(scene)}")
     text = "\n".join((str(seed), scene, check_choice("method", method, METHODS), key))
     return int.from_bytes(blake2b(text.encode(), digest_size=8).digest(), "big") >> 1

@@ -131,9 +131,8 @@ def check_number(name, value, low, high, kind="number"):
     ``low`` is positive: the value must be a real number, finite and positive.
     """
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        raise InputError(
-            f"{name} must be a positive {kind}, not {quote(value)}{decimal_hint(value)}"
-        )
+        wrong = f"{quote(value)}{decimal_hint(value)}"
+        raise InputError(f"{name} must be a positive {kind}, not {wrong}")
     try:
         number = float(value)
     except (ValueError, OverflowError):

@@ -540,13 +540,6 @@ def why_absent(scene, name):
     return f": hops along the periodic axis {axis} are those of neighbours, see transmission"
 
 
-def check_two(scene, what):
-    """Return a ``Scene`` of two discs; raise ``InputError`` for more, which ``what`` is not for."""
-    if check_scene(scene).discs > 2:
-        raise InputError(f"discs must be 2 for {what}, not {scene.discs}")
-    return scene
-
-
 def hopping_along(scene, hop, axis):
     """Return an equivalent ``Scene`` and hop, axes exchanged so that the hop is along ``axis``.
 
@@ -560,9 +553,3 @@ def hopping_along(scene, hop, axis):
 
 #: The default values of fields, {name: value}.
 USUAL = {field.name: field.default for field in fields(Scene)[3:]}
-
-if {name: value for name, value in USUAL.items() if name != "discs"} != ABSENT:
-    raise TypeError(
-        "the fields of Scene between radius and discs must be the effects of "
-        f"model/effects.py with the values that mean their absence, {ABSENT}"
-    )

@@ -60,11 +60,6 @@ def read_json(path):
     return content
 
 
-def read_seconds(path):
-    """Return the seconds in a file of ``write_json``, None without any."""
-    return json.loads(Path(path).read_bytes()).get(SECONDS)
-
-
 def _digest_of(content):
     return sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
@@ -75,32 +70,13 @@ def _digest_of(content):
 class Point:
     """The arithmetic on the sums of one method at one ``radius``.
 
-    ``parts`` are the parts of its run, None if it was made without one. Each class of points has a
-    method ``estimate``, which returns an ``Estimate`` by name, or None without a count.
+    ``parts`` are the parts of its run, None if it was made without one. A class has a method
+    ``of(radius, parts)``, which makes the point of the ``parts`` of a run, and ``estimate``, which
+    returns an ``Estimate`` by name, or None without a count.
     """
 
     stage: ClassVar[str]
     radius: float
-
-    @classmethod
-    def of(cls, radius, parts):
-        """Return the point of the ``parts`` of a run."""
-        raise NotImplementedError
-
-    @classmethod
-    def read(cls, path):
-        """Return the point in a file with what ``content_of`` returned.
-
-        Raises ``InputError`` if the file was changed, ``OSError`` if it cannot be read.
-        """
-        content = read_json(path)
-        try:
-            return cls.of(content["scene"]["radius"], with_arrays(content["parts"]))
-        except (KeyError, TypeError, ValueError):
-            raise InputError(
-                f"{path} must be a point of {cls.stage}, but was made by another version or stage; "
-                "delete it, and it is made again"
-            ) from None
 
 
 def reached(pieces, most=math.inf):
@@ -163,17 +139,3 @@ def with_arrays(parts):
         }
         for name, part in parts.items()
     }
-
-
-def pieces_of(paths):
-    """Return {part: pieces} of all files at ``paths``, such as the shards of a point.
-
-    Raises ``InputError`` if a file was changed.
-    """
-    pieces = {}
-    for path in paths:
-        if "parts" not in (content := read_json(path)):
-            raise InputError(f"{path} must be a shard of a point; delete it, and it is made again")
-        for name, part in with_arrays(content["parts"]).items():
-            pieces.setdefault(name, {}).update(part["sums"])
-    return pieces

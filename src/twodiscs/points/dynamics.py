@@ -7,7 +7,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from twodiscs.model.checks import check_choice
 from twodiscs.model.events import EVENTS
 from twodiscs.points import estimates
 from twodiscs.points.base import Point, reached
@@ -158,7 +157,7 @@ class DynamicsPoint(Point):
 
     def estimate(self, event, copies=1):
         """Return the mean time of ``event`` as an ``Estimate`` (see ``Count.estimate``)."""
-        return self.count(check_choice("event", event, self.counted)).estimate(copies)
+        return self.count(event).estimate(copies)
 
     def sums_of_others(self):
         """Return the set of events whose number is the sum of other events' in every replica."""

@@ -55,15 +55,10 @@ class Estimate:
 
     def interval(self, confidence: float = 0.95) -> tuple[float, float] | None:
         """Return the normal confidence interval (low, high), None without an error."""
+        half = normal_quantile(confidence)
         if self.stderr is None:
             return None
-        half = normal_quantile(confidence) * self.stderr
-        return self.value - half, self.value + half
-
-    def covers(self, exact: float, confidence: float = 0.95) -> bool:
-        """Return whether the confidence interval contains ``exact``."""
-        low, high = self.interval(confidence)
-        return low <= exact <= high
+        return self.value - half * self.stderr, self.value + half * self.stderr
 
 
 def normal_quantile(confidence):

@@ -6,7 +6,6 @@ from fractions import Fraction
 from itertools import pairwise, repeat
 from typing import ClassVar, NamedTuple
 
-from twodiscs.model.checks import check_choice
 from twodiscs.points import estimates
 from twodiscs.points.base import Point, reached
 from twodiscs.points.estimates import Estimate
@@ -118,7 +117,6 @@ class IntervalsPoint(Point):
 
     def estimate(self, name="mean"):
         """Return an ``Estimate`` by name: the "mean", or the "density_at_zero"."""
-        check_choice("name", name, ("mean", "density_at_zero"))
         if name == "mean":
             return Estimate(self.mean, self.stderr, self.chains)
         first = [one.density for one in list(self.bins())[:2]]

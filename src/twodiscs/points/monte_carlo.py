@@ -7,7 +7,6 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from twodiscs.model.checks import check_choice
 from twodiscs.points import estimates
 from twodiscs.points.base import Point, reached
 from twodiscs.points.estimates import Estimate
@@ -41,7 +40,7 @@ class SampledPoint(Point):
 
     def estimate(self, quantity):
         """Return the ``Estimate`` of a sampled quantity, None without a hit."""
-        return self.sampled(check_choice("quantity", quantity, self.quantities)).estimate
+        return self.sampled(quantity).estimate
 
     def moments(self):
         """Return the names of quantities, the means of their weights and their covariances.

@@ -9,7 +9,7 @@ normal in configuration space; the surface is g = 0 with |∇g| = 1:
                                                               top wall        0 ≤ b − y1 ≤ ε
 
 A shell of finite thickness is biased; ``exact.shell_expectation`` is its exact expectation. If the
-discs overlap in almost all of the prism, ``conditioned_point`` takes the place of ``sample_point``.
+discs overlap in almost all of the prism, draws are ``conditioned`` instead of ``in_prism``.
 ``SamplingRun`` chooses between them.
 
 A coordinate is one of 2³² equidistant values, the grains. Two coordinates come from one draw of 64
@@ -28,12 +28,11 @@ from functools import cached_property
 import numpy as np
 
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, check_choice, check_fraction, check_integer
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
-from twodiscs.model.scene import Scene, check_scene, check_two
+from twodiscs.model.scene import Scene
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.prism import kinetic_fraction, power_chance, prism_of, propose_in_prism
-from twodiscs.sampling.rounds import Run, Sampler, check_quantities, fixed
+from twodiscs.sampling.rounds import Run, Sampler, fixed
 from twodiscs.sampling.separations import propose_separation, separation_sampler
 from twodiscs.sampling.streams import GOLDEN, next_bits, open_stream, splitmix, uniform
 from twodiscs.theory import exact
@@ -195,9 +194,8 @@ def shell_thickness(scene, event, fraction):
     and stays inside the box. The room is the distance to the largest radius or, for a hop, the
     largest gap between the discs when they pass each other.
     """
-    check_choice("event", event, exact.shells(scene))
     thickness = _plain_thickness if scene.is_plain else _weighted_thickness
-    return check_fraction("fraction", fraction) * thickness(scene, event)
+    return fraction * thickness(scene, event)
 
 
 def _plain_thickness(scene, event):
@@ -226,30 +224,13 @@ def _weighted_thickness(scene, event):
     return math.sqrt(lightest) * (min(smallest, room) if room > 0 else smallest)
 
 
-def sample_point(scene, quantities, samples, shell, seed):
-    """Estimate the volume and areas of a ``Scene`` by rejection sampling in the prism.
-
-    ``quantities`` is a list of ``"volume"`` and ``"<event>_area"``; ``samples`` is rounded up to
-    whole blocks of 2²⁰; ``shell`` sets the thickness of the shells (``shell_thickness``); ``seed``
-    is an integer ≥ 0. Returns a ``MonteCarloPoint``. The area of all walls needs no shell: it
-    follows from the areas at the right and at the top.
-
-    In a scene with effects a sample without overlap counts with a probability: (1 − U/E)₊^(D/2 − 1)
-    for the volume, and (1 − U/E)₊^((D − 1)/2) for each shell that it is in. All walls are a
-    separate quantity there. Each sample picks one disc and one wall randomly, so the measure is the
-    volume of the prism times the number of pairs. A sample takes some forty times as long.
-    """
-    sampler = in_prism if check_two(scene, "shells").is_plain else weighted
-    return _drawn(sampler(scene, quantities, shell, seed), samples)
-
-
-def _drawn(sampler, samples):
-    blocks = -(-check_integer("samples", samples) // sampler.block)
-    return sampler.point({(0, blocks): [sampler.count(0, blocks)]})
-
-
 def in_prism(scene, quantities, shell, seed):
-    """Return the ``Sampler`` of ``sample_point`` for a plain scene."""
+    """Return the ``Sampler`` of a plain scene by rejection from the prism.
+
+    ``quantities`` is a list of ``"volume"`` and ``"<event>_area"``; ``shell`` sets the thickness of
+    the shells (``shell_thickness``); ``seed`` is an integer ≥ 0. The area of all walls needs no
+    shell: it follows from the areas at the right and at the top.
+    """
     wanted, epsilon = _shells(scene, quantities, shell)
     sigma, ranges = scene.contact_distance, {"x": scene.range_x, "y": scene.range_y}
 
@@ -271,8 +252,6 @@ def _shelled(scene):
 
 def _shells(scene, quantities, shell):
     """Return (the set of "volume" and events to sample, ε for each event with a shell or 0)."""
-    check_quantities(scene, quantities)
-    shell = check_fraction("shell", shell)
     wanted = {quantity.removesuffix("_area") for quantity in quantities}
     if "any_wall" in wanted and "any_wall" not in _shelled(scene):
         wanted |= {"right_wall", "top_wall"}
@@ -287,7 +266,7 @@ def _sampler(
 
     A ``block`` has this number of samples; ``measure`` is the volume that they fill.
     """
-    seed, sampled = np.uint64(check_integer("seed", seed, 0)), {}
+    seed, sampled = np.uint64(seed), {}
     if "volume" in wanted:
         sampled["volume"] = {"place": 0, "measure": measure, "epsilon": None}
     # A hop's shell has two sides. For all walls, a sample looks at one disc and one of its walls.
@@ -336,24 +315,16 @@ def propose_blocks(seed, first, stop, sampler, ends):
     return totals
 
 
-def conditioned_point(scene, quantities, samples, shell, seed):
-    """Estimate the volume and areas of a ``Scene`` by draws of separations at which the discs fit.
+def conditioned(scene, quantities, shell, seed):
+    """Return the ``Sampler`` of a plain scene by draws of separations at which the discs fit.
 
     It is for radii at which the discs overlap in almost all of the prism. At any radius, up to the
     largest one, at least a quarter of the proposals is accepted. A proposal is a sample of a set
-    whose volume, twice ``SeparationSampler.mass``, is known. The point therefore has the same form
-    as from ``sample_point``, for the same arguments, and the errors are binomial too. ``samples``
-    counts proposals and is rounded up to whole blocks of 2¹⁶. A sample takes some forty times the
-    time of a sample of the prism. If a few per cent of the prism are free, sampling in the prism is
-    therefore better.
+    whose volume, twice ``SeparationSampler.mass``, is known. Points therefore have the same form as
+    ``in_prism``, for the same arguments, and the errors are binomial too. A sample takes some forty
+    times the time of a sample of the prism. If a few per cent of the prism are free, sampling in
+    the prism is therefore better.
     """
-    if not check_scene(scene).is_plain:
-        raise InputError(f"scene must be plain for conditioned draws, but has {scene.calls_for}")
-    return _drawn(conditioned(scene, quantities, shell, seed), samples)
-
-
-def conditioned(scene, quantities, shell, seed):
-    """Return the ``Sampler`` of ``conditioned_point``."""
     wanted, epsilon = _shells(scene, quantities, shell)
     separations, sigma = separation_sampler(scene), scene.contact_distance
     ranges = {"x": scene.range_x, "y": scene.range_y}
@@ -498,7 +469,13 @@ def weighted_blocks(seed, first, stop, prism, ends):
 
 
 def weighted(scene, quantities, shell, seed):
-    """Return the ``Sampler`` of ``sample_point`` for a scene with effects."""
+    """Return the ``Sampler`` of a scene with effects, for the arguments of ``in_prism``.
+
+    A sample without overlap counts with a probability: (1 − U/E)₊^(D/2 − 1) for the volume, and
+    (1 − U/E)₊^((D − 1)/2) for each shell that it is in. All walls are a separate quantity. Each
+    sample picks one disc and one wall randomly, so the measure is the volume of the prism times the
+    number of pairs. A sample takes some forty times as long.
+    """
     wanted, epsilon = _shells(scene, quantities, shell)
     # Configuration space has no spins: without them there is one kernel less to compile.
     prism = prism_of(scene)._replace(inertia=None)
@@ -519,7 +496,7 @@ def plan(scene, samples):
     ``samples`` are samples of the prism, or insertions for more than two discs. In a plain scene
     rejection is used if it accepts at least one in ``COST_RATIO``.
     """
-    if check_scene(scene).discs > 2:
+    if scene.discs > 2:
         from twodiscs.sampling.many import insertions
 
         sampler, block = insertions.inserted, insertions.BLOCK
@@ -530,20 +507,20 @@ def plan(scene, samples):
     else:
         blocks = -(-samples // (COST_RATIO * PROPOSALS))
         return conditioned, blocks * PROPOSALS
-    return sampler, -(-check_integer("samples", samples) // block) * block
+    return sampler, -(-samples // block) * block
 
 
 @dataclass(frozen=True)
 class SamplingRun(Run):
     """An estimate of the volume and areas of a ``Scene`` by the best sampler for it, in blocks.
 
-    The sampler is ``sample_point`` for effects, and if a sample of the prism has no overlap with a
-    probability of at least 1/``COST_RATIO``. Otherwise it is ``conditioned_point``, with the number
-    of samples that takes the same time. For more than two discs it is ``many.insertions.inserted``,
-    which has no shells.
+    The sampler is ``weighted`` for effects, and ``in_prism`` if a sample of the prism has no
+    overlap with a probability of at least 1/``COST_RATIO``. Otherwise it is ``conditioned``, with
+    the number of samples that takes the same time. For more than two discs it is
+    ``many.insertions.inserted``, which has no shells.
 
-    ``quantities``, ``samples`` (of the prism), ``shell`` and ``seed`` are the arguments of
-    ``sample_point``.
+    ``quantities``, ``shell`` and ``seed`` are the arguments of ``in_prism``, ``samples`` those of
+    the prism.
     """
 
     scene: Scene
@@ -551,9 +528,6 @@ class SamplingRun(Run):
     samples: int
     shell: float
     seed: int
-
-    def __post_init__(self):
-        self.sampler  # noqa: B018 - checks what is given
 
     @cached_property
     def sampler(self):

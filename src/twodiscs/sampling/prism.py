@@ -130,6 +130,13 @@ def kinetic_fraction(y1, y2, half1, half2, weights):
     return 1.0 - weights[0] * (y1 + half1) - weights[1] * (y2 + half2)
 
 
+@optional(lambda state, prism: 1.0)
+def kinetic_fraction_of(state, prism):
+    """Return the kinetic fraction of the energy in a ``state``; 1 without a ``prism``."""
+    half_1, half_2 = prism.half_1[1], prism.half_2[1]
+    return kinetic_fraction(state[1], state[3], half_1, half_2, prism.weights)
+
+
 @compiled
 def power_chance(state, fraction, power):
     """Return True with the probability ``fraction`` to the ``power``/2, for 0 ≤ ``power``."""

@@ -1,9 +1,9 @@
 """Work in blocks whose sums are integers: by one process in rounds, or by many in pieces.
 
 One process works in rounds until all errors are small enough (``in_rounds``). Many processes can do
-``pieces`` of the planned blocks, whose number is known before anything runs, and which are then
-``joined``. The bits depend neither on the size of the pieces nor on the process that does a piece.
-Pieces are {(first, stop): sums}, as in ``points.base``.
+pieces of the planned blocks, whose number is known before anything runs. The bits depend neither on
+the size of the pieces nor on the process that does a piece. Pieces are {(first, stop): sums}, as in
+``points.base``.
 
 A process works in threads (``in_threads``): on several cores, and so that Ctrl-C stops it without
 delay. Kernels release Python's lock, so threads can use all cores. Python handles no signal while a
@@ -23,8 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.checks import InputError, check_choice, check_integer
-from twodiscs.model.scene import check_scene
+from twodiscs.model.checks import check_integer
 from twodiscs.points.base import added, reached
 from twodiscs.points.monte_carlo import MonteCarloPoint
 
@@ -159,15 +158,6 @@ class Sampler(NamedTuple):
         return MonteCarloPoint.of(self.radius, {"all": self.constants | {"sums": pieces}})
 
 
-def check_quantities(scene, quantities):
-    """Raise ``InputError`` unless ``quantities`` are names of the volume and areas of a scene."""
-    allowed = ("volume", *(f"{event}_area" for event in check_scene(scene).events))
-    for quantity in quantities:
-        check_choice("quantity", quantity, allowed)
-    if not quantities:
-        raise InputError("quantities must name at least one quantity, but is empty")
-
-
 def all_in_rounds(parts, progress=None, cores=1, kept=None):
     """Return {name: pieces} of the runs in ``parts``, {name: run}, one after the other.
 
@@ -209,29 +199,6 @@ def on_grid(blocks):
     blocks = max(1, math.ceil(blocks))
     step = max(1, (1 << (blocks - 1).bit_length()) // (2 * STEPS))
     return -(-blocks // step) * step
-
-
-def pieces(blocks, per_piece):
-    """Return the pieces [(first, stop), …] of a number of ``blocks``, on an absolute grid.
-
-    They begin at multiples of ``per_piece``, a power of two; the last one is cut at ``blocks``.
-    """
-    return [(first, min(first + per_piece, blocks)) for first in range(0, blocks, per_piece)]
-
-
-def joined(run, pieces):
-    """Return the ``pieces`` of all planned blocks of a run.
-
-    They must cover these blocks without gap or overlap.
-    """
-    ends = sorted(pieces)
-    firsts, stops = [first for first, _ in ends], [stop for _, stop in ends]
-    if not ends or [*firsts, run.planned] != [0, *stops]:
-        given = ", ".join(f"{first} to {stop}" for first, stop in ends) or "none"
-        raise InputError(
-            f"pieces must cover blocks 0 to {run.planned} without gap or overlap, not {given}"
-        )
-    return pieces
 
 
 # Threads ----------------------------------------------------------------------------------------

@@ -20,13 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.sampling.jit import compiled, inlined
-from twodiscs.sampling.streams import (
-    largest_of,
-    next_bits,
-    second_largest_of,
-    signed_uniform,
-    uniform,
-)
+from twodiscs.sampling.streams import largest_of, next_bits, signed_uniform, uniform
 
 
 class SeparationSampler(NamedTuple):
@@ -88,6 +82,17 @@ def separation_sampler(scene, within=None):
         range_x / 2, range_y / 2, range_y, sigma, arch, start, stop, span, beyond_x, beyond_y,
         least_k, cumulative, total,
     )  # fmt: skip
+
+
+@inlined
+def second_largest_of(state, n):
+    """Return the second largest of ``n`` ≥ 2 uniform numbers: density ∝ sⁿ⁻² (1 − s) on [0, 1)."""
+    largest, second = uniform(state), 0.0
+    for _ in range(n - 1):
+        value = uniform(state)
+        second = max(second, min(value, largest))
+        largest = max(value, largest)
+    return second
 
 
 @inlined

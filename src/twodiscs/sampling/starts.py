@@ -12,13 +12,7 @@ import numpy as np
 
 from twodiscs.model.checks import InputError, quote
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.prism import (
-    PrismSampler,
-    draw_in_prism,
-    draw_velocities,
-    kinetic_fraction,
-    prism_of,
-)
+from twodiscs.sampling.prism import PrismSampler, draw_in_prism, draw_velocities, prism_of
 from twodiscs.sampling.rounds import draw_in_calls, in_a_thread
 from twodiscs.sampling.separations import (
     SeparationSampler,
@@ -57,8 +51,8 @@ def require_free_fraction(scene):
 
     Only two discs with effects are drawn from the prism.
     """
-    least = exact.least_free_fraction(scene)
-    if least and (fraction := exact.free_fraction(scene)) < least:
+    least = exact.MIN_FRACTION
+    if scene.family == "effects" and (fraction := exact.free_fraction(scene)) < least:
         raise InputError(
             f"radius {scene.radius!r} leaves a fraction {fraction:.1g} of the prism of all centres "
             f"without overlap, but a scene with effects needs {least:g} of it"
@@ -120,15 +114,6 @@ def start_sampler(scene, hop=None, within=None, order=(0, 0), surface=None):
     if scene.is_plain:
         return StartSampler(separation_sampler(scene, within), None, order, surface)
     return StartSampler(None, prism_of(scene, hop, within), order, surface)
-
-
-@inlined
-def state_in(initial_states, i):
-    """Return the plain state in column ``i`` of ``initial_states``."""
-    return (
-        initial_states[0, i], initial_states[1, i], initial_states[2, i], initial_states[3, i],
-        initial_states[4, i], initial_states[5, i], initial_states[6, i], initial_states[7, i],
-    )  # fmt: skip
 
 
 @inlined
@@ -195,13 +180,6 @@ def draw_states(stream, sampler, initial_states):
     draw_with(stream, sampler, initial_states, sampler.prism)
 
 
-@optional(lambda state, prism: 1.0)
-def kinetic_fraction_of(state, prism):
-    """Return the kinetic fraction of the energy in a ``state``; 1 without a ``prism``."""
-    half_1, half_2 = prism.half_1[1], prism.half_2[1]
-    return kinetic_fraction(state[1], state[3], half_1, half_2, prism.weights)
-
-
 def states(scene, number, seed, block=0, order=(0, 0), progress=None):
     """Return ``number`` states of the invariant measure of a ``Scene``, one a column.
 
@@ -234,11 +212,6 @@ def states(scene, number, seed, block=0, order=(0, 0), progress=None):
     calls = ((first, min(first + step, number)) for first in range(0, number, step))
     draw_in_calls(fill, calls, number, progress)
     return filled
-
-
-def records(scene, number, seed, progress=None):
-    """Return ``states`` as an array of ``number`` records, with a field for each component."""
-    return as_records(scene, states(scene, number, seed, progress=progress))
 
 
 def as_records(scene, filled):

@@ -8,7 +8,7 @@ blocks.
 
 import numpy as np
 
-from twodiscs.sampling.jit import compiled, inlined
+from twodiscs.sampling.jit import compiled
 
 GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
@@ -90,14 +90,3 @@ def largest_of(state, n):
     for _ in range(n - 1):
         largest = max(largest, uniform(state))
     return largest
-
-
-@inlined
-def second_largest_of(state, n):
-    """Return the second largest of ``n`` ≥ 2 uniform numbers: density ∝ sⁿ⁻² (1 − s) on [0, 1)."""
-    largest, second = uniform(state), 0.0
-    for _ in range(n - 1):
-        value = uniform(state)
-        second = max(second, min(value, largest))
-        largest = max(value, largest)
-    return second

@@ -20,9 +20,6 @@ Talbot's, would be wrong: Z grows there like exp(|p| (N − 1) σ), faster than 
 channel is longer than the discs in a row. Along the line terms fall at least like a power of p,
 which is higher for more discs. The number of terms is largest if A is near a length at which S is
 stationary, such as (N − 1) σ.
-
-As N → ∞ at a given p, the force along the channel over kT, V grows by the factor λ/p for each disc,
-with the largest eigenvalue λ of T (Kofke and Post, J. Chem. Phys. 98, 4853 (1993)).
 """
 
 import math
@@ -31,8 +28,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.checks import InputError, check_number
-from twodiscs.model.many import is_ordered
+from twodiscs.model.checks import InputError
 from twodiscs.theory.quadrature import gauss_legendre
 from twodiscs.theory.virial import Derivatives
 
@@ -74,7 +70,7 @@ class Channel(NamedTuple):
     separation: np.ndarray  # |y − y'|
 
 
-def _nodes(height, finest, widest, farthest):
+def nodes_of(height, finest, widest, farthest):
     """Return (distances from the nearer wall, weights) on panels that double from the wall on.
 
     The first one is about ``finest``, none is wider than ``widest``, and none begins beyond
@@ -96,7 +92,7 @@ def _nodes(height, finest, widest, farthest):
     return (low + (high - low) * x).ravel(), ((high - low) * w).ravel()
 
 
-def _pairs(height, sigma, y):
+def pairs_of(height, sigma, y):
     """Return (d − d₀, d, |y − y'|, d₀) of pairs of ``y`` on the same side and on opposite ones."""
     both, same = y[:, None] + y, np.abs(y[:, None] - y)
     short = np.array([height - same, both])  # B − |y − y'|
@@ -119,25 +115,20 @@ def channel_of(scene, force=None, reach=None):
 
     Its nodes resolve exp(−p (d − d₀)) up to |p| = ``reach``, unless it is negligible.
     """
-    if not is_ordered(scene):
-        raise InputError(
-            "height must be at most 2 + √3 radii for the transfer operator of an ordered channel, "
-            f"not {scene.height / scene.radius!r} radii"
-        )
     room = _room(scene)
     # At the saddle p is between N/room and (2N + 1)/room.
     force = force or scene.discs / room
-    nodes = _nodes(*_panels(scene.range_y, scene.contact_distance, force, reach or 2 * force))
-    y, weights = nodes
-    apart, distance, separation, least = _pairs(scene.range_y, scene.contact_distance, y)
+    panels = panels_of(scene.range_y, scene.contact_distance, force, reach or 2 * force)
+    y, weights = nodes_of(*panels)
+    apart, distance, separation, least = pairs_of(scene.range_y, scene.contact_distance, y)
     return Channel(
         scene.discs, scene.contact_distance, scene.range_y, least, room, weights, apart, distance,
         separation,
     )  # fmt: skip
 
 
-def _panels(height, sigma, force, reach):
-    """Return the arguments of ``_nodes`` for p with a real part ``force`` up to |p| = ``reach``."""
+def panels_of(height, sigma, force, reach):
+    """Return the arguments of ``nodes_of`` for p of a real part ``force`` up to |p| = ``reach``."""
     least = math.sqrt((sigma - height) * (sigma + height))
     # At a distance ℓ from a corner d − d₀ is at most ℓ B/d₀. A disc ``far`` from both walls has no
     # neighbour this close.
@@ -362,54 +353,3 @@ def _step(channel, p, phi):
         best = min(best, (at_q - phi - math.log(ALIAS)) / ((1 - fraction) * p))
     # V vanishes for a room of 0, so images at shorter rooms need no larger period than the room.
     return 2 * math.pi / max(best, channel.room)
-
-
-# Infinitely many ---------------------------------------------------------------------------------
-
-
-class Limit(NamedTuple):
-    """A channel of infinitely many discs at kT = 1; all values are per disc.
-
-    ``length`` is the mean length of the channel, ``per_height`` is ∂lnV/∂B and ``per_contact``
-    −∂lnV/∂σ; ``level`` is the density of neighbours at y = y', Σ∫δ(y_i − y_{i+1})/V.
-    """
-
-    force: float
-    length: float
-    per_height: float
-    per_contact: float
-    level: float
-
-
-def limit(height, radius, force):
-    """Return the ``Limit`` of discs of ``radius`` in a channel, at a ``force`` over kT.
-
-    The force is along the channel, in 1/length. In the units of the other rates, kT is 1/D of the
-    total energy 1/2, and a rate for each disc is √(kT/π) times ``per_contact`` for collisions and
-    √(2 kT/π) times ``per_height`` for walls. The channel has 2r < h ≤ (2 + √3) r.
-    """
-    force = check_number("force", force, 1e-60, 1e60)
-    if not 2 * radius < height <= (2 + math.sqrt(3)) * radius:
-        raise InputError(
-            "height must be between 2 and 2 + √3 radii for an ordered channel, not "
-            f"{height / radius!r} radii"
-        )
-    sigma, b = 2 * radius, float(Fraction(height) - 2 * Fraction(radius))
-    y, weights = _nodes(*_panels(b, sigma, force, 2 * force))
-    apart, distance, separation, least = _pairs(b, sigma, y)
-    root = np.sqrt(weights)
-    kinds = np.exp(-force * apart)
-    values, vectors = np.linalg.eigh(root[:, None] * (kinds[0] + kinds[1]) * root)
-    psi, value = vectors[:, -1], values[-1]
-
-    def mean(of):
-        kernel = root[:, None] * np.sum(kinds * of, axis=0) * root
-        return float(psi @ kernel @ psi / value)
-
-    return Limit(
-        force=force,
-        length=1 / force + least + mean(apart),
-        per_height=1 / b + force * mean(separation**2 / (b * distance)),
-        per_contact=force * mean(sigma / distance),
-        level=float(psi**2 @ np.diag(kinds[0]) / value),
-    )

@@ -2,21 +2,10 @@
 
 import math
 
-from twodiscs.model.checks import InputError, check_choice
-from twodiscs.model.events import DECLARED, EVENTS, HOPS
-from twodiscs.model.scene import Scene, check_scene
-from twodiscs.theory.exact import areas, volume
+from twodiscs.model.events import DECLARED
+from twodiscs.model.scene import Scene
+from twodiscs.theory.exact import volume
 from twodiscs.theory.plain import Arc
-
-
-def check_plain_scene(scene):
-    """Return ``scene``; raise ``InputError`` unless it is a plain ``Scene``."""
-    if not check_scene(scene).is_plain:
-        raise InputError(
-            "scene must be plain for closed forms, limits and distributions, but it has "
-            f"{', '.join(scene.calls_for)}"
-        )
-    return scene
 
 
 def small_radius_time(box, event, radius=0.0):
@@ -25,11 +14,7 @@ def small_radius_time(box, event, radius=0.0):
     With the default radius it is the limit r → 0: 3πh/(4√2) for vertical hops, 3πw/2 for the right
     wall, and infinite for disc collisions, which go like 3wh/(8√2 r).
     """
-    check_plain_scene(box.tiny)
-    w, h, r = box.width, box.height, 0.0
-    if isinstance(radius, bool) or radius != 0:
-        r = box.scene(radius).radius
-    declared = DECLARED[check_choice("event", event, EVENTS)]
+    w, h, r, declared = box.width, box.height, radius, DECLARED[event]
     # The side along the axis of the event, and the other one.
     along, across = (w, h) if declared.axis == "x" else (h, w)
     one_sided = 1.5 * math.pi
@@ -52,8 +37,7 @@ def threshold_time(scene, event):
     distance from the largest radius r_max: they vanish like r_max − r. If one side is more than
     twice the other, the times of disc collisions and of the walls at the far ends stay finite.
     """
-    w, h, r = check_plain_scene(scene).width, scene.height, scene.radius
-    declared = DECLARED[check_choice("event", event, EVENTS)]
+    w, h, r, declared = scene.width, scene.height, scene.radius, DECLARED[event]
     if not scene.is_possible(event):
         return None
     one_sided = 1.5 * math.pi
@@ -107,52 +91,7 @@ def density_at_zero(scene, hop):
     No other way back is as short: a collision of the discs moves them farther from the surface that
     they crossed.
     """
-    check_choice("hop", hop, HOPS)
-    if not check_plain_scene(scene).is_possible(hop):
+    if not scene.is_possible(hop):
         return None
     side = scene.range_y if hop == "vertical_hop" else scene.range_x
     return 3 * math.sqrt(2) / (16 * side)
-
-
-def tail_constant(scene, event):
-    """Return C of the tail P(T > t) → C/t³ of the time between events, in time³.
-
-    ``event`` is a disc collision or a hop. C is 0.0 if there is no neutral motion; the tail then
-    falls faster than any power, as far as is known. It is None if the event is impossible.
-
-    Discs that move along x, with slow drifts v1, v2, do not touch as long as |y1 − y2| ≥ σ. With
-    wall hits unfolded, the distances between discs and walls move on a straight line in the square
-    |p| + |q| ≤ B − σ. They do not leave it within t for a drift in an area 2 (B − σ)²/t². Both
-    orders of the discs count, (v1, v2) has the density 1/π at 0, and motion along y adds the same.
-    The invariant measure therefore gives
-
-        P(no collision within t) → 2 [A² (B − σ)₊⁴ + B² (A − σ)₊⁴] / (π V t²),
-
-    and Palm's relation P(T > t) = −τ d/dt P(none within t) gives
-
-        C = 6 [A² (B − σ)₊⁴ + B² (A − σ)₊⁴] / A_coll,    3 A² (B − σ)₊⁴ / A_hop,v,
-
-    and A ↔ B for horizontal hops: a vertical hop is avoided by drifting motions along x only.
-
-    Two statements are proved. First, P(none within t) is at least this for t ≥ 2√((A − σ)₊² + (B −
-    σ)₊²), for which the drifts of both axes have exactly this probability;
-    for hops it is at least the hop's term. Second, no other family of directions of two or more
-    dimensions avoids collisions. Unfolded flights are straight lines on a torus of four dimensions,
-    on which the centres coincide on the four planes x1 = ±x2, y1 = ±y2. A plane of directions that
-    is transversal to one of these intersects it, and only (u1, u2) and (v1, v2) are transversal to
-    none. Two statements are argued, not proved. The other motions (neighbourhoods of periodic
-    motions, each of order t⁻³ in P(none within t)) add up to less. For hops, the motion before and
-    after the drift, with disc collisions, decorrelates exponentially fast.
-    """
-    check_choice("event", event, (*HOPS, "disc_collision"))
-    arc, area = Arc.of(check_plain_scene(scene)), areas(scene)[event]
-    if not scene.is_possible(event):
-        return None
-    along_x = arc.range_x**2 * arc.beyond_y**4
-    along_y = arc.range_y**2 * arc.beyond_x**4
-    motions = {
-        "disc_collision": 6 * (along_x + along_y),
-        "vertical_hop": 3 * along_x,
-        "horizontal_hop": 3 * along_y,
-    }
-    return motions[event] / area

@@ -1,7 +1,7 @@
 """The exact numbers of N discs, as far as they are known, by the method for each scene.
 
-Two discs have the plain theory, and three the quadrature between kinks. Any number of discs has the
-transfer operator, if the channel is so low that they keep their order. For other scenes no exact
+Three discs have the quadrature between kinks. Any number of discs has the transfer operator, if the
+channel is so low that they keep their order. For other scenes no exact
 value is known here; their events may be possible.
 """
 
@@ -11,17 +11,16 @@ from functools import lru_cache
 from twodiscs.model.checks import MOST_WITH_VOLUME
 from twodiscs.model.events import DECLARED, EVENTS, by_kind
 from twodiscs.model.many import is_ordered
-from twodiscs.model.scene import Scene
-from twodiscs.theory import channel, plain, three
-from twodiscs.theory.virial import Derivatives, flux_constant
+from twodiscs.theory import channel, three
+from twodiscs.theory.virial import flux_constant
 
 
 def exact_method(scene):
-    """Return the theory for a ``Scene``: "plain", "three", "channel", or None."""
+    """Return the theory for a ``Scene``: "three", "channel", or None."""
     if scene.periodic:
         return None
-    if scene.discs < 4:
-        return "plain" if scene.discs == 2 else "three"
+    if scene.discs == 3:
+        return "three"
     return "channel" if is_ordered(scene) or is_ordered(scene.turned()) else None
 
 
@@ -32,17 +31,6 @@ def known_derivatives(scene, hops=True):
     ``hops`` False leaves out the hops in a channel, which take longest.
     """
     name = exact_method(scene)
-    if name == "plain":
-        volume, areas = plain.volume_and_areas(Scene(scene.width, scene.height, scene.radius))
-        root = math.sqrt(2)
-        return Derivatives(
-            math.log(volume),
-            2 * areas["right_wall"] / volume,
-            2 * areas["top_wall"] / volume,
-            areas["disc_collision"] / root / volume,
-            areas["horizontal_hop"] / root / volume,
-            areas["vertical_hop"] / root / volume,
-        )
     if name == "three":
         return three.derivatives(scene)
     if name == "channel":

@@ -28,7 +28,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from twodiscs.model.checks import InputError
 from twodiscs.theory.quadrature import gauss_legendre
 from twodiscs.theory.virial import Derivatives
 
@@ -139,8 +138,6 @@ def _gaps(a, sigma, t, c):
 
 def derivatives(scene):
     """Return the ``Derivatives`` of a ``Scene`` of three discs between walls, with both hops."""
-    if scene.discs != 3 or scene.periodic:
-        raise InputError("scene must have three discs between walls for this quadrature")
     volume, per_width, per_height, per_contact, horizontal_hops = integrals(
         scene.range_x, scene.range_y, scene.contact_distance
     )

@@ -36,7 +36,6 @@ import math
 from typing import NamedTuple
 
 from twodiscs.model.events import DECLARED
-from twodiscs.model.many import copies
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.theory import plain
 
@@ -130,16 +129,6 @@ def rates(scene, known):
         "top_wall": c * known.per_height,
     }
     return {event: rate for event, rate in rates.items() if rate is not None}
-
-
-def virial_weights(scene):
-    """Return ``weights`` of the rates of all events of a class together, as in ``rates``."""
-    return {e: weight / copies(scene, DECLARED[e]) for e, weight in weights(scene).items()}
-
-
-def virial_sum(scene, rates):
-    """Return the sum in the virial theorem, which is 1, from {class of events: rate}."""
-    return math.fsum(weight * rates[event] for event, weight in virial_weights(scene).items())
 
 
 # Small discs --------------------------------------------------------------------------------------

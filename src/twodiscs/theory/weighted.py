@@ -477,12 +477,6 @@ def shell_expectation(scene, event, epsilon):
 # invariant measure, for given centres and conserved momenta, so the measure stays invariant. A rate
 # is the flux of this measure through a surface.
 
-#: Crossings of the periodic cell between two events that the usual cost of an event includes.
-CROSSINGS_PER_EVENT = 64
-
-#: The time of a kick over the time of an event.
-KICK = 15
-
 
 def rate(scene, event):
     """Return the rate of ``event``."""
@@ -495,15 +489,3 @@ def passing_rate(scene, hop):
     space = _Space(scene, (scene.velocity_components - 1) / 2)
     area = scene.fastest * space.passing(AXIS[hop])
     return flux_constant(scene.velocity_components) * area / volume(scene)
-
-
-def work_per_event(scene, event_rate):
-    """Return an upper bound on the cost of an event over the usual cost, 1 between walls.
-
-    On a periodic axis discs leave their cell between two events, very often if they are small. The
-    usual cost includes ``CROSSINGS_PER_EVENT`` such crossings. A kick by friction costs about as
-    much as ``KICK`` events.
-    """
-    crossings = sum(scene.fastest / scene.side(axis) for axis in scene.periodic)
-    usual = max(1.0, crossings / CROSSINGS_PER_EVENT / event_rate)
-    return usual + KICK * scene.friction / event_rate

@@ -6,7 +6,7 @@ A mistake raises ``InputError`` with the key in the block of the scene.
 from twodiscs.model.box import Box
 from twodiscs.model.checks import MOST_WITH_VOLUME, PRESETS, InputError, format_number
 from twodiscs.model.events import EVENTS, HOPS
-from twodiscs.theory.exact import events_per_interval, free_fraction, least_free_fraction
+from twodiscs.theory.exact import MIN_FRACTION, events_per_interval, free_fraction
 from twodiscs_paper.configuration.model import Accuracy, Histogram, Watch
 from twodiscs_paper.configuration.radii import even_radii, radii
 from twodiscs_paper.configuration.request import Quantities, SceneRequest
@@ -221,12 +221,11 @@ def _checked(radii, box, path):
             scene = box.scene(radius)
         except InputError as error:
             raise InputError(f"{path}: {error}") from None
-        least = least_free_fraction(scene)
-        if least and (share := free_fraction(scene)) < least:
+        if scene.family == "effects" and (share := free_fraction(scene)) < MIN_FRACTION:
             effects = ", ".join(f"{name} {value}" for name, value in box.effects.items())
             raise InputError(
                 f"{path}: with {effects}, radius {radius!r} leaves the discs {share:.1g} of all "
-                f"positions, and at least {least:g} is needed"
+                f"positions, and at least {MIN_FRACTION:g} is needed"
             )
         if radius in found:
             raise InputError(f"{path} must hold every radius once, but holds {radius!r} twice")

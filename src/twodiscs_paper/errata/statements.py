@@ -130,7 +130,7 @@ def collision_time_is_smooth(q):
 def hop_tails_are_exponential(q):
     """Whether no motion avoids vertical hops for long, so that an exponential tail is possible.
 
-    Below h/4 discs that move along x pass clear of each other (``theory.laws.tail_constant``).
+    Below h/4 discs that move along x pass clear of each other (``studies.single.tail_constant``).
     """
     return q.b <= q.r
 

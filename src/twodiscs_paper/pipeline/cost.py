@@ -11,11 +11,11 @@ from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
 
-from twodiscs.comparison.scene_tables import Cost, MeanTimes, shortfall
-from twodiscs.dynamics.runs import run_of
+from twodiscs.comparison.tables import Cost, MeanTimes, shortfall
 from twodiscs.model.checks import format_number, format_seconds
 from twodiscs.theory import exact
 from twodiscs_paper.catalogue import STUDIES
+from twodiscs_paper.pipeline.points import pieces, run_of
 
 #: Events and samples per second of a core, and the largest factor by which effects slow it down.
 EVENTS_PER_SECOND, SAMPLES_PER_SECOND, SLOWER = 1e8, 1e8, 5.0
@@ -143,8 +143,6 @@ def shards(scene, stage, radius):
     """
     if _most(scene, stage, radius) <= scene.shard_events:
         return []
-    from twodiscs.sampling.rounds import pieces
-
     run = run_at(scene, stage, radius)
     if _work(run) <= scene.shard_events:
         return []

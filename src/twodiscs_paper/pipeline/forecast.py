@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from twodiscs.comparison.cost import blocks_wanted, timed, variances
-from twodiscs.comparison.scene_tables import shortfall
+from twodiscs.comparison.tables import shortfall
 
 
 class Forecast(NamedTuple):

@@ -1,8 +1,9 @@
-"""Estimates of the studies: means of independent values, and straight lines."""
+"""Estimates of the studies: means of independent values, straight lines, the law of χ²."""
 
 import math
 
 import numpy as np
+import scipy  # which imports ``special`` when it is used
 
 from twodiscs.model.checks import InputError
 from twodiscs.points.estimates import Estimate
@@ -38,3 +39,14 @@ class LinearFit:
         residuals = weights * (y - self.constant - slope * x)
         self.chi2 = float(residuals @ residuals)
         self.slope = Estimate(float(slope), math.sqrt(covariance[0, 0]), x.size)
+
+
+def chi2_p(chi2, degrees):
+    """Return the probability of a larger χ² with ``degrees`` of freedom."""
+    return float(scipy.special.gammaincc(degrees / 2, chi2 / 2))
+
+
+def covers(estimate, exact, confidence=0.95):
+    """Return whether the confidence interval of an ``Estimate`` contains ``exact``."""
+    low, high = estimate.interval(confidence)
+    return low <= exact <= high

@@ -29,15 +29,7 @@ from twodiscs.dynamics.law import NEVER, VANISHING, contact_quotient, crosses, c
 from twodiscs.dynamics.many import lockstep
 from twodiscs.dynamics.many.lockstep import ABOVE, BESIDE, COLLISIONS, HORIZONTAL, VERTICAL, N
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.many.cells import (
-    Places,
-    around_columns,
-    columns_within,
-    enter,
-    interval_of,
-    leave,
-    new_places,
-)
+from twodiscs.sampling.many import cells as grids
 from twodiscs.sampling.many.initial import spins_in
 
 #: The class of the entries of a log that a kick makes, one for each disc.
@@ -66,7 +58,7 @@ class Motion(NamedTuple):
     seen: np.ndarray
     events: np.ndarray
     tree: np.ndarray
-    places: Places
+    places: grids.Places
     s: np.ndarray | None = None
 
 
@@ -153,7 +145,8 @@ def new_motion(discs, grid, rough=None):
         np.zeros(discs), np.zeros(discs), np.zeros(discs), np.zeros(discs), np.zeros(discs),
         np.zeros(discs), np.zeros(discs), np.zeros(discs, np.bool_),
         np.zeros(discs, np.int64), np.zeros(discs, np.int64), np.zeros(discs, np.int64),
-        np.full(2 * leaves, NEVER), new_places(discs, grid), lockstep.new_spins(1, discs, rough),
+        np.full(2 * leaves, NEVER), grids.new_places(discs, grid),
+        lockstep.new_spins(1, discs, rough),
     )  # fmt: skip
 
 
@@ -181,9 +174,9 @@ def find_contact(i, now, columns, rows, motion, grid, law):
     x, y = x + u * lag, y + v * lag
     gap, speed, partner = NEVER, 1.0, -1
     across, up = grid.x.size - 1, grid.y.size - 1
-    first, last = columns_within(columns[0], columns[1], across, law.ring)
+    first, last = grids.columns_within(columns[0], columns[1], across, law.ring)
     for column in range(first, last + 1):
-        start = around_columns(column, across, law.ring) * up
+        start = grids.around_columns(column, across, law.ring) * up
         for cell in range(start + max(rows[0], 0), start + min(rows[1], up - 1) + 1):
             k = motion.places.head[cell]
             while k >= 0:
@@ -333,7 +326,7 @@ def across_seam(i, column, columns, motion, laps, ring):
     step = 1.0 if column == columns else (-1.0 if column < 0 else 0.0)
     motion.x[i] -= step * ring[0]
     laps[i] += step
-    return around_columns(column, columns, ring)
+    return grids.around_columns(column, columns, ring)
 
 
 @optional(lambda ahead, columns, ring: ahead < 0 or ahead == columns)
@@ -352,8 +345,8 @@ def start_from(states, replica, motion, grid, law):
         motion.x[i], motion.y[i] = states[i, replica], states[discs + i, replica]
         motion.u[i], motion.v[i] = states[2 * discs + i, replica], states[3 * discs + i, replica]
         motion.time[i] = 0.0
-        column, row = interval_of(motion.x[i], grid.x), interval_of(motion.y[i], grid.y)
-        enter(i, column, row, motion.places, grid)
+        column = grids.interval_of(motion.x[i], grid.x)
+        grids.enter(i, column, grids.interval_of(motion.y[i], grid.y), motion.places, grid)
     lockstep.copy_spins(spins_in(states, discs, law.rough), replica, 0, motion.s)
     look_for_all(motion, grid, law)
 
@@ -413,14 +406,14 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
                 ahead = (r if upwards else c) + step
                 stops = ahead < 0 or ahead == rows if upwards else is_wall(ahead, columns, law.ring)
                 if not stops:
-                    leave(i, motion.places, grid)
+                    grids.leave(i, motion.places, grid)
                     if upwards:
                         r = ahead
                         wide, high = (c - 1, c + 1), (r + step, r + step)
                     else:
                         c = across_seam(i, ahead, columns, motion, laps, law.ring)
                         wide, high = (c + step, c + step), (r - 1, r + 1)
-                    enter(i, c, r, motion.places, grid)
+                    grids.enter(i, c, r, motion.places, grid)
                     time, partner = find_contact(i, now, wide, high, motion, grid, law)
                     if time < motion.contact[i]:
                         motion.contact[i], motion.partner[i] = time, partner
@@ -437,14 +430,10 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
                 put(i, x, y, now, motion, counts, law.ring, log, hops, hops_x)
                 s = lockstep.only_lane(motion.s)
                 lockstep.rub_walls(motion.u, motion.v, i, not upwards, upwards, s, law.rough)
-                if upwards:
-                    motion.v[i] = -motion.v[i]
-                    counts[ABOVE] += 1
-                    note_event(now, ABOVE, i, i, motion, laps, law.ring, log)
-                else:
-                    motion.u[i] = -motion.u[i]
-                    counts[BESIDE] += 1
-                    note_event(now, BESIDE, i, i, motion, laps, law.ring, log)
+                kind, velocities = (ABOVE, motion.v) if upwards else (BESIDE, motion.u)
+                velocities[i] = -velocities[i]
+                counts[kind] += 1
+                note_event(now, kind, i, i, motion, laps, law.ring, log)
                 motion.events[i] += 1
             else:
                 j = motion.partner[i]

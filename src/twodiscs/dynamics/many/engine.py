@@ -8,14 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import (
-    LANES,
-    REPLICAS,
-    RETURNS,
-    before_kick,
-    nearest_power_of_two,
-    opened,
-)
+from twodiscs.dynamics import ensemble
 from twodiscs.dynamics.law import END_OF_TIME, crosses, crossing_time
 from twodiscs.dynamics.many import cells, lockstep
 from twodiscs.dynamics.many.lockstep import ABOVE, BESIDE, CLASSES, COLLISIONS, N, law_of, new_kicks
@@ -115,7 +108,7 @@ def duration_of(scene, events=None):
     if events is None and scene.discs >= LARGE:
         events = EVENTS_OF_DISC * scene.discs * _roomy_replicas(scene) // block_replicas(scene)
     events = events or (EVENTS_OF_CHAIN if method(scene) == "chain" else REPLICA_EVENTS)
-    return nearest_power_of_two(events / _guessed_rate(scene))
+    return ensemble.nearest_power_of_two(events / _guessed_rate(scene))
 
 
 def _guessed_rate(scene):
@@ -128,7 +121,7 @@ def replica_duration(scene):
 
     With friction it is shorter, so that kicks do not add to the work.
     """
-    return nearest_power_of_two(duration_of(scene) / work_per_event(scene))
+    return ensemble.nearest_power_of_two(duration_of(scene) / work_per_event(scene))
 
 
 def block_replicas(scene):
@@ -138,13 +131,13 @@ def block_replicas(scene):
     have still fewer, which last longer.
     """
     if scene.discs < LARGE:
-        return REPLICAS
+        return ensemble.REPLICAS
     usual = _roomy_replicas(scene)
     return min(usual, max(FEWEST, usual >> (math.frexp(crowding(scene))[1] - 1)))
 
 
 def _roomy_replicas(scene):
-    return REPLICAS >> (scene.discs.bit_length() - 5)
+    return ensemble.REPLICAS >> (scene.discs.bit_length() - 5)
 
 
 def epoch_of(scene):
@@ -161,13 +154,15 @@ def expected_rate(scene, event):
 
 
 def run_blocks(scene, events, seed, first, stop, duration, **shape):
-    """Return the counts of ``runs.run_blocks``; few discs count hops whether asked or not."""
+    """Return counts as ``two.lockstep.run_blocks`` does; few discs count hops in any case."""
     hops = any(event in HOPS for event in events)
     counts = run_classes(scene, seed, first, stop, duration, hops=hops, **shape)
     return of_events(*counts)
 
 
-def run_classes(scene, seed, first, stop, duration, *, replicas=None, lanes=LANES, hops=True):
+def run_classes(
+    scene, seed, first, stop, duration, *, replicas=None, lanes=ensemble.LANES, hops=True
+):
     """Count all classes of events of a ``Scene`` in the blocks ``first`` … ``stop`` − 1.
 
     A block is ``replicas`` states of the invariant measure from the stream ``seed``, each followed
@@ -182,15 +177,13 @@ def run_classes(scene, seed, first, stop, duration, *, replicas=None, lanes=LANE
     for block in range(first, stop):
         states = states_of(initial, replicas, seed, block)
         given = states, np.uint64(seed), block * replicas
+        kicks = new_kicks(scene, lanes if grid is None else 1)
         if grid is None:
-            of_block = lockstep.count_events(
-                *given, lanes, duration, law, hops_x, new_kicks(scene, lanes)
-            )
+            of_block = lockstep.count_events(*given, lanes, duration, law, hops_x, kicks)
         else:
-            of_block = cells.count_events(
-                *given, duration, epoch_of(scene), law, grid, True if hops else None,
-                hops_x if hops else None, new_kicks(scene, 1),
-            )  # fmt: skip
+            counted = (True, hops_x) if hops else (None, None)
+            given += duration, epoch_of(scene), law, grid
+            of_block = cells.count_events(*given, *counted, kicks)
         counts = tuple(map(np.add, counts, of_block))
     return counts
 
@@ -200,9 +193,8 @@ def of_events(sums, products):
 
     In every replica, the hits of all walls are the hits of the two classes of walls together.
     """
-    matrix = np.array(
-        [[name in parts for name in CLASSES] for parts in CLASSES_OF.values()], np.int64
-    )
+    counted = [[name in parts for name in CLASSES] for parts in CLASSES_OF.values()]
+    matrix = np.array(counted, np.int64)
     whole = products + np.triu(products, 1).T
     return matrix @ sums, np.triu(matrix @ whole @ matrix.T)
 
@@ -250,7 +242,7 @@ def advance_all(scene, states, laps, time, kicks, hops=None):
 
 def kicks_of(scene, number, seed, block=0):
     """Return the ``Kicks`` of ``number`` states, see ``trajectory.path_of``."""
-    return opened(new_kicks(scene, number), seed, block)
+    return ensemble.opened(new_kicks(scene, number), seed, block)
 
 
 class Followed:
@@ -305,7 +297,7 @@ def trajectory_rate(scene):
 def usual_duration(scene):
     """Return the time of some ``LONGEST_TRAJECTORY`` events, a power of two."""
     times = (LONGEST_TRAJECTORY / expected_event_rate(scene), MOST_ROWS / trajectory_rate(scene))
-    return nearest_power_of_two(min(times))
+    return ensemble.nearest_power_of_two(min(times))
 
 
 def events_of(scene, state, duration, seed=0):
@@ -329,7 +321,7 @@ def events_of(scene, state, duration, seed=0):
     yield time, "start", None, None, np.ravel([x + beyond, y, u, v, *s])
     while True:
         before, speed = np.ravel([x + beyond, y]), np.ravel([u, v, *s])
-        is_kick = before_kick(lanes.remaining[0], 0, kicks) < lanes.remaining[0]
+        is_kick = ensemble.before_kick(lanes.remaining[0], 0, kicks) < lanes.remaining[0]
         lockstep.find_events(lanes, law, kicks)
         flight, code = float(lanes.times[0]), int(lanes.codes[0])
         lockstep.advance(lanes, law, True)
@@ -412,7 +404,7 @@ def _window(scene, hop):
     ``LARGE`` numbers of discs have a longer window, the duration of a replica, but at most
     ``LONGER`` times the usual one. Their initial states take as much time to draw.
     """
-    window = 2.0 ** math.ceil(math.log2(RETURNS * mean_interval(scene, hop)))
+    window = 2.0 ** math.ceil(math.log2(ensemble.RETURNS * mean_interval(scene, hop)))
     if scene.discs < LARGE:
         return window
     return min(max(window, replica_duration(scene)), LONGER * window)
@@ -420,7 +412,7 @@ def _window(scene, hop):
 
 def intervals_of_chain(scene, hop):
     """Return the least number of intervals of a chain; its window has up to twice as many."""
-    return max(RETURNS, int(_window(scene, hop) / mean_interval(scene, hop) / 2))
+    return max(ensemble.RETURNS, int(_window(scene, hop) / mean_interval(scene, hop) / 2))
 
 
 def events_per_interval(scene, hop):
@@ -439,7 +431,7 @@ def record_intervals(scene, hop, seed, first, stop, chains, bins, sums, going):
 def record_within(window, scene, hop, seed, first, stop, chains, bins, sums, going):
     """Add the intervals that begin within a ``window`` of time, see ``lockstep``."""
     if large_grid(scene) is None:
-        hops_x, kicks = True if hop == "horizontal_hop" else None, new_kicks(scene, LANES)
+        hops_x, kicks = True if hop == "horizontal_hop" else None, new_kicks(scene, ensemble.LANES)
         given = window, law_of(scene), hops_x, bins, sums, going, kicks
         initial, totals = initial_of(scene), []
         for block in range(first, stop):
@@ -462,7 +454,7 @@ def record_within(window, scene, hop, seed, first, stop, chains, bins, sums, goi
                     return totals
                 hops = order[log.classes[order] < COLLISIONS]
                 times = np.append(times, log.times[hops])
-            step = window / RETURNS
+            step = window / ensemble.RETURNS
         intervals = np.diff(times)[times[:-1] < window]
         index = np.minimum((intervals / width).astype(int), wide.size - 1)
         counts = np.bincount(np.append(index, wide[index]), minlength=sums.shape[1])

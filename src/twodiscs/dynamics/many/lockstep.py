@@ -18,15 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import (
-    LANES,
-    SWEEPS,
-    Kicks,
-    before_kick,
-    idle_kicks,
-    open_kicks,
-    renew_kicks,
-)
+from twodiscs.dynamics import ensemble
 from twodiscs.dynamics.law import (
     END_OF_TIME,
     NEVER,
@@ -39,13 +31,7 @@ from twodiscs.dynamics.law import (
     wall_quotient,
 )
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.many.initial import (
-    draw_velocities,
-    put_spins,
-    spin_of,
-    spins_in,
-    velocity_memory,
-)
+from twodiscs.sampling.many import initial
 
 #: A flight on a ring that ends without an event.
 LOOK_AGAIN = -1.0
@@ -98,20 +84,20 @@ def lanes_of(states, remaining, law):
     n, lanes = discs_in(states, law.rough), remaining.size
     return Lanes(
         states[:n], states[n : 2 * n], states[2 * n : 3 * n], states[3 * n : 4 * n],
-        spins_in(states, n, law.rough), np.zeros((n, lanes)), np.zeros((n, lanes)), remaining,
-        np.zeros(lanes), np.zeros(lanes), np.zeros(lanes), np.zeros((N, lanes)),
+        initial.spins_in(states, n, law.rough), np.zeros((n, lanes)), np.zeros((n, lanes)),
+        remaining, np.zeros(lanes), np.zeros(lanes), np.zeros(lanes), np.zeros((N, lanes)),
     )  # fmt: skip
 
 
 def law_of(scene):
     """Return the ``ManyLaw`` of a ``Scene``."""
-    half_x, ring, rough = scene.range_x / 2, None, None
+    half_x, ring, rough, spin = scene.range_x / 2, None, None, initial.spin_of(scene)
     if scene.periodic:
         half_x, half = None, scene.width / 2
         ring = scene.width, half, half / math.sqrt(2)
     if scene.moment_of_inertia is not None:
         rough = divided(1.0, scene.moment_of_inertia, 1.0)
-    return ManyLaw(half_x, scene.range_y / 2, scene.contact_distance, ring, rough, spin_of(scene))
+    return ManyLaw(half_x, scene.range_y / 2, scene.contact_distance, ring, rough, spin)
 
 
 def new_kicks(scene, lanes):
@@ -121,8 +107,8 @@ def new_kicks(scene, lanes):
     """
     if not scene.friction:
         return None
-    velocities, cuts = velocity_memory(scene.discs, scene.moment_of_inertia)
-    return idle_kicks(lanes, scene.friction, cuts, velocities)
+    velocities, cuts = initial.velocity_memory(scene.discs, scene.moment_of_inertia)
+    return ensemble.idle_kicks(lanes, scene.friction, cuts, velocities)
 
 
 @optional(lambda u, l, spin, ring: 0.0)
@@ -141,13 +127,13 @@ def redraw(u, v, spins, l, lane, law, kicks):
     They are uniform on the sphere of the energy 1/2 and, along a ring, of the same momentum. The
     ``spins`` of rough discs are drawn with them.
     """
-    discs, mean = u.shape[0], drift(u, l, law.spin, law.ring)
-    draw_velocities(kicks.streams[lane], kicks.velocity, kicks.direction, law.ring, law.spin)
-    put_spins(kicks.velocity, spins, l, law.rough)
+    discs, mean, velocity = u.shape[0], drift(u, l, law.spin, law.ring), kicks.velocity
+    initial.draw_velocities(kicks.streams[lane], velocity, kicks.direction, law.ring, law.spin)
+    initial.put_spins(velocity, spins, l, law.rough)
     scale = math.sqrt(max(1.0 - discs * mean * mean, 0.0))
     for i in range(discs):
-        u[i, l], v[i, l] = mean + scale * kicks.velocity[0, i], scale * kicks.velocity[1, i]
-    renew_kicks(lane, kicks)
+        u[i, l], v[i, l] = mean + scale * velocity[0, i], scale * velocity[1, i]
+    ensemble.renew_kicks(lane, kicks)
 
 
 @optional(lambda lanes, law, kicks: None)
@@ -230,9 +216,7 @@ def rub_walls(u, v, l, on_x, on_y, s, rough):
 
     ``on_x`` and ``on_y`` say whether it is on a wall of x or y.
     """
-    u[l], v[l], s[l] = rough_wall_collision(
-        u[l], v[l], s[l], u[l], v[l], on_x, on_y, rough[0], rough[1]
-    )
+    u[l], v[l], s[l] = rough_wall_collision(u[l], v[l], s[l], u[l], v[l], on_x, on_y, *rough)
 
 
 # One event ----------------------------------------------------------------------------------------
@@ -242,11 +226,8 @@ def rub_walls(u, v, l, on_x, on_y, s, rough):
 def first_of(gap, speed, code, other_gap, other_speed, number, half):
     """Return (gap, speed, code) of the earlier event; without ``half`` (None) of the first one."""
     sooner = other_gap * speed < gap * other_speed
-    return (
-        other_gap if sooner else gap,
-        other_speed if sooner else speed,
-        number if sooner else code,
-    )
+    gap, speed = other_gap if sooner else gap, other_speed if sooner else speed
+    return gap, speed, number if sooner else code
 
 
 @optional(lambda position, velocity, half: (NEVER, 1.0))
@@ -309,7 +290,7 @@ def find_events(all_lanes, law, kicks=None):
     times, codes, speeds = all_lanes.times, all_lanes.codes, all_lanes.speeds
     discs, lanes = x.shape
     for l in range(lanes):
-        left = before_kick(all_lanes.remaining[l], l, kicks)
+        left = ensemble.before_kick(all_lanes.remaining[l], l, kicks)
         times[l], codes[l] = soonest(left, END_OF_TIME, law.ring)
         speeds[l] = 1.0
     number = 1.0
@@ -438,14 +419,14 @@ def count_events(states, seed, first, lanes, duration, law, hops_x, kicks):
             if used < replicas:
                 for k in range(rows):
                     now[k, l] = states[k, used]
-                open_kicks(l, seed, first + used, kicks)
+                ensemble.open_kicks(l, seed, first + used, kicks)
                 remaining[l] = duration
                 busy[l] = True
                 running += 1
                 used += 1
         if running == 0:
             return sums, products
-        for _ in range(SWEEPS):
+        for _ in range(ensemble.SWEEPS):
             sweep(moving, law, hops_x, kicks)
 
 
@@ -462,7 +443,7 @@ def count_laps(laps, lanes, ring):
 def of_lanes(first, stop, kicks):
     """Return the ``Kicks`` of the lanes ``first`` … ``stop`` − 1, which share their memory."""
     waits, streams = kicks.waits[first:stop], kicks.streams[first:stop]
-    return Kicks(
+    return ensemble.Kicks(
         kicks.rate, waits, streams, kicks.stream, kicks.direction, kicks.velocity, kicks.sampler
     )  # fmt: skip
 
@@ -474,7 +455,7 @@ def add_hops(counts, first, hops):
 
 
 @compiled
-def advance_states(states, laps, time, law, kicks, hops, lanes=LANES):
+def advance_states(states, laps, time, law, kicks, hops, lanes=ensemble.LANES):
     """Advance the columns of ``states`` (rows, replicas) by a ``time`` > 0.
 
     On a ring the rounds of discs are added to ``laps`` (N, replicas). ``kicks`` are those of the
@@ -499,7 +480,7 @@ def advance_states(states, laps, time, law, kicks, hops, lanes=LANES):
 
 @compiled
 def hops_in_flight(before, after, l, time, when):
-    """Fill ``when`` with the times at which two discs came to be level, and return how many.
+    """Fill ``when`` with the times at which two discs came to be level, in order; return how many.
 
     ``before`` and ``after`` (N, lanes) are coordinates at the ends of a flight of lane ``l``.
     """
@@ -508,13 +489,9 @@ def hops_in_flight(before, after, l, time, when):
         for j in range(i):
             start, end = before[i, l] - before[j, l], after[i, l] - after[j, l]
             if crosses(start, end):
-                # The list is short, and stays in the order of time.
-                at, k = time * (start / (start - end)), n
-                while k > 0 and when[k - 1] > at:
-                    when[k] = when[k - 1]
-                    k -= 1
-                when[k] = at
+                when[n] = time * (start / (start - end))
                 n += 1
+    initial.sort(when[:n])
     return n
 
 
@@ -532,13 +509,13 @@ def record_intervals(states, seed, first, window, law, hops_x, bins, sums, going
     discs, (width, wide) = discs_in(states, law.rough), bins
     totals, per_width = np.zeros((2, states.shape[1])), 1.0 / width
     when = np.zeros(discs * (discs - 1) // 2)
-    for start in range(0, states.shape[1], LANES):
-        some, own = states[:, start : start + LANES].copy(), totals[:, start:]
+    for start in range(0, states.shape[1], ensemble.LANES):
+        some, own = states[:, start : start + ensemble.LANES].copy(), totals[:, start:]
         lanes = some.shape[1]
         moving, counted = lanes_of(some, np.full(lanes, np.inf), law), np.zeros(lanes)
         times = moving.times
         for l in range(lanes):
-            open_kicks(l, seed, first + start + l, kicks)
+            ensemble.open_kicks(l, seed, first + start + l, kicks)
         # The time of the last hop, negative before the first one, and the time since then.
         elapsed, last, age = np.zeros(lanes), np.full(lanes, -1.0), np.zeros(lanes)
         counts, busy = np.zeros((lanes, sums.shape[1]), np.int64), True
@@ -547,7 +524,7 @@ def record_intervals(states, seed, first, window, law, hops_x, bins, sums, going
         hops, before, after = vertical if hops_x is None else horizontal
         while busy and going[0]:
             busy = False
-            for _ in range(SWEEPS):
+            for _ in range(ensemble.SWEEPS):
                 sweep(moving, law, hops_x, kicks)
                 for l in range(lanes):
                     at = 0.0

@@ -21,19 +21,11 @@ from twodiscs.dynamics.law import crossing_time
 from twodiscs.dynamics.many import lockstep
 from twodiscs.dynamics.many.lockstep import COLLISIONS, ManyLaw, law_of
 from twodiscs.dynamics.two.passages import LARGEST_CLUSTER, SUMS
-from twodiscs.model.checks import InputError, check_choice
-from twodiscs.model.events import HOPS
+from twodiscs.model.checks import InputError
 from twodiscs.model.many import LARGE
 from twodiscs.model.scene import hopping_along
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.many import insertions
-from twodiscs.sampling.many.initial import (
-    Initial,
-    draw_velocities,
-    initial_of,
-    put_state,
-    velocity_memory,
-)
+from twodiscs.sampling.many import initial, insertions
 from twodiscs.sampling.many.insertions import is_free
 from twodiscs.sampling.streams import open_stream, signed_uniform, uniform
 from twodiscs.theory import n_discs
@@ -50,7 +42,7 @@ LEAST_ACCEPTED = 1e-4
 class Pair(NamedTuple):
     """The constants of a pair on its surface among other discs; ``room`` is B − σ."""
 
-    initial: Initial
+    sampler: initial.Initial
     room: float
     law: ManyLaw
 
@@ -58,7 +50,7 @@ class Pair(NamedTuple):
 def pair_of(scene, hop):
     """Return the ``Pair`` of a ``Scene``, turned by a quarter if the ``hop`` is along y."""
     scene, hop = hopping_along(scene, hop, "x")
-    return Pair(initial_of(scene, "rejection"), scene.room(hop), law_of(scene))
+    return Pair(initial.initial_of(scene, "rejection"), scene.room(hop), law_of(scene))
 
 
 @compiled
@@ -67,9 +59,9 @@ def draw_on_surface(state, pair, states, most):
 
     It stops before the last column after ``most`` proposals.
     """
-    initial, proposals = pair.initial, 0
-    n, ring, spin = initial.discs, initial.ring, initial.spin
-    centres, (velocities, cuts) = np.empty((2, n)), velocity_memory(n, spin)
+    sampler, proposals = pair.sampler, 0
+    n, ring, spin = sampler.discs, sampler.ring, sampler.spin
+    centres, (velocities, cuts) = np.empty((2, n)), initial.velocity_memory(n, spin)
     for k in range(states.shape[1]):
         i = 0
         while i < n:
@@ -79,20 +71,20 @@ def draw_on_surface(state, pair, states, most):
                 proposals += 1
                 low, high = pair.room * uniform(state), pair.room * uniform(state)
                 low, high = min(low, high), max(low, high)
-                centres[0, 0] = centres[0, 1] = initial.half_x * signed_uniform(state)
-                centres[1, 0] = low - initial.half_y
-                centres[1, 1] = initial.half_y - (pair.room - high)
+                centres[0, 0] = centres[0, 1] = sampler.half_x * signed_uniform(state)
+                centres[1, 0] = low - sampler.half_y
+                centres[1, 1] = sampler.half_y - (pair.room - high)
                 i = 2
             else:
-                x = initial.half_x * signed_uniform(state)
-                y = initial.half_y * signed_uniform(state)
+                x = sampler.half_x * signed_uniform(state)
+                y = sampler.half_y * signed_uniform(state)
                 centres[0, i], centres[1, i] = x, y
-                i = i + 1 if is_free(centres, i, x, y, initial, -1) else 0
+                i = i + 1 if is_free(centres, i, x, y, sampler, -1) else 0
         while True:
-            draw_velocities(state, velocities, cuts, ring, spin)
+            initial.draw_velocities(state, velocities, cuts, ring, spin)
             if math.sqrt(2.0) * uniform(state) < abs(velocities[0, 0] - velocities[0, 1]):
                 break
-        put_state(states, k, centres, velocities, spin)
+        initial.put_state(states, k, centres, velocities, spin)
     return states.shape[1], proposals
 
 
@@ -148,8 +140,8 @@ def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes, kicks):
     The other of the two arrays is overwritten and has no meaning. ``kicks`` are those of
     ``HOPS_OF_BLOCK`` lanes, None without friction.
     """
-    discs, law, events, sides = pair.initial.discs, pair.law, 0, 2 if gap > 0.0 else 1
-    states, steps = np.zeros((pair.initial.rows, HOPS_OF_BLOCK)), np.zeros(HOPS_OF_BLOCK)
+    discs, law, events, sides = pair.sampler.discs, pair.law, 0, 2 if gap > 0.0 else 1
+    states, steps = np.zeros((pair.sampler.rows, HOPS_OF_BLOCK)), np.zeros(HOPS_OF_BLOCK)
     net, hops = np.zeros(HOPS_OF_BLOCK), np.zeros(HOPS_OF_BLOCK)
     for block in range(first, stop):
         draw_on_surface(open_stream(seed, block), pair, states, -1)
@@ -203,7 +195,6 @@ def cluster_sizes(scene, hop, gap, blocks, seed, first=0):
 
 def require_coefficient(scene, hop):
     """Raise ``InputError`` unless hops of a ``Scene`` can be followed for their coefficient."""
-    check_choice("hop", hop, HOPS)
     if scene.discs >= LARGE:
         raise InputError(f"discs must be at most {LARGE - 1} for passages, not {scene.discs}")
     if scene.periodic and hop != "horizontal_hop":
@@ -224,7 +215,7 @@ def require_coefficient(scene, hop):
 def surface_fraction(scene, hop):
     """Return (accepted, proposals) of states on the surface of a ``hop``, from the stream 0."""
     pair = pair_of(scene, hop)
-    states = np.zeros((pair.initial.rows, STATES))
+    states = np.zeros((pair.sampler.rows, STATES))
     return draw_on_surface(open_stream(np.uint64(0), 0), pair, states, PROPOSALS)
 
 

@@ -35,32 +35,6 @@ _NAMES = {
 _JUMPS = {codes.WRAP_X: (0, 0, 2), codes.WRAP_Y: (1, 1, 3), codes.WRAP_Z: (2, 8, 9)}
 
 
-@compiled
-def advance(state, law):
-    """Return the state after the next event, and the time and code of that event, without kicks."""
-    time, code = next_event(state, math.inf, law)
-    return after_event(state, time, code, law), time, code
-
-
-@compiled
-def time_to_next(state, law, hop, longest):
-    """Return the time to the next vertical hop, or to the next disc collision if not ``hop``.
-
-    If it is more than ``longest``, the returned time is only known to be longer than that. There
-    are no kicks.
-    """
-    elapsed = 0.0
-    while elapsed <= longest:
-        before, rising = across(state, None)
-        state, time, code = advance(state, law)
-        if hop and crosses(before, across(state, None)[0]):
-            return elapsed + crossing_time(before, rising)
-        elapsed += time
-        if code == codes.DISC and not hop:
-            break
-    return elapsed
-
-
 @optional(lambda state, present: 0.0)
 def deep_separation(state, present):
     """Return z1 − z2, or 0 in the plane."""

@@ -28,9 +28,9 @@ from twodiscs.model.box import key, stream_seed
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import hopping_along
 from twodiscs.points.estimates import PARTS, fractions_of_speeds, stratified_mean
-from twodiscs.sampling.prism import PrismSampler, neck_of, prism_of, proposed_measure
+from twodiscs.sampling.prism import kinetic_fraction_of, neck_of, prism_of, proposed_measure
 from twodiscs.sampling.rounds import SequentialRun, on_grid
-from twodiscs.sampling.starts import kinetic_fraction_of, start_sampler
+from twodiscs.sampling.starts import start_sampler
 from twodiscs.theory import exact
 
 #: Hops that come more often than once in this many events are counted from ordinary initial
@@ -179,7 +179,7 @@ class HopsInStrip(NamedTuple):
     fastest: float
     near: float
     slow: float
-    prism: PrismSampler | None
+    prism: tuple | None  # a ``PrismSampler``
     horizontal: bool | None
     packed: np.ndarray  # (lanes,), hops and events
     stratum: np.ndarray  # (2, lanes)

@@ -339,10 +339,6 @@ def settle(state, initial, centres, chain):
     move_discs(state, initial, centres, chain, chain.grid)
 
 
-def _elsewhere(state, initial, centres, cells):
-    by_chain(state, initial, centres, initial.chain)
-
-
 @inlined
 def chosen(state, weights, ends, backward):
     """Return a cell with a probability ∝ weight × width × backward."""
@@ -383,7 +379,7 @@ def propose_heights(state, cells, sigma, heights, tilted=False):
     return uniform(state) < ratio
 
 
-@optional(_elsewhere)
+@optional(lambda state, initial, centres, cells: by_chain(state, initial, centres, initial.chain))
 def draw_centres(state, initial, centres, cells):
     """Fill ``centres`` (2, N) by the method of the channel if there is one, else by the others."""
     along, across = (1, 0) if cells.turned else (0, 1)

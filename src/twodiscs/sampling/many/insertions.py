@@ -19,11 +19,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.checks import MOST_WITH_VOLUME, InputError, check_fraction, check_integer
+from twodiscs.model.checks import MOST_WITH_VOLUME, InputError
 from twodiscs.model.events import SHELLS, by_kind
 from twodiscs.points.monte_carlo import InsertionPoint
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.rounds import Sampler, check_quantities, in_a_thread
+from twodiscs.sampling.rounds import Sampler, in_a_thread
 from twodiscs.sampling.separations import draw_in_disc
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
 from twodiscs.theory.virial import Derivatives, overlap_of_two
@@ -210,8 +210,8 @@ def box_of(scene):
 
 def run_blocks(scene, seed, first, stop):
     """Return (sums, products) of the samples of a ``Scene``, integers that shards can add."""
-    seed, walls = np.uint64(check_integer("seed", seed, 0)), None if scene.periodic else True
-    return sample_blocks(seed, first, stop, scene.discs, box_of(scene), walls)
+    walls = None if scene.periodic else True
+    return sample_blocks(np.uint64(seed), first, stop, scene.discs, box_of(scene), walls)
 
 
 def free_fraction(scene):
@@ -252,7 +252,7 @@ def estimate(scene, sums, products, samples):
 
 def sample(scene, samples, seed):
     """Return the ``estimate`` of a ``Scene`` from a number of ``samples``, in whole blocks."""
-    blocks = -(-check_integer("samples", samples) // BLOCK)
+    blocks = -(-samples // BLOCK)
     return estimate(scene, *in_a_thread(run_blocks, scene, seed, 0, blocks), blocks * BLOCK)
 
 
@@ -262,12 +262,9 @@ def sample(scene, samples, seed):
 def inserted(scene, quantities, shell, seed):
     """Return the ``Sampler`` of volume and areas of a ``Scene`` of more than two discs.
 
-    Arguments are as in ``montecarlo.sample_point``; no shell is needed. A point is an
+    Arguments are as in ``montecarlo.in_prism``; no shell is needed. A point is an
     ``InsertionPoint``. The area of all walls comes with those of the right and the top wall.
     """
-    check_quantities(scene, quantities)
-    check_fraction("shell", shell)
-    check_integer("seed", seed, 0)
     if scene.discs > MOST_WITH_VOLUME:
         raise InputError(
             f"discs must be at most {MOST_WITH_VOLUME} for Monte Carlo by insertion, not "

@@ -4,7 +4,7 @@ import json
 import os
 from pathlib import Path
 
-from twodiscs.comparison.table import NUMBER, TEXT, Table
+from twodiscs.comparison.tables import NUMBER, TEXT, Table
 from twodiscs.comparison.transmission import QUIET
 from twodiscs.dynamics.runs import RETURNS
 from twodiscs.model.box import Box

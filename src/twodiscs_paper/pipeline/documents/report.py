@@ -16,8 +16,7 @@ from markupsafe import Markup, escape
 from PIL import Image, ImageSequence
 
 from twodiscs.comparison.measurements import measurement
-from twodiscs.comparison.scene_tables import SCENE_TABLES, Check, Cost, Grid, MeanTimes
-from twodiscs.comparison.table import quantity_of
+from twodiscs.comparison.tables import SCENE_TABLES, Check, Cost, Grid, MeanTimes, quantity_of
 from twodiscs.model.box import Box
 from twodiscs.model.checks import format_number, format_seconds
 from twodiscs_paper.captions import ANIMATION, GEOMETRY

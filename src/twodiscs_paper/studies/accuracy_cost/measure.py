@@ -88,7 +88,7 @@ class Method(NamedTuple):
 def _by_counts(name, scene, events, replicas, block, **more):
     """Return the ``Method`` whose ``block`` counts ``events`` of a number of ``replicas``."""
     hop = events.index(HOP)
-    expected = exact.rate(scene, HOP) * runs.replica_duration(scene) * replicas
+    expected = exact.rate(scene, HOP) * runs.engine_of(scene).replica_duration(scene) * replicas
 
     def estimate(sums, blocks):
         return sums[hop] / (blocks * expected)
@@ -98,17 +98,18 @@ def _by_counts(name, scene, events, replicas, block, **more):
 
 def by_lockstep(scene, seed, blocks=1):
     """Return the ``Method`` of the engine: all events, ``blocks`` blocks as one."""
-    duration = runs.replica_duration(scene)
+    duration = runs.engine_of(scene).replica_duration(scene)
 
     def block(i):
-        return runs.run_blocks(scene, EVENTS, seed, i * blocks, (i + 1) * blocks, duration)[0]
+        first, stop = i * blocks, (i + 1) * blocks
+        return runs.engine_of(scene).run_blocks(scene, EVENTS, seed, first, stop, duration)[0]
 
     return _by_counts("lockstep", scene, EVENTS, blocks * REPLICAS, block)
 
 
 def by_scalar(scene, seed):
     """Return the ``Method`` of one trajectory after the other."""
-    given = FEW_REPLICAS, runs.replica_duration(scene), scene.contact_distance
+    given = FEW_REPLICAS, runs.engine_of(scene).replica_duration(scene), scene.contact_distance
     given += separation_sampler(scene), (0, 0)
 
     def block(i):
@@ -119,7 +120,7 @@ def by_scalar(scene, seed):
 
 def by_steps(scene, seed, step):
     """Return the ``Method`` of looking for overlaps every ``step``, a power of two."""
-    steps = round(runs.replica_duration(scene) / step)
+    steps = round(runs.engine_of(scene).replica_duration(scene) / step)
     given = FEW_REPLICAS, LANES, steps, step, scene.contact_distance, separation_sampler(scene)
 
     def block(i):

@@ -7,7 +7,7 @@ P(F > t) = (1/τ) ∫_t^∞ P(T > s) ds connects the two: for every c
 
     ⟨min(F, c)⟩ = ⟨T² − (T − c)₊²⟩/(2τ),    hence    ⟨F⟩ = ⟨T²⟩/(2τ) = τ (1 + CV²)/2.
 
-If the tail of T is cubic (see ``theory.laws.tail_constant``), the variances of F and T² are
+If the tail of T is cubic (see ``studies.single.tail_constant``), the variances of F and T² are
 infinite, and only the first form can be tested.
 """
 
@@ -17,10 +17,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.comparison.scores import chi2_p, student_deviate, two_sided_p
+from twodiscs.comparison.scores import student_deviate, two_sided_p
 from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import law_of
-from twodiscs.dynamics.two.path import time_to_next
 from twodiscs.model.box import Box, key, stream_seed
 from twodiscs.model.events import HOPS
 from twodiscs.points.estimates import Estimate
@@ -33,7 +32,8 @@ from twodiscs.sampling.separations import (
 )
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact, laws
-from twodiscs_paper.studies.estimates import mean_of
+from twodiscs_paper.studies.estimates import chi2_p, mean_of
+from twodiscs_paper.studies.single import tail_constant, time_to_next
 from twodiscs_paper.study import row
 
 #: Independent blocks behind an error bar, and the bins of a histogram of intervals.
@@ -223,7 +223,7 @@ def measured(start, scene, hop, seed, events=EVENTS):
     ``start`` has the columns that name scene and hop. ``events`` is the most wall and disc events
     that the intervals may take, and the first passages as well.
     """
-    constant, mean = laws.tail_constant(scene, hop), exact.mean_times(scene)[hop]
+    constant, mean = tail_constant(scene, hop), exact.mean_times(scene)[hop]
     rate = exact.event_rate(scene)
     affordable = int(nearest_power_of_two(max(1.0, events / (rate * mean)))) // BLOCKS
     block = max(1, min(affordable, MOST_INTERVALS // BLOCKS))

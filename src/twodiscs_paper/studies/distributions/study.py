@@ -1,6 +1,16 @@
 """How intervals between hops are distributed."""
 
-from twodiscs.comparison.table import COUNT, HEIGHT, NUMBER, RADIUS, SCENE, TEXT, TIME, WIDTH, Table
+from twodiscs.comparison.tables import (
+    COUNT,
+    HEIGHT,
+    NUMBER,
+    RADIUS,
+    SCENE,
+    TEXT,
+    TIME,
+    WIDTH,
+    Table,
+)
 from twodiscs_paper.captions import DYNAMICS, Caption, Entry
 from twodiscs_paper.study import AS_ESTIMATE, SEE_QUANTITY, Study, scaled
 

@@ -71,7 +71,8 @@ def lockstep(blocks=BLOCKS, scene=SCENE, events=EVENTS, bare=None):
 
     The package ``bare``, if it is given, does the work instead of ours.
     """
-    duration, run_blocks = runs.replica_duration(scene), runs.run_blocks
+    engine = runs.engine_of(scene)
+    duration, run_blocks = engine.replica_duration(scene), engine.run_blocks
     if bare:
         run_blocks = import_module(f"{bare}.dynamics.two.lockstep").run_blocks
     counted, seconds = timed(lambda: run_blocks(scene, events, 1, 0, blocks, duration))

@@ -13,7 +13,6 @@ import numpy as np
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.two.follow import new_rows, put_state, state_at
-from twodiscs.dynamics.two.path import time_to_next
 from twodiscs.figures import curves
 from twodiscs.figures.curves import limits
 from twodiscs.model.box import Box, key, stream_seed
@@ -21,7 +20,8 @@ from twodiscs.points import estimates
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.starts import draw_states, start_sampler
 from twodiscs.sampling.streams import open_stream
-from twodiscs.theory import exact, laws
+from twodiscs.theory import exact
+from twodiscs_paper.studies.single import tail_constant, time_to_next
 from twodiscs_paper.study import row
 
 #: Blocks of ``REPLICAS`` starts that are followed until their discs meet, and the times at which
@@ -142,7 +142,7 @@ def share_rows(start, scene, seed, blocks):
 def share_law(plain, time):
     """Return the share of starts of plain discs without a meeting by a long ``time``."""
     mean = exact.mean_times(plain)["disc_collision"]
-    return laws.tail_constant(plain, "disc_collision") / (2 * mean * time**2)
+    return tail_constant(plain, "disc_collision") / (2 * mean * time**2)
 
 
 # The curves ---------------------------------------------------------------------------------------

@@ -13,8 +13,8 @@ from twodiscs.model.events import DECLARED, SHELLS
 from twodiscs.model.many import copies
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial, insertions
-from twodiscs.theory import n_discs
-from twodiscs.theory.virial import rates, virial_sum, virial_weights
+from twodiscs.theory import n_discs, plain, virial
+from twodiscs.theory.virial import rates
 from twodiscs_paper.study import row
 
 #: The box per disc, 0.75 × 1: two discs have the box 1.5 × 1.
@@ -27,6 +27,32 @@ DISCS, RADII = (2, 3, 4, 8, 16, 32, 64), (0.1, 0.2, 0.28)
 #: ones, which are followed for longer. They have an eighth of the events, and no insertions, which
 #: take too long.
 FEWER, SHARE = {16: 128, 32: 96, 64: 48}, 1 / 8
+
+
+def known_derivatives(scene, hops=True):
+    """Return ``n_discs.known_derivatives``, of two discs too."""
+    if scene.discs > 2:
+        return n_discs.known_derivatives(scene, hops)
+    volume, areas = plain.volume_and_areas(Scene(scene.width, scene.height, scene.radius))
+    root = math.sqrt(2)
+    return virial.Derivatives(
+        math.log(volume),
+        2 * areas["right_wall"] / volume,
+        2 * areas["top_wall"] / volume,
+        areas["disc_collision"] / root / volume,
+        areas["horizontal_hop"] / root / volume,
+        areas["vertical_hop"] / root / volume,
+    )
+
+
+def virial_weights(scene):
+    """Return ``virial.weights`` of the rates of all events of a class, as in ``virial.rates``."""
+    return {e: weight / copies(scene, DECLARED[e]) for e, weight in virial.weights(scene).items()}
+
+
+def virial_sum(scene, rates):
+    """Return the sum in the virial theorem, which is 1, from {class of events: rate}."""
+    return math.fsum(weight * rates[event] for event, weight in virial_weights(scene).items())
 
 
 def counted(scene, events, seed):
@@ -80,7 +106,8 @@ def rows(events, samples, seed, discs=DISCS, radii=RADII):
 
 
 def _of_scene(scene, events, samples, seed):
-    known = n_discs.known_derivatives(scene)
+    known = known_derivatives(scene)
+    theory = "plain" if scene.discs == 2 else n_discs.exact_method(scene) or "none"
     true = rates(scene, known) if known else {}
     has_samples = scene.discs not in FEWER
     sampled, errors_of_samples = (
@@ -91,7 +118,7 @@ def _of_scene(scene, events, samples, seed):
     found, errors, virial_error = dynamics_rates(scene, events, seed)
     start = {
         "discs": scene.discs, "width": scene.width, "height": scene.height, "radius": scene.radius,
-        "theory": n_discs.exact_method(scene) or "none", "states": initial.method(scene),
+        "theory": theory, "states": initial.method(scene),
     }  # fmt: skip
     for event in SHELLS:
         time, _ = _time(scene, event, true.get(event))

@@ -1,6 +1,6 @@
 """More than two discs: mean times against exact values if these are known, and the virial sum."""
 
-from twodiscs.comparison.table import COUNT, HEIGHT, NUMBER, RADIUS, TEXT, WIDTH, Column, Table
+from twodiscs.comparison.tables import COUNT, HEIGHT, NUMBER, RADIUS, TEXT, WIDTH, Column, Table
 from twodiscs_paper.captions import DYNAMICS, Caption, Entry
 from twodiscs_paper.study import AS_EXACT, Study, scaled
 

@@ -34,7 +34,7 @@ from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.estimates import Estimate
-from twodiscs.theory import exact, laws
+from twodiscs.theory import exact, laws, weighted
 from twodiscs_paper.studies.estimates import LinearFit, mean_of
 from twodiscs_paper.studies.passages.models import file, limit
 from twodiscs_paper.study import row
@@ -178,12 +178,22 @@ def start_of(name, scene, hop, distance):
     }
 
 
+def passing_rate(scene, hop):
+    """Return the rate at which the discs pass each other in a ``hop``, in both directions together.
+
+    Between walls it is that of an event. On a periodic axis it is the rate at which the separation
+    to the nearest image changes its sign at 0.
+    """
+    periodic = AXIS[hop] in scene.periodic
+    return weighted.passing_rate(scene, hop) if periodic else exact.rate(scene, hop)
+
+
 class NearThreshold:
     """One kind of hop at one radius: its measurements and their rows."""
 
     def __init__(self, name, scene, hop, halvings, seed):
         self.name, self.scene, self.hop, self.seed = name, scene, hop, seed
-        self.mean, self.halvings = 1 / exact.passing_rate(scene, hop), halvings
+        self.mean, self.halvings = 1 / passing_rate(scene, hop), halvings
         self.start = start_of(name, scene, hop, 2.0**-halvings) | {"exact_mean": self.mean}
 
     def _seed(self, what):

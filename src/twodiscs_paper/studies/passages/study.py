@@ -1,6 +1,6 @@
 """Which hops are passages, and how fast discs diffuse by them."""
 
-from twodiscs.comparison.table import (
+from twodiscs.comparison.tables import (
     COUNT,
     HEIGHT,
     NUMBER,

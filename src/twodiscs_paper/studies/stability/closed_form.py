@@ -3,7 +3,6 @@
 import math
 
 from twodiscs.model.events import by_kind
-from twodiscs.theory.laws import check_plain_scene
 
 
 def closed_form(scene):
@@ -14,7 +13,7 @@ def closed_form(scene):
     r_max, they lose all of them (the volume like 1e-16/δ⁴). Use ``volume`` and ``areas`` for
     numbers.
     """
-    r = check_plain_scene(scene).radius
+    r = scene.radius
     a, b = scene.range_x / 2, scene.range_y / 2
     # The angle of the quarter circle within [0, a] × [0, b].
     angle = math.asin(min(b / r, 1.0)) - math.acos(min(a / r, 1.0))

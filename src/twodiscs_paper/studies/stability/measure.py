@@ -16,12 +16,11 @@ from mpmath import mp, mpf
 
 from twodiscs.comparison import scores
 from twodiscs.comparison.check import comparisons
-from twodiscs.comparison.scene_tables import Areas, MeanTimes, Theory, Volume
+from twodiscs.comparison.tables import Areas, MeanTimes, Theory, Volume
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import after_event, contact_quotient, law_of, wall_quotient
 from twodiscs.dynamics.two.follow import find_events, new_rows, put_state, state_at
-from twodiscs.dynamics.two.path import advance
 from twodiscs.model.box import Box, shortest_decimal
 from twodiscs.model.checks import LARGEST_INTEGER
 from twodiscs.model.events import EVENTS, HOPS
@@ -30,10 +29,11 @@ from twodiscs.points import estimates
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import separation_sampler
-from twodiscs.sampling.starts import state_in, states
+from twodiscs.sampling.starts import states
 from twodiscs.theory import exact
 from twodiscs_paper.reference import DIGITS, exact_numbers
-from twodiscs_paper.studies.estimates import LinearFit, mean_of
+from twodiscs_paper.studies.estimates import LinearFit, covers, mean_of
+from twodiscs_paper.studies.single import advance
 from twodiscs_paper.studies.stability.closed_form import closed_form
 from twodiscs_paper.study import row
 
@@ -215,6 +215,13 @@ def theory_rows(box):
 # Sampling ---------------------------------------------------------------------------------------
 
 
+def conditioned_point(scene, quantities, proposals, seed):
+    """Return a point of this number of conditioned draws, whole blocks."""
+    sampler = montecarlo.conditioned(scene, quantities, SHELL, seed)
+    blocks = proposals // sampler.block
+    return sampler.point({(0, blocks): [sampler.count(0, blocks)]})
+
+
 def sampling_rows(box, seed):
     """Yield the accepted shares of rejection from the prism and of the conditioned draws."""
     radii = [("ordinary", None, radius) for radius in ordinary_radii(box)]
@@ -225,9 +232,7 @@ def sampling_rows(box, seed):
         draw, volume = separation_sampler(scene), exact.volume(scene)
         prism = volume / (scene.range_x * scene.range_y) ** 2
         due = min(volume / 2 / draw.mass, 1.0)
-        point = montecarlo.conditioned_point(
-            scene, ["volume"], SHARE_PROPOSALS, SHELL, other_seed(seed, i)
-        )
+        point = conditioned_point(scene, ["volume"], SHARE_PROPOSALS, other_seed(seed, i))
         hits, samples = point.quantities["volume"].hits, point.samples
         start = start_of("sampling", case, radius, distance)
         yield judged(start, "accepted_share", prism, method="prism")
@@ -243,9 +248,7 @@ def estimate_rows(box, seed):
     for i, (case, distance, radius) in enumerate(radii):
         scene = box.scene(radius)
         quantities = ["volume", *(f"{event}_area" for event in EVENTS)]
-        point = montecarlo.conditioned_point(
-            scene, quantities, ESTIMATE_PROPOSALS, SHELL, other_seed(seed, i)
-        )
+        point = conditioned_point(scene, quantities, ESTIMATE_PROPOSALS, other_seed(seed, i))
         theory, points = Theory.rows(box, [radius]), {"monte_carlo": [point]}
         start = start_of("estimates", case, radius, distance) | {"method": "conditioned"}
         for found in Volume.rows(theory, points) + Areas.rows(box, theory, points):
@@ -505,7 +508,7 @@ def extreme_rows(seed, scenes=EXTREMES):
     for i, (case, scene) in enumerate(scenes.items()):
         box, events = Box.of(scene), KICKED.get(case, EXTREME_EVENTS)
         target = dict.fromkeys(scene.events, EXTREME_ERROR)
-        point = runs.count_events(scene, target, events, other_seed(seed, i))
+        point = runs.CountingRun(scene, target, events, other_seed(seed, i)).run()
         theory = Theory.rows(box, [scene.radius])
         times = MeanTimes.rows(box, theory, {"dynamics": [point]})
         start = start_of("extremes", case, scene.radius)
@@ -549,7 +552,7 @@ def return_errors(starts, number, law):
     """
     errors = np.empty(starts.shape[1])
     for i in range(errors.size):
-        start = state_in(starts, i)
+        start = state_at(starts, i, law)
         state, first, _ = advance(start, law)
         for _ in range(number - 1):
             state, _, _ = advance(state, law)
@@ -575,7 +578,7 @@ def growth(starts, forgotten, measured, small, law):
     """
     factors = np.empty(starts.shape[1])
     for i in range(factors.size):
-        state = state_in(starts, i)
+        state = state_at(starts, i, law)
         x1, y1, x2, y2, u1, v1, u2, v2 = state
         x, y = small * law.half_x1, small * law.half_y1
         other = (
@@ -673,15 +676,15 @@ def reversal_rows(box, seed):
 def coverage_rows(box, seed, repetitions=REPETITIONS):
     """Yield how often the 95 % interval of a mean time covers the exact value, event by event.
 
-    A repetition is one block of ``runs.run_blocks``. If most repetitions have too few events
+    A repetition is one block of ``run_blocks``. If most repetitions have too few events
     for an interval (``estimates.has_error_bar``), the row has the status too-few and no value.
     """
     low, high = COVERAGE_BOUNDS
     for radius in ordinary_radii(box):
         scene = box.scene(radius)
-        duration, times = runs.replica_duration(scene), exact.mean_times(scene)
+        duration, times = runs.engine_of(scene).replica_duration(scene), exact.mean_times(scene)
         blocks = [
-            runs.run_blocks(scene, EVENTS, seed, block, block + 1, duration)
+            runs.engine_of(scene).run_blocks(scene, EVENTS, seed, block, block + 1, duration)
             for block in range(repetitions)
         ]
         start = start_of("coverage", "ordinary", radius) | {"count": repetitions}
@@ -693,7 +696,7 @@ def coverage_rows(box, seed, repetitions=REPETITIONS):
                 yield judged(start, event, None, status="too-few")
                 continue
             intervals = [estimates.mean_time(*m, scene.copies(event) * duration) for m in moments]
-            share = sum(i is not None and i.covers(times[event]) for i in intervals) / repetitions
+            share = sum(i is not None and covers(i, times[event]) for i in intervals) / repetitions
             found = {"exact": 0.95, "stderr": math.sqrt(0.95 * 0.05 / repetitions)}
             yield judged(start, event, share, low, high, status="counted", **found)
 

@@ -1,6 +1,6 @@
 """How accurate each method is in numerically hard cases."""
 
-from twodiscs.comparison.table import COUNT, NUMBER, RADIUS, TEXT, TRUTH, Table, Z
+from twodiscs.comparison.tables import COUNT, NUMBER, RADIUS, TEXT, TRUTH, Table, Z
 from twodiscs_paper.captions import Caption, Entry
 from twodiscs_paper.study import SEE_QUANTITY, Study, main_box, scaled
 

@@ -6,9 +6,9 @@ the last event. An interval F + G is picked in proportion to its length. By Palm
     P(T > t) = τ ⟨1[F + G > t] / (F + G)⟩.
 
 Starts come from the invariant measure; G is found by running backwards from the same start. Long
-intervals begin near a neutral motion (see ``theory.laws.tail_constant``), where all energy except
-a small share s is along one axis. On the sphere of speeds s is uniform on [0, 1]. The smaller of
-the shares along x and y is therefore uniform on [0, 1/2]. This range is cut into strata, each a
+intervals begin near a neutral motion (see ``single.tail_constant``), where all energy except a
+small share s is along one axis. On the sphere of speeds s is uniform on [0, 1]. The smaller of the
+shares along x and y is therefore uniform on [0, 1/2]. This range is cut into strata, each a
 quarter of the one before. All strata have the same number of starts; their exact weights are powers
 of two, or three times powers of two. A probability of 1e-8 takes no more starts than a probability
 of 1/2, and the estimate has no bias. The method needs only + − × / and √.
@@ -19,20 +19,19 @@ from itertools import pairwise, starmap
 
 import numpy as np
 
-from twodiscs.comparison.scores import chi2_p
 from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import DISC, crosses, crossing_time, law_of
-from twodiscs.dynamics.two.follow import across
-from twodiscs.dynamics.two.path import advance, time_to_next
+from twodiscs.dynamics.two.follow import across, state_at
 from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import draw_configuration, draw_in_disc, separation_sampler
-from twodiscs.sampling.starts import draw_starts, state_in
+from twodiscs.sampling.starts import draw_starts
 from twodiscs.sampling.streams import next_bits, open_stream, uniform
-from twodiscs.theory import exact, laws
-from twodiscs_paper.studies.estimates import mean_of
+from twodiscs.theory import exact
+from twodiscs_paper.studies.estimates import chi2_p, mean_of
+from twodiscs_paper.studies.single import advance, tail_constant, time_to_next
 from twodiscs_paper.study import row
 
 #: Independent blocks behind an error bar, which then has a relative error of about 7 %.
@@ -114,7 +113,7 @@ def count_long(seed, first, stop, replicas, window, times, law, draw, hop):
         draw_starts(open_stream(seed, block), draw, 0, 0, starts)
         for replica in range(replicas):
             count = counts[(block - first) * replicas + replica]
-            state = state_in(starts, replica)
+            state = state_at(starts, replica, law)
             now, last = 0.0, -1.0
             while True:
                 before, rising = across(state, None)
@@ -238,7 +237,7 @@ def rows(box, samples, replicas, seed):
     found = []
     for i, (event, radius) in enumerate(cases(box)):
         scene = box.scene(radius)
-        start, constant = start_of(scene, event), laws.tail_constant(scene, event)
+        start, constant = start_of(scene, event), tail_constant(scene, event)
         mean = start["exact_mean"]
         times = [time * mean for time in COUNTED]
         estimates = mean_of(survivals(scene, event, times, replicas, seed + 2 * i))
@@ -265,7 +264,7 @@ def long_run(weighted, counted):
     start = start_of(scene, event)
     times = [time * start["exact_mean"] for time in weighted["times"]]
     estimates = tail(scene, event, times, weighted["samples"], weighted["seed"])
-    constant = laws.tail_constant(scene, event)
+    constant = tail_constant(scene, event)
     falling = survival_rows("weighted", start, times, estimates, constant)
 
     box = Box(counted["width"], counted["height"])

@@ -1,6 +1,6 @@
 """How probable long intervals are."""
 
-from twodiscs.comparison.table import RADIUS, TEXT, TIME, Column, Table
+from twodiscs.comparison.tables import RADIUS, TEXT, TIME, Column, Table
 from twodiscs_paper.captions import DYNAMICS, Caption, Entry
 from twodiscs_paper.study import AS_ESTIMATE, Study, main_box, scaled
 

@@ -14,13 +14,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.comparison.scores import chi2_p
 from twodiscs.model.box import Box
 from twodiscs.model.checks import check_choice
 from twodiscs.model.events import EVENTS
 from twodiscs.points.estimates import Estimate
 from twodiscs.theory.laws import threshold_time
-from twodiscs_paper.studies.estimates import LinearFit
+from twodiscs_paper.studies.estimates import LinearFit, chi2_p
 from twodiscs_paper.study import row
 
 #: Fits take radii within this relative distance of the limit, without another limit in between.

@@ -1,6 +1,6 @@
 """The laws where a hop becomes blocked."""
 
-from twodiscs.comparison.table import (
+from twodiscs.comparison.tables import (
     COUNT,
     HEIGHT,
     NUMBER,

@@ -19,6 +19,7 @@ take the momentum of rough discs, so they too have F √t, with an F that is not
 
 import math
 from dataclasses import replace
+from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -46,6 +47,51 @@ def quotient(values, others):
 WAVES = 8
 
 
+class Limit(NamedTuple):
+    """A channel of infinitely many discs at kT = 1; all values are per disc.
+
+    ``length`` is the mean length of the channel, ``per_height`` is ∂lnV/∂B and ``per_contact``
+    −∂lnV/∂σ; ``level`` is the density of neighbours at y = y', Σ∫δ(y_i − y_{i+1})/V.
+    """
+
+    force: float
+    length: float
+    per_height: float
+    per_contact: float
+    level: float
+
+
+def limit(height, radius, force):
+    """Return the ``Limit`` of discs of ``radius`` in a channel, at a ``force`` over kT.
+
+    As N → ∞ at a given p, the force along the channel over kT, V grows by the factor λ/p for each
+    disc, with the largest eigenvalue λ of T (Kofke and Post, J. Chem. Phys. 98, 4853 (1993)).
+
+    The force is along the channel, in 1/length. In the units of the other rates, kT is 1/D of the
+    total energy 1/2, and a rate for each disc is √(kT/π) times ``per_contact`` for collisions and
+    √(2 kT/π) times ``per_height`` for walls. The channel has 2r < h ≤ (2 + √3) r.
+    """
+    sigma, b = 2 * radius, float(Fraction(height) - 2 * Fraction(radius))
+    y, weights = channel.nodes_of(*channel.panels_of(b, sigma, force, 2 * force))
+    apart, distance, separation, least = channel.pairs_of(b, sigma, y)
+    root = np.sqrt(weights)
+    kinds = np.exp(-force * apart)
+    values, vectors = np.linalg.eigh(root[:, None] * (kinds[0] + kinds[1]) * root)
+    psi, value = vectors[:, -1], values[-1]
+
+    def mean(of):
+        kernel = root[:, None] * np.sum(kinds * of, axis=0) * root
+        return float(psi @ kernel @ psi / value)
+
+    return Limit(
+        force=force,
+        length=1 / force + least + mean(apart),
+        per_height=1 / b + force * mean(separation**2 / (b * distance)),
+        per_contact=force * mean(sigma / distance),
+        level=float(psi**2 @ np.diag(kinds[0]) / value),
+    )
+
+
 class Density(NamedTuple):
     """The density of a file: S, and the speed c of sound over the thermal speed √(kT/m)."""
 
@@ -61,7 +107,7 @@ def exact_density(height, radius, per_disc):
     """
 
     def length(log_force):
-        return channel.limit(height, radius, math.exp(log_force)).length
+        return limit(height, radius, math.exp(log_force)).length
 
     low, high = -math.log(per_disc) - 1, 20.0
     for _ in range(60):

@@ -1,31 +1,178 @@
-"""The tables of a scene: the columns of each beside the function that makes its rows.
+"""Tables: CSV files whose columns and rows are declared once, as a class.
 
-The Snakefile reads this module, so NumPy and its users are imported only when rows are made.
+    class Tails(Table):
+        '''One row per time t: how probable an interval T longer than t is.'''
+
+        columns = {"radius": RADIUS, "time": TIME("t")}
+
+declares tails.csv. A class has ``columns`` and a function ``rows`` that makes its rows. Floats are
+written with all their digits, integers as integers, truth values as ``true`` and ``false``; an
+empty cell is a value that does not exist.
+
+The tables of a scene follow. The Snakefile reads this module, so NumPy and its users are imported
+only when rows are made.
 """
 
 import math
+import re
+from dataclasses import dataclass
 from functools import partial
+from numbers import Integral, Real
+from operator import attrgetter
+from typing import ClassVar
 
-from twodiscs.comparison.table import (
-    COUNT,
-    ERGODIC_COMPONENTS,
-    LENGTH,
-    NUMBER,
-    RADIUS,
-    RATE,
-    SECONDS,
-    TEST,
-    TEXT,
-    TIME,
-    TRUTH,
-    Column,
-    Table,
-    Z,
-    by_radius,
-)
 from twodiscs.model.checks import InputError, format_number, format_seconds
 from twodiscs.model.events import EVENTS
 from twodiscs.theory.exact import exact, shell_expectation
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column: the type of its values, their unit ("" for none), and their meaning."""
+
+    type: type
+    unit: str
+    meaning: str
+
+
+TEXT, COUNT, TRUTH, NUMBER = (partial(Column, kind, "") for kind in (str, int, bool, float))
+LENGTH, TIME, RATE, SECONDS = (
+    partial(Column, float, unit) for unit in ("length", "time", "1/time", "s")
+)
+
+# Columns that several tables have.
+SCENE = TEXT("the scene")
+WIDTH = LENGTH("side of the box along x")
+HEIGHT = LENGTH("side of the box along y")
+RADIUS = LENGTH("radius of the discs")
+Z = NUMBER("standard normal deviate of the comparison, positive when the estimate is high")
+TEST = TEXT(
+    "how z was found: normal (1000 or more events expected), exact-tail (binomial tail, doubled), "
+    "cluster-bound (Chernoff's bound with an allowance for clusters of events), certain (the "
+    "probability is 0 or 1), chi-square (sum of squared scores)"
+)
+ERGODIC_COMPONENTS = COUNT("disjoint parts of configuration space")
+
+#: The types of pandas that have an empty cell.
+PANDAS = {float: "float64", bool: "boolean", str: "string"}
+
+#: The values that a cell of each type takes.
+TAKEN = {float: Real, int: Integral, bool: bool, str: str}
+
+
+class Table:
+    """A table; a row is a mapping from the names of its columns to values, None for an empty cell.
+
+    ``columns`` is {name: ``Column``} in the order of the file.
+    """
+
+    columns: ClassVar[dict[str, Column]]
+
+    @classmethod
+    def name(cls):
+        """Return the name of the table, that of its file without the ending."""
+        return re.sub(r"(?<!^)(?=[A-Z])", "_", cls.__name__).lower()
+
+    @classmethod
+    def meaning(cls):
+        """Return the meaning of a row of the table."""
+        return " ".join(cls.__doc__.split())
+
+    @classmethod
+    def columns_of(cls, names):
+        """Return the columns of a file or a row with these ``names``."""
+        return cls.columns
+
+    @classmethod
+    def write(cls, path, rows):
+        """Write ``rows`` as the CSV file ``path``; a cell that a row does not name is empty.
+
+        Raises ``ValueError`` for an unknown column, a value of another type, and NaN, before
+        anything is written.
+        """
+        import pandas as pd  # which takes long to import, and the Snakefile reads this module
+
+        rows = list(rows)
+        columns = cls.columns_of(rows[0] if rows else ())
+        for row in rows:
+            if odd := sorted(row.keys() - columns.keys()):
+                names = ", ".join(odd)
+                raise ValueError(f"rows must have the columns of {cls.name()}.csv, but see {names}")
+        cells = {n: [_cell(n, column, row.get(n)) for row in rows] for n, column in columns.items()}
+        pd.DataFrame(cells, dtype=object).to_csv(path, index=False, lineterminator="\n")
+
+    @classmethod
+    def frame(cls, path):
+        """Return the CSV file at ``path`` as a ``DataFrame``.
+
+        The file may have columns that the table does not know, which are left out. Raises
+        ``InputError`` if it lacks a column, or a cell is not of its type.
+        """
+        import pandas as pd
+
+        try:
+            # The engine in Python does not fill up a line that is too short with empty cells.
+            as_text = {"dtype": str, "keep_default_na": False, "engine": "python"}
+            texts = pd.read_csv(path, index_col=False, **as_text)
+            columns = cls.columns_of(texts)
+            return pd.DataFrame({n: _values(texts[n], column) for n, column in columns.items()})
+        except KeyError as missing:
+            raise InputError(
+                f"{path} must be a table {cls.name()}, but has no column {missing}"
+            ) from None
+        except ValueError as error:
+            why = " ".join(str(error).split())
+            raise InputError(f"{path} must be a table {cls.name()}, but {why}") from None
+
+    @classmethod
+    def read(cls, path):
+        """Return the rows of the CSV file at ``path``, as ``frame`` does, as a list of dicts."""
+        frame = cls.frame(path)
+        return frame.astype(object).where(frame.notna(), None).to_dict("records")
+
+
+def by_radius(points):
+    """Return ``points`` in the order of radii."""
+    return sorted(points, key=attrgetter("radius"))
+
+
+def quantity_of(row):
+    """Return the quantity of a ``row`` of a table, as theory.csv names it."""
+    return row["quantity"] if "quantity" in row else f"{row['event']}_time"
+
+
+def _cell(name, column, value):
+    """Return a value of a row as its column has it, or raise ``ValueError``."""
+    if value is None:
+        return None
+    wrong = isinstance(value, bool) and column.type is not bool
+    if wrong or not isinstance(value, TAKEN[column.type]) or value != value or value == "":
+        raise ValueError(f"{name} must be a {column.type.__name__} or None, not {value!r}")
+    return str(value).lower() if column.type is bool else column.type(value)
+
+
+def _values(texts, column):
+    """Return the cells of a column as its type; raise ``ValueError`` if a cell is of another."""
+    import pandas as pd
+
+    empty = texts == ""
+    if column.type is int:
+        numbers = [int(text) if text else None for text in texts]
+        # N! parts of configuration space may be more than 64 bits hold.
+        wide = any(number is not None and number.bit_length() > 63 for number in numbers)
+        return pd.Series(numbers, dtype=object if wide else "Int64")
+    values = texts.mask(empty)
+    if column.type is bool:
+        values = values.map({"true": True, "false": False})
+    values = values.astype(PANDAS[column.type])
+    if (values.isna() != empty).any():
+        wrong = texts[values.isna() != empty].iloc[0]
+        raise ValueError(f"{texts.name} has {wrong!r}, which is no {column.type.__name__}")
+    return values
+
+
+# The tables of a scene ----------------------------------------------------------------------------
+
 
 #: A run that reaches an error below this one has the 100 effective events of an error bar.
 COARSE = 0.1
@@ -48,15 +195,8 @@ class Grid(Table):
     @staticmethod
     def rows(box, radii):
         """Return the rows of a ``Box``, one for each radius."""
-        return [
-            {
-                "radius": scene.radius,
-                "regime": scene.regime,
-                "ergodic_components": scene.ergodic_components,
-                "largest_radius": scene.largest_radius,
-            }
-            for scene in map(box.scene, radii)
-        ]
+        scenes = map(box.scene, radii)
+        return [{name: getattr(scene, name) for name in Grid.columns} for scene in scenes]
 
 
 class Theory(Table):
@@ -86,15 +226,9 @@ class Theory(Table):
         return rows
 
 
-class ExactValues(dict):
-    """{(radius, quantity): exact value or None}, made of the rows of theory.csv."""
-
-    def __init__(self, theory):
-        super().__init__({(row["radius"], row["quantity"]): row["exact"] for row in theory})
-
-    def __missing__(self, wanted):
-        radius, quantity = wanted
-        raise InputError(f"theory.csv has no {quantity} at radius {radius!r}")
+def exact_values(theory):
+    """Return {(radius, quantity): exact value or None}, made of the rows of theory.csv."""
+    return {(row["radius"], row["quantity"]): row["exact"] for row in theory}
 
 
 # Monte Carlo --------------------------------------------------------------------------------------
@@ -154,7 +288,7 @@ class Volume(Table):
 
         ``theory`` are the rows of theory.csv, ``points`` is {"monte_carlo": [point, …]}.
         """
-        exact, rows = ExactValues(theory), []
+        exact, rows = exact_values(theory), []
         for point in by_radius(points.get("monte_carlo", ())):
             if sampled := point.sampled("volume"):
                 value = exact[point.radius, "volume"]
@@ -179,14 +313,11 @@ class Areas(Table):
         it follows from the right and the top wall, so a point has these two even if only the area
         of all walls is asked for.
         """
-        exact, rows = ExactValues(theory), []
+        exact, rows = exact_values(theory), []
         for point in by_radius(points.get("monte_carlo", ())):
             scene = box.scene(point.radius)
-            rows += [
-                row
-                for event in EVENTS
-                if event in areas and (row := _area_row(scene, point, event, exact))
-            ]
+            wanted = (event for event in EVENTS if event in areas)
+            rows += filter(None, (_area_row(scene, point, event, exact) for event in wanted))
         return rows
 
 
@@ -331,7 +462,7 @@ class MeanTimes(Table):
         has the row of its strip. The rows ``without_strips`` are those of rare hops alone, with
         their counts from all initial states.
         """
-        exact, rows = ExactValues(theory), []
+        exact, rows = exact_values(theory), []
         for point in by_radius(points.get("dynamics", ())):
             scene = box.scene(point.radius)
             for event in point.counted:
@@ -461,7 +592,7 @@ class HopHistogram(Table):
         ``theory`` are the rows of theory.csv, ``points`` is {"intervals": [point, …]}. The mean is
         tested by Student's t over the chains, if there are 100 of them and 1000 intervals.
         """
-        exact, rows = ExactValues(theory), []
+        exact, rows = exact_values(theory), []
         for point in by_radius(points.get("intervals", ())):
             mean = _mean_interval(point, exact[point.radius, f"{point.event}_time"])
             start = {"radius": point.radius, "event": point.event}
@@ -482,13 +613,8 @@ def _mean_interval(point, exact):
     stderr = mean.stderr or None if mean.n >= MIN_EVENTS else None
     if stderr and point.intervals >= scores.NORMAL and exact is not None:
         z = scores.student_deviate((mean.value - exact) / stderr, mean.n - 1)
-    return {
-        "intervals": point.intervals,
-        "exact_mean": exact,
-        "mean": mean.value,
-        "mean_stderr": stderr,
-        "z": z,
-    }
+    known = {"intervals": point.intervals, "exact_mean": exact}
+    return known | {"mean": mean.value, "mean_stderr": stderr, "z": z}
 
 
 def trajectory_columns(discs):
@@ -636,8 +762,6 @@ class Cost(Table):
 
 # All tables ---------------------------------------------------------------------------------------
 
-
-__all__ = ["SCENE_TABLES", "Check", "Cost", "Grid"]
 
 #: {name: table}
 SCENE_TABLES = {
