@@ -304,9 +304,9 @@ def test_the_laws_of_passages_with_friction_are_one_and_three_quarters_over_x():
 def test_residuals_are_those_of_the_table():
     for name, looks in (("transmission", transmission), ("diffusion", diffusion)):
         for quantity, (colour, marker, _) in looks.RESIDUAL_LOOKS.items():
-            rows = of([*table("passages"), *long_run("displacements")], quantity=quantity)
             # Two discs with friction have a figure of their own.
-            rows = [row for row in rows if row["friction"] is None or row["discs"] > 2]
+            smooth = of(table("passages"), friction=None)
+            rows = of([*smooth, *long_run("displacements")], quantity=quantity)
             due = {(r["distance"], r["z"]) for r in rows if r["z"] is not None and r["distance"]}
             axes = drawn(name)["residuals" if "residuals" in drawn(name) else quantity]
             assert points(axes, colour, marker) == due

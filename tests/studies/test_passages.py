@@ -178,7 +178,7 @@ def test_order_changes_by_exchanges_alone():
 def test_long_files_have_the_law_of_their_density(small, monkeypatch):
     """F within five standard errors of theory and, where discs pass, of the measured density."""
     monkeypatch.setattr(measure, "OPEN", (4,))
-    rows = list(measure.displacements("long", 1.5, 1.0, [0.28, 0.3], 1))
+    rows = list(measure.displacements("long", 1.5, 1.0, [0.28, 0.3], 1, 32))
     judged = [row for row in rows if row.get("z") is not None]
     assert [row["quantity"] for row in judged] == ["single_file"] * 3
     assert all(abs(row["z"]) < 5 for row in judged)

@@ -85,7 +85,7 @@ LONG_FILE, LONG_REPLICAS, OPEN = 128, 32, range(3, 6)
 FRICTION, STEP, RECORDS, LAGS = 4.0, 0.5, 128, (1, 2, 4, 8, 16, 32, 64)
 
 #: The lags between which displacements give F, and those between which they give D.
-SINGLE, HOPPED = (8, 32), (16, 32)
+SINGLE, HOPPED = (16, 64), (16, 32)
 
 #: Blocks of pairs of discs for c.
 LIMIT_BLOCKS = 512
@@ -413,7 +413,7 @@ def one_ring(name, box, inertia, events, seed):
         yield from NearThreshold(name, scene, "horizontal_hop", n, seed).diffusion(events)
 
 
-def one_long_file(name, box, radius, frictions, seed, inertia=None):
+def one_long_file(name, box, radius, frictions, seed, inertia=None, replicas=LONG_REPLICAS):
     """Yield the rows of one long file, which is open at a ``radius`` below h/4, else blocked.
 
     It is followed with each of ``frictions``: None, or the rate of kicks. Rough discs have an
@@ -437,7 +437,7 @@ def one_long_file(name, box, radius, frictions, seed, inertia=None):
             more["time"] = None if lag is None else lag * STEP * unit
             return row(start, found, quantity=quantity, method=method, replicas=found.n, **more)
 
-        places, hops = file.recorded(scene, STEP * unit, RECORDS, LONG_REPLICAS, stream, rate)
+        places, hops = file.recorded(scene, STEP * unit, RECORDS, replicas, stream, rate)
         numbers = file.order(places, scene.width)
         ordered = file.in_order(places, numbers, scene.width)
         moved, whole_file = (file.squares(x, LAGS) / per_disc**2 for x in (places, ordered))
@@ -562,17 +562,18 @@ def long_run(thresholds):
         yield from cluster_rows(one, cluster_counts(one))
 
 
-def displacements(name, width, height, blocked, seed):
-    """Yield the rows of a long run of long files, without and with friction.
+def displacements(name, width, height, blocked, seed, replicas):
+    """Yield the rows of a long run of ``replicas`` of long files, without and with friction.
 
     They are blocked at the first of the radii ``blocked``, or open; rough discs are blocked. At the
     other radii they are blocked and have friction, as in a build.
     """
-    box, both = Box(width, height), [None, FRICTION]
-    for radius in (blocked[0], *(radius_at(height / 4, n) for n in OPEN)):
-        yield from one_long_file(name, box, radius, both, seed)
-    yield from one_long_file(name, box, blocked[0], [None], seed, ONE_INERTIA)
-    yield from in_long_file(name, box, blocked[1:], seed)
+    box, opened = Box(width, height), [radius_at(height / 4, n) for n in OPEN]
+    files = [(radius, [None, FRICTION], None) for radius in (blocked[0], *opened)]
+    files.append((blocked[0], [None], ONE_INERTIA))
+    files += [(radius, [FRICTION], None) for radius in blocked[1:]]
+    for radius, frictions, inertia in files:
+        yield from one_long_file(name, box, radius, frictions, seed, inertia, replicas)
 
 
 def file_of(box, discs, halvings):
