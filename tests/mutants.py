@@ -121,7 +121,7 @@ MUTANTS = [
     ("half of the alarm", "judged(rows, alarm / 2)", "judged(rows, alarm)"),
     ("a larger work is lost", "result._again(settings, options)", "result._again(self.settings, options)"),
     ("radii that do not fit are lost", "for result in self], self.refused)", "for result in self])"),
-    ("numbers with errors that are not known", "self._has_error(name)]", "self[name].value is not None]"),
+    ("numbers with errors that are not known", "n in self and self[n].stderr is not None]", "n in self and self[n].value is not None]"),
     ("finished work counts twice", "bar.update(done - bar.n)", "bar.update(done)"),
     ("error of a pressure", 'value * row["stderr"] / time', 'row["stderr"] / time'),
     ("decay of what is left", "np.exp(-2 * kappa * late", "np.exp(-kappa * late"),
