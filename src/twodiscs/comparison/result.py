@@ -149,9 +149,7 @@ class Result(Printed):
 
 def note_of_number(what, asked, done):
     """Return the note that a number was rounded up to whole blocks, None if it was not."""
-    if done == asked:
-        return None
-    return f"{asked} {what} asked for, {done} done: whole blocks"
+    return None if done == asked else f"{asked} {what} asked for, {done} done: whole blocks"
 
 
 #: Settings that can grow when a result goes on; the first one of a kind is its amount.

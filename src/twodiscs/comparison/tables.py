@@ -117,12 +117,10 @@ class Table:
             columns = cls.columns_of(texts)
             return pd.DataFrame({n: _values(texts[n], column) for n, column in columns.items()})
         except KeyError as missing:
-            raise InputError(
-                f"{path} must be a table {cls.name()}, but has no column {missing}"
-            ) from None
+            why = f"has no column {missing}"
         except ValueError as error:
             why = " ".join(str(error).split())
-            raise InputError(f"{path} must be a table {cls.name()}, but {why}") from None
+        raise InputError(f"{path} must be a table {cls.name()}, but {why}")
 
     @classmethod
     def read(cls, path):

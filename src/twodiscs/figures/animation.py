@@ -80,9 +80,8 @@ def frame_times(rows, step, discs=2):
     frames = centre + step * np.arange(-BEFORE if hop else 0, later + 1)
     frames = frames[(frames >= start) & (frames <= end)]
     if len(frames) < 2:
-        raise InputError(
-            f"trajectory must last two frames, a time of {step:g}, not {end - start:g}"
-        )
+        lasts = end - start
+        raise InputError(f"trajectory must last two frames, a time of {step:g}, not {lasts:g}")
     return frames, hop, centre
 
 

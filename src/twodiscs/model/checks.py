@@ -87,15 +87,13 @@ def quote(value):
 @contextmanager
 def writing_to(path):
     """Raise ``InputError`` if the file ``path`` cannot be written in the block."""
+    refused = f"path must be a file to write, not {str(path)!r}"
     if "\0" in str(path):
-        raise InputError(
-            f"path must be a file to write, not {str(path)!r}: it has a null character"
-        )
+        raise InputError(f"{refused}: it has a null character")
     try:
         yield
     except (OSError, TypeError) as error:
-        why = getattr(error, "strerror", None) or error
-        raise InputError(f"path must be a file to write, not {str(path)!r}: {why}") from None
+        raise InputError(f"{refused}: {getattr(error, 'strerror', None) or error}") from None
 
 
 def format_number(value, form=""):

@@ -423,11 +423,7 @@ class Scene:
     @cached_property
     def regime(self) -> str:
         """One of ``REGIMES``; on a periodic axis there are no hops."""
-        if self.vertical_hops and self.horizontal_hops:
-            return "all-hops"
-        if self.vertical_hops:
-            return "vertical-hops"
-        return "horizontal-hops" if self.horizontal_hops else "no-hops"
+        return REGIMES[2 * (not self.vertical_hops) + (not self.horizontal_hops)]
 
     @cached_property
     def ergodic_components(self) -> int | None:
