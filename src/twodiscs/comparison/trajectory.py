@@ -93,10 +93,9 @@ class Trajectory(pd.DataFrame):
             at = np.atleast_1d(np.asarray(times, float))
         except (TypeError, ValueError):
             raise InputError(f"times must be a list of numbers, not {quote(times)}") from None
-        first, last = known[0], known[-1]
-        if at.ndim > 1 or not np.all((at >= first) & (at <= last)):
+        if at.ndim > 1 or not np.all((at >= known[0]) & (at <= known[-1])):
             raise InputError(
-                f"times must be numbers from {first!s} to {last!s}, not {quote(times)}"
+                f"times must be numbers from {known[0]!s} to {known[-1]!s}, not {quote(times)}"
             )
         row = np.searchsorted(known, at, side="right") - 1
         states = np.empty(at.size, [(name, float) for name in names])

@@ -160,9 +160,7 @@ def run_blocks(scene, events, seed, first, stop, duration, **shape):
     return of_events(*counts)
 
 
-def run_classes(
-    scene, seed, first, stop, duration, *, replicas=None, lanes=ensemble.LANES, hops=True
-):
+def run_classes(scene, seed, first, stop, duration, *, replicas=None, lanes=None, hops=True):
     """Count all classes of events of a ``Scene`` in the blocks ``first`` … ``stop`` − 1.
 
     A block is ``replicas`` states of the invariant measure from the stream ``seed``, each followed
@@ -170,7 +168,7 @@ def run_classes(
     neither lanes nor shards. ``LARGE`` numbers of discs have the kernel ``many.cells``, which
     leaves out hops if ``hops`` is not True.
     """
-    replicas = replicas or block_replicas(scene)
+    replicas, lanes = replicas or block_replicas(scene), lanes or ensemble.LANES
     hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
     law, grid, initial = law_of(scene), large_grid(scene), initial_of(scene)
     counts = np.zeros(N, np.int64), np.zeros((N, N), np.int64)

@@ -480,7 +480,7 @@ def advance_states(states, laps, time, law, kicks, hops, lanes=ensemble.LANES):
 
 @compiled
 def hops_in_flight(before, after, l, time, when):
-    """Fill ``when`` with the times at which two discs came to be level, in order; return how many.
+    """Fill ``when`` with the times at which two discs came to be level, and return how many.
 
     ``before`` and ``after`` (N, lanes) are coordinates at the ends of a flight of lane ``l``.
     """
@@ -489,9 +489,13 @@ def hops_in_flight(before, after, l, time, when):
         for j in range(i):
             start, end = before[i, l] - before[j, l], after[i, l] - after[j, l]
             if crosses(start, end):
-                when[n] = time * (start / (start - end))
+                # The list is short, and stays in the order of time.
+                at, k = time * (start / (start - end)), n
+                while k > 0 and when[k - 1] > at:
+                    when[k] = when[k - 1]
+                    k -= 1
+                when[k] = at
                 n += 1
-    initial.sort(when[:n])
     return n
 
 
