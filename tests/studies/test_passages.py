@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from marks import slow
 from scipy.stats import chi2
 
 from twodiscs.figures import style
@@ -89,7 +88,7 @@ def small(monkeypatch):
     for name, value in {
         "SMOOTH": range(6, 9), "ROUGH": range(6, 9), "RING": range(3, 4),
         "MOST_HOPS": 2**12, "LIMIT_BLOCKS": 4,
-        "LONG_FILE": 24, "LONG_REPLICAS": 8, "RECORDS": 64,
+        "LONG_FILE": 18, "LONG_REPLICAS": 8, "RECORDS": 64,
     }.items():  # fmt: skip
         monkeypatch.setattr(measure, name, value)
 
@@ -116,7 +115,7 @@ def test_two_discs_in_a_file_move_as_their_hops_are_correlated():
     assert abs(moved.value - due["estimate"]) < 5 * math.hypot(moved.stderr, due["stderr"])
 
 
-@pytest.mark.parametrize("inertia", [None, slow(0.5)])
+@pytest.mark.parametrize("inertia", [None, 0.5])
 def test_hops_in_a_file_are_those_of_monte_carlo(inertia):
     scene = Scene(2.25, 1.0, 0.2, discs=3, periodic="x", moment_of_inertia=inertia)
     _, hops = walked(scene, 16.0, 2048, 3)
