@@ -56,12 +56,6 @@ def test_days_are_those_of_the_jobs_of_all_radii_or_of_some_times_their_number(m
     assert cost.days([scene()]) < 0.1
 
 
-def test_what_one_job_can_do_has_no_shards():
-    assert cost.shards(scene(), "dynamics", 0.24) == []
-    # The budget allows for more than a shard, and the accuracy does not take it.
-    assert cost.shards(scene(accuracy=0.1, event_budget=1e15), "dynamics", 0.24) == []
-
-
 @pytest.mark.parametrize("stage", ["monte_carlo", "dynamics", "intervals"])
 def test_shards_cover_all_blocks_once(stage):
     request = scene(

@@ -150,12 +150,6 @@ def test_cost_is_the_time_of_the_jobs_and_may_be_missing(run, points):
     assert rows["monte_carlo", 0.1]["events"] == 10**7
 
 
-def test_an_edited_point_is_refused(run, points):
-    edit(points["dynamics"][0], "0-1")
-    with pytest.raises(InputError, match="is not what its job wrote; delete it"):
-        run("table", MADE, files=points, table="mean_times.csv")
-
-
 def test_a_figure_names_its_code_and_its_tables(run, points, tmp_path):
     run("table", MADE, files=points, table="volume.csv")
     Path("sums").write_text("the code\n")

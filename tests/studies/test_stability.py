@@ -268,15 +268,6 @@ def test_the_audit_sees_what_is_wrong():
     assert audited([GOOD], shortest=1000.0)[4][0]
 
 
-def test_units_of_the_box():
-    for scene, units in (
-        (SCENE, (1.0, 1.0)),
-        (Scene(4.0, 3.9, 0.1), (4.0, 2.0)),
-        (Scene(1e-6, 1e6, 1e-7), (2.0**-20, 2.0**19)),
-    ):
-        assert stability.box_units(scene) == units
-
-
 def test_events_retraced_are_those_the_exponent_allows():
     """z within 5 for the exponents; the number within five binary digits of roundings."""
     box = Box(1e-3, 1.3e-3)
@@ -321,7 +312,8 @@ def test_intervals_cover_the_exact_time_in_95_of_100(monkeypatch):
 def quick(monkeypatch):
     """Everything small, for the form of the table only."""
     for name, value in {
-        "SHARE_PROPOSALS": 1, "ESTIMATE_PROPOSALS": 1, "REVERSED": 200, "WINDOW": 64,
+        "SHARE_PROPOSALS": montecarlo.PROPOSALS, "ESTIMATE_PROPOSALS": montecarlo.PROPOSALS,
+        "REVERSED": 200, "WINDOW": 64,
     }.items():  # fmt: skip
         monkeypatch.setattr(stability, name, value)
     rows, extremes = stability.coverage_rows, stability.extreme_rows

@@ -47,16 +47,6 @@ def test_exact_numbers_have_the_digits_of_the_antiderivatives(box):
                 assert relative_error(times[event], time) < 1e-50, (scene, event)
 
 
-def test_the_digits_do_not_depend_on_those_that_the_caller_works_with():
-    scene = Scene(1.5, 1.0, 0.123)
-    with mp.workdps(15):
-        volume, areas, times = exact_numbers(scene)
-    for quantity, value in reference(scene).items():
-        assert relative_error((volume | areas)[quantity], value) < 1e-50
-    for event, time in reference_times(scene).items():
-        assert relative_error(times[event], time) < 1e-50
-
-
 def test_every_number_has_the_name_that_tables_give_it():
     scene = Scene(1.5, 1.0, 0.2)
     volume, areas, times = exact_numbers(scene)
