@@ -88,11 +88,10 @@ def kicks_of(scene, number, seed, block=0):
 def unwrap(scene, columns, wraps):
     """Undo the jumps of a periodic separation, see ``trajectory.path_of``."""
     law = law_of(scene)
-    for k, axis in enumerate("xyz"):
-        if axis in scene.periodic:
-            _, first, second = getattr(law, f"wrap_{axis}")
-            columns[f"{axis}1"] += first * wraps[k]
-            columns[f"{axis}2"] -= second * wraps[k]
+    for axis, wrap, jumps in zip("xyz", (law.wrap_x, law.wrap_y, law.wrap_z), wraps, strict=True):
+        if wrap is not None:
+            columns[f"{axis}1"] += wrap[1] * jumps
+            columns[f"{axis}2"] -= wrap[2] * jumps
 
 
 def nearest_image(scene, state):
