@@ -27,7 +27,7 @@ def test_a_run_waits_for_crowds_that_its_budget_can_show():
     scene = td.Scene(1.5, 1.0, 0.245, moment_of_inertia=0.5)
     needed = replicas_needed(scene, "disc_collision", 1e-2)
     few, enough = (
-        td.simulate(scene, error=1e-2, budget=budget, events=["disc_collision"])
+        td.simulate(scene, error=1e-2, budget=budget, events=["disc_collision", "right_wall"])
         for budget in (1e6, 1e9)
     )
     assert few.rows[0]["replicas"] < needed <= enough.rows[0]["replicas"]

@@ -11,7 +11,6 @@ from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.two import lockstep, strip
 from twodiscs.model.box import Box
 from twodiscs.model.checks import LONGEST, SHORTEST, InputError
-from twodiscs.model.events import HOPS
 from twodiscs.model.two import LEAST_DISTANCE
 from twodiscs.sampling.starts import require_room
 from twodiscs.theory import exact
@@ -133,7 +132,7 @@ def test_what_is_too_rare_to_be_drawn_is_waited_for_in_vain_and_that_ends(
 ):
     scene = Box(width, height, effects).scene(radius)
     assert strip.rare_hops(scene) == ()
-    point = runs.CountingRun(scene, dict.fromkeys(HOPS, 0.01), 10**6, 1).run()
+    point = runs.CountingRun(scene, dict.fromkeys(scene.events, 0.01), 10**6, 1).run()
     assert point.counts["horizontal_hop"] == 0
     assert point.events <= 10**6
 
