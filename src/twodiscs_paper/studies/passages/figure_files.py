@@ -100,7 +100,7 @@ def _moved(axes, rows):
         xlabel=r"time $t\,\sqrt{kT/m}\,/h$", ylabel=r"displacement $\langle x^2\rangle/\ell^2$"
     )
     axes.xaxis.set_major_formatter("{x:g}")
-    axes.legend(loc="upper left")
+    axes.legend(loc="lower right")
 
 
 def _collapse(axes, rows):
