@@ -5,6 +5,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from factory import all_reached
 from marks import slow
 
 from twodiscs.dynamics import runs
@@ -181,6 +182,17 @@ def test_only_rare_hops_of_a_neck_have_strips():
     assert strip.rare_hops(Scene(100.0, 1.0, 0.01)) == ()
     for scene, hop in NECKS.values():
         assert set(strip.rare_hops(scene)) <= {hop}
+
+
+@pytest.mark.parametrize(("hop", "distance"), [("vertical_hop", 1e-4), ("horizontal_hop", 1e-9)])
+def test_the_target_is_reached_at_any_distance_from_a_threshold(hop, distance):
+    scene = PAPER.with_radius((0.375 if hop == "vertical_hop" else 0.25) * (1 - distance))
+    point = runs.CountingRun(scene, {hop: 0.01}, 10**8, 1).run()
+    assert all_reached(point)
+    assert point.strips[hop].events < 100 * point.strips[hop].replicas
+    time = point.estimate(hop)
+    assert time.relative_stderr <= 0.01
+    assert abs(time.value / exact.mean_times(scene)[hop] - 1) < 5 * time.relative_stderr
 
 
 @pytest.mark.parametrize(
