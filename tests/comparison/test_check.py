@@ -101,7 +101,7 @@ def possible_radii(event):
     return {scene.radius for scene in scenes() if scene.is_possible(event)}
 
 
-#: What else fails if a number is wrong.
+#: {wrong number: another one that fails with it}.
 ALSO = {"vertical_hop_time": "vertical_hop_interval"}
 ALSO |= {f"{wall}_area": "any_wall_area" for wall in WALLS}
 

@@ -217,7 +217,7 @@ POWERS = {"": 0, "length": 1, "time": 1, "1/time": -1, "length³": 3, "length⁴
 
 
 def test_columns_scale_as_their_units_say():
-    """Of equal random numbers, in two boxes of which one is twice as large."""
+    """Two boxes, one twice as large, have the same random numbers."""
     found = []
     for unit in (1, 2):
         box, radius = Box(1.5 * unit, 1.0 * unit), 0.2 * unit

@@ -33,7 +33,7 @@ class Curves:
 
 @dataclass(frozen=True, kw_only=True)
 class Content:
-    """What a figure shows.
+    """The content of a figure.
 
     ``tables`` are the names of the tables that it reads. ``needs`` are quantities, named as in
     theory.csv, or ``hop_histogram`` or ``trajectory``. A figure over the radius has ``curves``. The
