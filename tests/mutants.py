@@ -219,6 +219,8 @@ MUTANTS = [
     ("cost of insertions of a pilot as of a block", "(one.estimate.relative_stderr**2 * blocks, 0.0)", "(one.estimate.relative_stderr**2, 0.0)"),
     ("scores of the explorer with the other sign", "exact && (DURATION / exact - mean) / (relative * mean)", "exact && (mean - DURATION / exact) / (relative * mean)"),
     ("jobs beside one that measures seconds", "threads: lambda w: ALL_CORES if w.table in MADE_BY[w.table].timed else 1", "threads: lambda w: 1"),
+    ("kT of two components for each disc", "scene.velocity_components * momentum_per_hit(scene, event)", "2 * scene.discs * momentum_per_hit(scene, event)"),
+    ("spin of disc 2 by the inertia of disc 1", "direction[used + 1] * inertia[1]", "direction[used + 1] * inertia[0]"),
 ]
 # fmt: on
 

@@ -35,7 +35,7 @@ SMOOTH = {"plain": PLAIN, "plain, narrow": PLAIN.with_radius(0.3)}
 STARTS = {
     **SCENES,
     "upright channel": Scene(1.5, 1.0, 0.2, periodic="y", mass_ratio=0.2),
-    "rough channel": Scene(1.5, 1.0, 0.2, periodic="x", moment_of_inertia=1.0),
+    "rough channel": Scene(1.5, 1.0, 0.2, periodic="x", moment_of_inertia=1.0, mass_ratio=2.0),
     "balls between plates": Scene(1.5, 1.0, 0.2, depth=0.8, periodic="xz", mass_ratio=5.0),
     "strong field": Scene(1.5, 1.0, 0.15, field=1.5, mass_ratio=0.5),
 }

@@ -80,6 +80,14 @@ def test_momenta_are_means_over_the_flux():
             assert abs(mean - exact_mean) < 5 * spread / math.sqrt(len(speed)), (name, event)
 
 
+@pytest.mark.parametrize("name", ["unequal", "rough", "balls", "channel"])
+def test_the_pressure_of_points_is_that_of_an_ideal_gas(name):
+    """Corrections are of the order of the radius over a side."""
+    scene = replace(SCENES[name], radius=1e-9)
+    pressure = virial.pressure_factor(scene, "top_wall") * exact.rate(scene, "top_wall")
+    assert pressure == pytest.approx(1, abs=1e-7)
+
+
 @pytest.mark.parametrize("inertia", [None, 0.5])
 @pytest.mark.parametrize("radius", [0.01, 0.24, 0.3, 0.38])
 def test_weights_make_the_rates_add_up_to_one(radius, inertia):
