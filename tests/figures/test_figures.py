@@ -24,6 +24,9 @@ from twodiscs_paper.studies.thresholds.measure import leading_law
 QUICK = ("square", "paper", "long", *OTHERS)
 TABLED = (*QUICK, "ten", "nearly square", "tiny", "large")
 
+#: Without a layout a figure takes a tenth of the time. Its texts stand in these boxes.
+LAID_OUT = ("paper", "effects")
+
 QUANTITIES = {quantity for entry in FIGURES.values() for quantity in entry.needs}
 
 
@@ -33,14 +36,19 @@ def quantities(box):
     return {quantity for quantity in QUANTITIES if quantity.rpartition("_")[0] not in absent}
 
 
-def cases():
-    """Return the parameters (figure, box): drawings in all plain boxes, the others in some."""
+def cases(quick, names=FIGURES):
+    """Return the parameters (figure, box), slow except in ``quick`` boxes.
+
+    Drawings are in all plain boxes. A figure with every kind of panel stands for headings and
+    names of limits.
+    """
     return [
-        pytest.param(name, box, marks=[] if box in QUICK else pytest.mark.slow)
+        pytest.param(name, box, marks=[] if box in own else pytest.mark.slow)
         for name, entry in FIGURES.items()
+        for own in [quick if entry.tables and name != "mean_hop_time" else QUICK]
         for box in (TABLED if entry.tables else BOXES)
         for sides in [(BOXES | OTHERS)[box]]
-        if entry.is_called(quantities(sides), sides.calls_for)
+        if name in names and entry.is_called(quantities(sides), sides.calls_for)
     ]
 
 
@@ -51,7 +59,7 @@ def drawn(name, box):
         return draw(name, (BOXES | OTHERS)[box], tables_of(box))
 
 
-@pytest.mark.parametrize(("name", "box"), [*cases(), ("wall_area", "tall")])
+@pytest.mark.parametrize(("name", "box"), [*cases(LAID_OUT), ("wall_area", "tall")])
 def test_texts_stand_clear(name, box):
     figure = drawn(name, box)
     with style.context():
@@ -120,9 +128,7 @@ def series(name, box, rows):
 OVER_RADIUS = {*radius.OVER_RADIUS, "all_areas", "pressure"}
 
 
-@pytest.mark.parametrize(
-    ("name", "box"), [case for case in cases() if case.values[0] in OVER_RADIUS]
-)
+@pytest.mark.parametrize(("name", "box"), cases(QUICK, OVER_RADIUS))
 def test_numbers_over_the_radius_are_those_of_the_rows(name, box):
     """Estimates with their errors, residuals, and exact curves, in the order of the quantities."""
     rows = tables_of(box)[FIGURES[name].tables[0]]

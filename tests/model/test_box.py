@@ -5,7 +5,7 @@ import json
 import math
 
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from twodiscs.model.box import METHODS, Box, key, stream_seed
@@ -145,6 +145,7 @@ def test_a_field_ends_the_scenes_where_the_energy_does_not_lift_one_disc_onto_th
 
 
 @given(sides, sides)
+@settings(max_examples=40)
 def test_ends_are_found_to_the_last_digit(width, height):
     """The closed forms of a plain box: w/4 or the largest radius, which ``fits`` decides."""
     box = Box(width, height)

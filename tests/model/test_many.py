@@ -133,7 +133,7 @@ CHANNELS = [
 @pytest.mark.parametrize(("discs", "height", "length"), CHANNELS)
 def test_parts_of_a_channel_are_those_of_its_heights(discs, height, length):
     """All heights on a lattice with room for them, and which of them hang together."""
-    scene, lattice = channel(discs, height, length), np.linspace(0, height, 41)
+    scene, lattice = channel(discs, height, length), np.linspace(0, height, 25)
     assert is_ordered(scene)
     assert not is_ordered(replace(scene, height=2 * scene.height))
     assert not is_ordered(replace(scene, periodic="x"))
@@ -151,8 +151,8 @@ def test_parts_of_a_long_channel_are_those_of_its_corners(discs, height):
     index = np.arange(corners.shape[1])
     highest, found = [], set()
     for disc in range(discs):
-        paths = np.repeat(corners[:, :, None], 61, axis=2)
-        paths[disc] = np.linspace(0, height, 61)
+        paths = np.repeat(corners[:, :, None], 31, axis=2)
+        paths[disc] = np.linspace(0, height, 31)
         highest.append(total_of(paths).max(axis=1))
     totals = total_of(corners)
     for length in np.linspace(totals.min() + 0.003, discs - 0.9, 60):

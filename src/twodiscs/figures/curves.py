@@ -100,6 +100,7 @@ def branches(box, others=()):
     return regimes
 
 
+@cache
 def exact_curves(box, others=()):
     """Return (radii, {quantity: values}) along the exact curves of a ``Box``.
 

@@ -87,7 +87,8 @@ class StyledFigure(Figure):
     def settle(self):
         """Place all parts for good: a layout that is computed again moves them by a pixel."""
         if self.get_layout_engine() is not None:
-            self.draw_without_rendering()
+            with context():
+                self.get_layout_engine().execute(self)
             self.set_layout_engine("none")
 
     def _repr_png_(self):

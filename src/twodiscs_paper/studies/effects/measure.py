@@ -152,7 +152,7 @@ def curve_rows(scenes):
     """Yield the rows of effects_curves.csv, for ``scenes`` in boxes with the same sides."""
     boxes = {name: Box(**parameters) for name, parameters in scenes.items()}
     first = next(iter(boxes.values()))
-    others = [radius for radius, _ in limits(Box(first.width, first.height))]
+    others = tuple(radius for radius, _ in limits(Box(first.width, first.height)))
     for name, box in boxes.items():
         radii, times = curves.exact_curves(box, others)
         for i, radius in enumerate(map(float, radii)):
