@@ -221,6 +221,7 @@ MUTANTS = [
     ("jobs beside one that measures seconds", "threads: lambda w: ALL_CORES if w.table in MADE_BY[w.table].timed else 1", "threads: lambda w: 1"),
     ("kT of two components for each disc", "scene.velocity_components * momentum_per_hit(scene, event)", "2 * scene.discs * momentum_per_hit(scene, event)"),
     ("spin of disc 2 by the inertia of disc 1", "direction[used + 1] * inertia[1]", "direction[used + 1] * inertia[0]"),
+    ("spins not reversed", "positions = 10 if law.depth is not None else 8", "positions = 10"),
 ]
 # fmt: on
 

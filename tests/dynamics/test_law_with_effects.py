@@ -29,7 +29,7 @@ from twodiscs.dynamics.two import follow
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.starts import components, states
+from twodiscs.sampling.starts import COMPONENTS, components, states
 
 EPS = 2.0**-52
 SCENES = effect_scenes.SCENES | {
@@ -80,9 +80,11 @@ def gap(scene, state):
 
 
 def reversed_state(scene, state):
-    """Return the state with velocities and spins reversed."""
-    deep = state[8:10] if scene.depth is not None else ()
-    return (*state[:4], *(-p for p in state[4:8]), *deep, *(-p for p in state[8 + len(deep) :]))
+    """Return the state with velocities and spins reversed, as the loop keeps it."""
+    column, kept = np.zeros((2, COMPONENTS, 1))
+    column[: len(state), 0] = state
+    follow.keep_reversed(kept, 0, column, 0, law_of(scene), True)
+    return tuple(map(float, kept[: len(state), 0]))
 
 
 # Conserved quantities ---------------------------------------------------------------------------
