@@ -222,6 +222,8 @@ MUTANTS = [
     ("kT of two components for each disc", "scene.velocity_components * momentum_per_hit(scene, event)", "2 * scene.discs * momentum_per_hit(scene, event)"),
     ("spin of disc 2 by the inertia of disc 1", "direction[used + 1] * inertia[1]", "direction[used + 1] * inertia[0]"),
     ("spins not reversed", "positions = 10 if law.depth is not None else 8", "positions = 10"),
+    ("two shells without their overlap", '"right*top": self.right_and_top, "top*top"', '"right*top": 0, "top*top"'),
+    ("flux without the error of Monte Carlo", "stderr = ratio * math.hypot(*relative)", "stderr = ratio * relative[0]"),
 ]
 # fmt: on
 

@@ -1,6 +1,7 @@
 """N discs: without it a disc could be lost on its way to the rows, or two programs differ."""
 
 import json
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +10,7 @@ import scalar_many
 from factory import POINTS
 
 import twodiscs as td
+from twodiscs.comparison import check
 from twodiscs.comparison.tables import Check, Theory
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
@@ -73,7 +75,7 @@ def measured(request):
 
 
 def test_nothing_fails(measured):
-    name, scene, _, rows = measured
+    name, scene, points, rows = measured
     assert [row for row in rows if row["passed"] is False] == []
     compared = {(row["comparison"], row["quantity"]) for row in rows if row["z"] is not None}
     assert (("sum_rule", "mean_times") in compared) == (not scene.periodic)
@@ -84,6 +86,13 @@ def test_nothing_fails(measured):
         if row["comparison"] == "volume":
             assert (row["exact"] is None) == (name not in KNOWN)
     assert any(kind == "flux" for kind, _ in compared) == (name not in KNOWN)
+    counted, inserted = (points[stage][0] for stage in ("dynamics", "monte_carlo"))
+    for row in rows:
+        if row["comparison"] == "flux" and row["z"] is not None:
+            event = row["quantity"].removesuffix("_time")
+            errors = counted.estimate(event), check.flux_time(scene, event, inserted)
+            relative = math.hypot(*(one.relative_stderr for one in errors))
+            assert row["stderr"] / row["estimate"] == pytest.approx(relative)
 
 
 def test_a_wrong_rate_is_found_without_an_exact_value(measured):

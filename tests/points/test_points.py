@@ -158,6 +158,11 @@ def test_the_area_of_all_walls_is_as_sure_as_that_of_the_rarer_wall():
     hits = {"right_wall_area": Hits(5000, 1.0, 0.1), "top_wall_area": Hits(50, 1.0, 0.1)}
     point = MonteCarloPoint(0.1, "monte_carlo", 10**6, hits, right_and_top=1)
     assert point.all_walls(BOX.scene(0.1)).enough == 50
+    # If all hits are of both shells, they are those of one shell of twice the area.
+    hits["right_wall_area"] = hits["top_wall_area"]
+    point = replace(point, quantities=hits, right_and_top=50)
+    area = point.all_walls(BOX.scene(0.1)).estimate
+    assert area.relative_stderr == pytest.approx(point.estimate("top_wall_area").relative_stderr)
 
 
 CONTENT = {"radius": 0.1, "counts": {"hop": 2**62 + 1}, "mean": 0.1 + 0.2, "sums": [[1, 2], [3]]}
