@@ -224,6 +224,7 @@ MUTANTS = [
     ("spins not reversed", "positions = 10 if law.depth is not None else 8", "positions = 10"),
     ("two shells without their overlap", '"right*top": self.right_and_top, "top*top"', '"right*top": 0, "top*top"'),
     ("flux without the error of Monte Carlo", "stderr = ratio * math.hypot(*relative)", "stderr = ratio * relative[0]"),
+    ("rate of decay of independent counts", "np.std(counted[:, 0] / early - counted[:, 1] / late", "np.std(counted[:, 0] / early + counted[:, 1] / late"),
 ]
 # fmt: on
 

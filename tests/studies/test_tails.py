@@ -91,6 +91,8 @@ def test_the_rate_of_decay_is_that_of_the_counts():
     assert rate.value == pytest.approx(by_hand, rel=1e-12)
     # Correlations between the two counts can only help, and intervals are nearly independent.
     assert rate.stderr * (last - first) < 2 / math.sqrt(8 * 20_000 * late.value)
+    # The ratio of counts in proportion has no error.
+    assert tails.decay(np.array([[2.0, 1.0], [4.0, 2.0]]), first, last).stderr < 1e-12
 
 
 def test_cases_of_other_boxes():
