@@ -5,6 +5,7 @@ from itertools import combinations, pairwise
 from unittest.mock import patch
 
 import numpy as np
+from factory import empty
 from matplotlib.text import Text
 
 from twodiscs.comparison.tables import SCENE_TABLES
@@ -85,30 +86,21 @@ def noisy(rng, exact, relative):
 
 def sampled(rng, radius, quantity, exact, relative):
     """Return a row of volume.csv or areas.csv."""
-    row = {"radius": radius, "quantity": quantity, "method": "monte_carlo", "exact": exact}
-    row |= {"samples": 10**7, "hits": 10**6, "epsilon": 0.001, "expectation": exact, "bias": 0.0}
+    row = empty(SCENE_TABLES["areas"], radius=radius, quantity=quantity, exact=exact, hits=10**6)
     if exact == 0:
-        nothing = {"estimate": None, "stderr": None, "z": 0.0, "hits": 0}
-        return row | nothing | {"status": "impossible", "test": "certain"}
+        return row | {"z": 0.0, "hits": 0, "status": "impossible", "test": "certain"}
     return row | noisy(rng, exact, relative) | {"status": "sampled", "test": "normal"}
 
 
 def simulated(rng, scene, event, exact, relative):
     """Return a row of mean_times.csv."""
-    row = {"radius": scene.radius, "event": event, "exact": exact, "count": 1000}
-    row |= {"replicas": 1000, "duration": 100.0, "target": relative, "bound": None}
-    row |= {"ergodic_components": scene.ergodic_components, "relative_stderr": relative}
-    row |= {"starts": "invariant", "share": 1.0, "copies": scene.copies(event)}
-    nothing = {"estimate": None, "stderr": None, "relative_stderr": None, "count": 0}
+    row = empty(SCENE_TABLES["mean_times"], radius=scene.radius, event=event, exact=exact)
     if not scene.is_possible(event):
-        return row | nothing | {"z": 0.0, "status": "impossible", "test": "certain"}
+        return row | {"z": 0.0, "status": "impossible", "test": "certain"}
     if (exact or 0) > 1e5:
-        bound = {"bound": exact / 2, "z": None, "status": "none-seen", "test": None}
-        return row | nothing | bound
+        return row | {"bound": exact / 2, "status": "none-seen"}
     row |= noisy(rng, exact, relative) | {"status": "reached", "test": "normal"}
-    if (exact or 0) > 1e4:
-        row |= {"stderr": None, "relative_stderr": None, "status": "too-few"}
-    return row
+    return row | ({"stderr": None, "status": "too-few"} if (exact or 0) > 1e4 else {})
 
 
 def histogram(rng, scene, intervals=10**6, bins=512):

@@ -99,7 +99,7 @@ def pixels(path):
 
 def test_a_returned_figure_is_saved_as_plot_saves_it(tmp_path):
     """By its own method, after it was pickled, and as a notebook shows a copy that was changed."""
-    figure = td.plot(scan(HOPS), tmp_path / "ours.png")
+    figure = td.plot(scan(COLLISIONS), tmp_path / "ours.png")
     pickle.loads(pickle.dumps(figure)).savefig(tmp_path / "own.png")
     np.testing.assert_array_equal(pixels(tmp_path / "own.png"), pixels(tmp_path / "ours.png"))
     figure.savefig(tmp_path / "own.pdf")
@@ -110,12 +110,11 @@ def test_a_returned_figure_is_saved_as_plot_saves_it(tmp_path):
 
 
 def test_plots_in_threads_leave_the_settings_of_matplotlib_alone():
-    found, before = scan(HOPS), dict(matplotlib.rcParams)
-    expected = td.plot(found)._repr_png_()
+    table, before = td.exact_table(1.5, 1.0, [0.1]), dict(matplotlib.rcParams)
     with ThreadPoolExecutor(2) as pool:
-        pictures = [*pool.map(lambda _: td.plot(found)._repr_png_(), range(2))]
+        first, second = pool.map(lambda _: td.plot(table, figure="volume")._repr_png_(), range(2))
     assert dict(matplotlib.rcParams) == before
-    assert pictures == [expected] * 2
+    assert first == second == td.plot(table, figure="volume")._repr_png_()
 
 
 # Animations ---------------------------------------------------------------------------------------

@@ -62,23 +62,17 @@ def test_no_figure_is_shown_twice_and_those_that_are_shown_are_there_and_spoken_
 # How it compiles ----------------------------------------------------------------------------------
 
 
-@pytest.fixture(scope="session")
-def page(tmp_path_factory):
-    """Return a PDF file with nothing on it."""
-    path = tmp_path_factory.mktemp("page") / "page.pdf"
-    with style.context():
-        style.save(style.new_figure(1.0), path)
-    return path
-
-
 @pytest.fixture(scope="module")
-def paper(tmp_path_factory, page, tables_of):
+def paper(tmp_path_factory, tables_of):
     """Return a function that typesets the manuscript from the expected tables.
 
     It returns the bytes and {name: text} of the numbers. ``figures`` are those of a scene and
     ``common`` the others; the ``empty`` tables have no rows. ``edit`` is (file, old text, new text)
-    for a file of the results or of the manuscript.
+    for a file of the results or of the manuscript. All figures are empty pages.
     """
+    page = tmp_path_factory.mktemp("page") / "page.pdf"
+    with style.context():
+        style.save(style.new_figure(1.0), page)
 
     def make(
         figures=(*SCENE_FIGURES,), common=(*STUDY_FIGURES,), scenes=1, empty=(), edit=("", "", "")
