@@ -27,7 +27,7 @@ SCENES = {
     "three": Scene(1.5, 1.0, 0.15, discs=3),
     "three, dense": Scene(1.5, 1.0, 0.26, discs=3),
     "eight in a channel": Scene(3.5, 0.6, 0.18, discs=8),
-    "four, upright": Scene(0.6, 1.6, 0.18, discs=4),
+    "four, upright": Scene(0.6, 2.0, 0.18, discs=4),
     "four": Scene(1.5, 1.0, 0.12, discs=4),
     "four on a ring": Scene(1.5, 1.0, 0.15, periodic="x", discs=4),
 }

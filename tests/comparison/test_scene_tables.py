@@ -20,6 +20,7 @@ from twodiscs.comparison.tables import (
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.many import engine
 from twodiscs.model.box import Box
+from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.dynamics import StripCount
@@ -224,7 +225,7 @@ def test_columns_scale_as_their_units_say():
         scene, theory = box.scene(radius), Theory.rows(box, [radius])
         sampled = ["volume", "vertical_hop_area", "disc_collision_area"]
         points = {
-            "dynamics": [runs.CountingRun(scene, {"any_wall": 1.0}, 1, 7).run()],
+            "dynamics": [runs.CountingRun(scene, dict.fromkeys(EVENTS, 1.0), 1, 7).run()],
             "intervals": [runs.IntervalRun(scene, "vertical_hop", 1, 7).run()],
             "monte_carlo": [SamplingRun(scene, sampled, 1, 0.02, 7).run()],
         }

@@ -277,12 +277,12 @@ def filled(rng, starts):
     return rng.multinomial(starts, SHARES.ravel()).reshape(SHARES.shape)
 
 
-@pytest.mark.parametrize(("starts", "number"), [(60, 20_000), (700, 20_000), (3000, 100)])
+@pytest.mark.parametrize(("starts", "number"), [(60, 6000), (700, 6000), (3000, 100)])
 def test_means_have_no_bias(starts, number):
-    """Five sigma of 20,000 means, without scatter within strata: 1/28 of what scatter is left.
+    """Five sigma of 6000 means, without scatter within strata: 1/15 of what scatter is left.
 
     Of 700 starts 14 are expected in the smallest stratum: were strata joined by the starts they
-    have, chance would decide there, and the mean be off by 17 sigma.
+    have, chance would decide there, and the mean be off by 9 sigma.
     """
     rng = np.random.default_rng(starts)
     fillings = [filled(rng, starts) for _ in range(number)]

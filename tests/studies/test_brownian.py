@@ -120,19 +120,18 @@ def test_first_passages_in_a_wide_channel_are_those_of_a_random_walk(program):
 # Two ways to each number ------------------------------------------------------------------------
 
 
-def test_reflected_discs_cross_at_the_exact_rate():
-    for step, halvings in ((0.25, 3), (0.125, 4), (1 / 16, 3)):
-        found = estimates("passages", "reflected", step, halvings, 600)["crossing_rate"]
-        assert abs(found.value - 1) < SIGMA * found.stderr, (step, halvings, found)
-
-
 @every_program
 def test_both_methods_agree(program):
-    """Of pairs that start far apart, and of crossings followed in both directions of time."""
+    """Of pairs that start far apart, and of crossings followed in both directions of time.
+
+    Reflected discs cross at the exact rate.
+    """
     far = estimates("passages", program, 0.125, 3, 1000)
     near = estimates("crossings", program, 0.125, 3, 2**13)
     for quantity, found in near.items():
         assert deviation(found, far[quantity]) < SIGMA, (quantity, found, far[quantity])
+    rate = far["crossing_rate"]
+    assert program != "reflected" or abs(rate.value - 1) < SIGMA * rate.stderr < 0.2
 
 
 def test_clusters_hold_each_crossing_once():

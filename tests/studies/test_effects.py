@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from factory import Laws, empty, written
+from marks import slow
 from numba.core.errors import NumbaError
 
 from twodiscs.comparison.tables import MeanTimes, Theory
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.trajectory import events_of
 from twodiscs.figures import curves, style
 from twodiscs.model.box import Box, key, stream_seed
@@ -37,22 +37,20 @@ SEED = 1908
 # Scenes and counts --------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("scene", [ROUGH, ROUGH.with_radius(0.1), Scene(1.5, 1.0, 0.24)], ids=str)
-def test_unmet_starts_are_those_whose_paths_have_no_collision(scene):
+@pytest.mark.parametrize("scene", [ROUGH, ROUGH.with_radius(0.1), slow(PLAIN.scene(0.24))], ids=str)
+def test_unmet_starts_are_those_whose_paths_have_no_collision(scene, monkeypatch):
     """Against the trajectories that are written for people, start by start."""
-    times, seed, replicas = (2.0, 6.0, 15.0), np.uint64(3), 48
-    sampler = start_sampler(scene)
+    times, replicas = (2.0, 6.0, 15.0), 48
+    monkeypatch.setattr(effects, "REPLICAS", replicas)
     starts = np.zeros((12, replicas))
-    draw_states(open_stream(seed, 0), sampler, starts)
+    draw_states(open_stream(np.uint64(3), 0), start_sampler(scene), starts)
     components = 8 if scene.moment_of_inertia is None else 10
     first = []
     for start in starts.T:
         rows = events_of(scene, tuple(map(float, start[:components])), times[-1])
         first.append(next((row[0] for row in rows if row[1] == "disc_collision"), np.inf))
     expected = [sum(moment > time for moment in first) for time in times]
-    law = law_of(scene)
-    found = effects.follow_survivors(seed, 0, 1, replicas, np.array(times), law, sampler)
-    assert list(found) == expected
+    assert effects.survivors(scene, times, 1, 3) == expected
     assert 0 < expected[0] < replicas
 
 
@@ -96,8 +94,10 @@ def rows(tmp_path_factory):
         )
 
 
-def test_starts_that_have_not_met_are_counted_at_every_radius_where_discs_meet_soon():
+def test_starts_that_have_not_met_are_counted_at_every_radius_where_discs_meet_soon(monkeypatch):
     """By streams of the scene's name and of the radius, for rough and for smooth discs."""
+    asked = []
+    monkeypatch.setattr(effects, "survivors", lambda *given: asked.append(given) or [9, 5, 3])
     tables = tables_of(["rough"], np.random.default_rng(1))
     given = {"scenes": {"rough": BOXES["rough"]}, "seed": SEED, "blocks": 1}
     rows = [row for row in effects.rows(tables, **given) if row["quantity"] == "never_met_share"]
@@ -110,10 +110,10 @@ def test_starts_that_have_not_met_are_counted_at_every_radius_where_discs_meet_s
     assert [(row["radius"], row["effects"], row["replicas"]) for row in rows] == [
         (scene.radius, json.dumps(scene.effects), REPLICAS) for scene in scenes for _ in range(3)
     ]
-    for i, scene in enumerate(scenes[:2]):
-        stream = stream_seed(SEED, "rough", "unmet", key(scene.radius))
-        counts = effects.survivors(scene, effects.TIMES, 1, stream)
-        assert [row["count"] for row in rows[3 * i : 3 * i + 3]] == counts
+    assert [row["count"] for row in rows] == [9, 5, 3] * len(scenes)
+    streams = [stream_seed(SEED, "rough", "unmet", key(scene.radius)) for scene in scenes]
+    due = [(scene, effects.TIMES, 1, seed) for scene, seed in zip(scenes, streams, strict=True)]
+    assert asked == due
 
 
 def test_rows_have_the_exact_times_with_and_without_effects(rows):
@@ -168,7 +168,7 @@ def costs():
 
 def test_curves_go_through_the_exact_ratios(rows, monkeypatch):
     monkeypatch.setattr(curves, "FEWER", 28)
-    names = "channel", "field", "rough", "torus"  # whose exact values take less time
+    names = "channel", "rough", "torus"  # whose exact values take less time
     table = [*EffectsCurves.rows({name: BOXES[name] for name in names})]
     for event in figure.SHOWN_EVENTS:
         for name in names:

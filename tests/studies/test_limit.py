@@ -62,7 +62,7 @@ def test_early_turns_pass_with_the_exact_probability():
 
 
 def test_c_does_not_depend_on_where_invariants_are_kept():
-    early, late = limit.amplitude(48, 6, near=0.25), limit.amplitude(96, 7, near=0.45)
+    early, late = limit.amplitude(24, 6, near=0.25), limit.amplitude(48, 7, near=0.45)
     assert abs(early.value - late.value) < SIGMA * math.hypot(early.stderr, late.stderr)
 
 

@@ -112,7 +112,7 @@ def test_files_diffuse_by_passages_if_hops_are_rare():
         if discs < 10:
             scene, unit = passages.file_of(Box(1.5, 1.0), discs, 5)
             gap = 8 * unit
-            sizes, _ = cluster_sizes(scene, "horizontal_hop", gap, 128, 5)
+            sizes, _ = cluster_sizes(scene, "horizontal_hop", gap, 48, 5)
             law = partial(of_clusters, others=2)
             drawn = plateau(by_clusters(sizes), gap, 2 / hops["estimate"], law)
             value, error = drawn.value, drawn.stderr

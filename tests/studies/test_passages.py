@@ -5,12 +5,15 @@ fewer than 2e-5 of all seeds.
 """
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from marks import slow
 from scipy.stats import chi2
 
+from twodiscs.dynamics.two import strip
 from twodiscs.figures import style
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
@@ -82,6 +85,11 @@ def test_a_power_is_fitted_to_the_last_octaves():
     assert (second["moment_of_inertia"], second["quantity"]) == (0.5, "last_exponent")
 
 
+def smooth(scene):
+    """Return a scene of smooth discs without friction, whose kernels are compiled in any case."""
+    return replace(scene, moment_of_inertia=None, friction=0.0)
+
+
 @pytest.fixture
 def small(monkeypatch):
     """Make the study one of few distances and hops."""
@@ -115,7 +123,7 @@ def test_two_discs_in_a_file_move_as_their_hops_are_correlated():
     assert abs(moved.value - due["estimate"]) < 5 * math.hypot(moved.stderr, due["stderr"])
 
 
-@pytest.mark.parametrize("inertia", [None, 0.5])
+@pytest.mark.parametrize("inertia", [None, slow(0.5)])
 def test_hops_in_a_file_are_those_of_monte_carlo(inertia):
     scene = Scene(2.25, 1.0, 0.2, discs=3, periodic="x", moment_of_inertia=inertia)
     _, hops = walked(scene, 16.0, 2048, 3)
@@ -177,7 +185,7 @@ def test_order_changes_by_exchanges_alone():
 def test_long_files_have_the_law_of_their_density(small, monkeypatch):
     """F within five standard errors of theory and, where discs pass, of the measured density."""
     monkeypatch.setattr(measure, "OPEN", (4,))
-    rows = list(measure.displacements("long", 1.5, 1.0, [0.28, 0.3], 1, 32))
+    rows = list(measure.displacements("long", 1.5, 1.0, [0.28, 0.3], 1, 16))
     judged = [row for row in rows if row.get("z") is not None]
     assert [row["quantity"] for row in judged] == ["single_file"] * 3
     assert all(abs(row["z"]) < 5 for row in judged)
@@ -207,10 +215,10 @@ def test_a_cluster_of_odd_size_is_one_passage():
 def test_the_measured_density_is_exact_in_an_ordered_channel():
     """At r = 0.28: five standard errors."""
     scene = Scene(24.0, 1.0, 0.28, discs=32, periodic="x")
-    places = file.initial.states(scene, 1200, 1)[None, :32]
+    places = file.initial.states(scene, 300, 1)[None, :32]
     found = file.measured_density(scene, places)
     due = file.exact_density(1.0, 0.28, 0.75).variance
-    assert found.stderr < 0.06 * due
+    assert found.stderr < 0.12 * due
     assert abs(found.value - due) < 5 * found.stderr
 
 
@@ -245,14 +253,21 @@ def joined(name, box, inertias=(0.5,)):
     return [complete(row) for row in Passages.rows({"all": found})]
 
 
-def test_the_table_is_written(tmp_path, small, monkeypatch):
+@pytest.mark.parametrize("rough", [False, slow(True)])
+def test_the_table_is_written(rough, tmp_path, small, monkeypatch):
+    """The fast one takes the hops of smooth discs for those of rough discs, which has no score."""
+    if not rough:
+        count = measure.hop_sums
+        monkeypatch.setattr(
+            measure, "hop_sums", lambda scene, *given, **how: count(smooth(scene), *given, **how)
+        )
     seeds, seed_of = [], measure.hop_seed
     monkeypatch.setattr(measure, "hop_seed", lambda *of: seeds.append(seed_of(*of)) or seeds[-1])
     Passages.write(tmp_path / "passages.csv", joined("paper", BOX, (0.5, 1.0)))
     rows = Passages.read(tmp_path / "passages.csv")
     assert len({*seeds}) == len(seeds) > 20  # every estimate has separate streams
-    z = [row["z"] for row in rows if row["z"] is not None]
-    assert max(map(abs, z)) < 5
+    judged = [row for row in rows if rough or row["moment_of_inertia"] is None]
+    assert max(abs(row["z"]) for row in judged if row["z"] is not None) < 5
     assert {row["quantity"] for row in rows} == {
         "correlation", "coefficient", "passage_time", "plateau", "slope", "exponent",
         "passage_exponent", "last_exponent", "rate", "diffusion", "single_file", "displacement",
@@ -272,7 +287,7 @@ def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small):
     with style.context():
         limit = [row for row in rows if row["method"] == "limit"]
         for module in (figure, figure_transmission, figure_diffusion):
-            for some in (rows, limit, []):
+            for some in (limit, rows):
                 assert module.draw(Box(1.0, 4.0), {"passages": some} | LONG_RUNS)
 
 
@@ -301,8 +316,15 @@ def test_the_error_of_an_exponent_is_that_of_a_line_through_two_logarithms(inert
 # Friction ----------------------------------------------------------------------------------------
 
 
-def test_rows_with_friction():
-    """Hops have their exact rate; an exponent is that of τ/κ between two distances."""
+@pytest.mark.parametrize("kicked", [False, slow(True)])
+def test_rows_with_friction(kicked, monkeypatch):
+    """Hops have their exact rate; an exponent is that of τ/κ between two distances.
+
+    Friction does not change the rate, and in the strip it has another kernel.
+    """
+    if not kicked:
+        run = strip.run_blocks
+        monkeypatch.setattr(strip, "run_blocks", lambda scene, *of: run(smooth(scene), *of))
     rows = list(measure.one_friction("paper", BOX, 40.0, (6, 8, 12), 2**19, 3))
     (rate,) = (row for row in rows if row["quantity"] == "rate")
     assert abs(rate["z"]) <= 5

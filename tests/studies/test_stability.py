@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from factory import conditioned_point, sample_point, written
+from marks import slow
 from mpmath import mpf
 
 from twodiscs.dynamics.law import Law, law_of
@@ -27,11 +28,10 @@ from twodiscs_paper.studies.stability.study import Stability
 
 EXPECTED = Path(__file__).parents[2] / "paper" / "expected" / "stability.csv"
 PAPER = Box(1.5, 1.0)
-BOXES = [
-    PAPER, Box(1.0, 1.5), Box(1.0, 1.0), Box(2.0, 1.0), Box(3.0, 1.0), Box(1.98, 1.0),
-    Box(1e6, 1e-6), Box(1e-6, 1e6),
-]  # fmt: skip
-any_box = pytest.mark.parametrize("box", BOXES, ids=lambda box: f"{box.width:g}x{box.height:g}")
+BOXES = [PAPER, Box(3.0, 1.0), Box(1e6, 1e-6), Box(1e-6, 1e6)]
+#: The reference of theory takes half a second for a box.
+OTHERS = [Box(1.0, 1.5), Box(1.0, 1.0), Box(2.0, 1.0), Box(1.98, 1.0)]
+any_box = pytest.mark.parametrize("box", [*BOXES, *map(slow, OTHERS)], ids=str)
 
 
 def failed(rows):
@@ -224,7 +224,7 @@ def test_a_bound_that_says_something_is_judged(monkeypatch):
 SCENE = Scene(1.5, 1.0, 0.2)
 
 
-@pytest.mark.parametrize("box", [*BOXES[:5], *BOXES[6:], Box(1e40, 1.5e40)], ids=str)
+@pytest.mark.parametrize("box", [*BOXES, Box(1e40, 1.5e40), *map(slow, OTHERS)], ids=str)
 def test_everything_is_conserved_at_every_hard_radius(box):
     rows = list(stability.dynamics_rows(box, seed=5, ordinary=4_000_000, hard=2_000_000))
     assert len(rows) == 4 * len(stability.hard_radii(box))
@@ -268,8 +268,9 @@ def test_the_audit_sees_what_is_wrong():
     assert audited([GOOD], shortest=1000.0)[4][0]
 
 
-def test_events_retraced_are_those_the_exponent_allows():
+def test_events_retraced_are_those_the_exponent_allows(monkeypatch):
     """z within 5 for the exponents; the number within five binary digits of roundings."""
+    monkeypatch.setattr(stability, "REVERSED", 1000)
     box = Box(1e-3, 1.3e-3)
     rows = list(stability.reversal_rows(box, seed=3))
     judged = [row for row in rows if row["passed"] is not None]
@@ -332,4 +333,4 @@ def test_table_and_figure_of_any_box(quick, tmp_path):
     with style.context():
         for module in (figure, figure_runs):
             for some in (rows, []):
-                style.save(module.draw(box, {"stability": some}), tmp_path / "figure.png")
+                assert module.draw(box, {"stability": some})

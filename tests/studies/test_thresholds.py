@@ -146,4 +146,4 @@ def test_the_table_is_written(box, tmp_path):
         found = written(tmp_path, Thresholds, tables=read, scenes={"a": box.parameters()})
         assert {row["quantity"] for row in found} == quantities
         with style.context():
-            figure.draw(box, read | {"thresholds": found}).draw_without_rendering()
+            assert figure.draw(box, read | {"thresholds": found})

@@ -160,9 +160,9 @@ def chance(scene, hop, time):
 def test_drifts_last_with_the_probability_of_the_tail(hop, radius, factor):
     """From the time on at which a drift in its square ends, the law is exact.
 
-    One standard error is some half a per cent; five tests at five of them.
+    One standard error is some one per cent; five tests at five of them.
     """
-    scene, n = Scene(1.5, 1.0, radius), 2 * 10**5
+    scene, n = Scene(1.5, 1.0, radius), 6 * 10**4
     ranges = scene.range_x, scene.range_y
     along, height = ranges if hop == "vertical_hop" else ranges[::-1]
     time = factor * 2 * (height - scene.contact_distance)

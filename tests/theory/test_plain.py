@@ -87,7 +87,7 @@ def check_accuracy(scene):
             assert relative_error(times[event], time) < BOUND, event
 
 
-@settings(max_examples=400, deadline=None, derandomize=True)
+@settings(max_examples=250, deadline=None, derandomize=True)
 @given(hard_scenes())
 @example(Scene(*PAPER, Box(*PAPER).largest_radius * (1 - 1e-12)))
 @example(Scene(1, 1, Box(1, 1).largest_radius * (1 - 1e-12)))
@@ -109,7 +109,7 @@ def test_both_sides_of_every_threshold(box, offset):
                 check_accuracy(Scene(*box, radius))
 
 
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=120, deadline=None, derandomize=True)
 @given(hard_scenes(), st.floats(-9, 0), st.booleans())
 def test_shells_are_right_to_1e_13(scene, exponent, by_room):
     room = abs(scene.largest_radius - scene.radius)

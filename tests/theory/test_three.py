@@ -34,7 +34,7 @@ def boxes(number, seed):
 
 def test_the_box_on_its_side_has_the_same_numbers():
     """The integrals, their regions and their kinks are others then, the results the same."""
-    for width, height, radius in boxes(60, 1):
+    for width, height, radius in boxes(30, 1):
         a, b, sigma = width - 2 * radius, height - 2 * radius, 2 * radius
         volume, by_a, by_b, contact, _ = three.integrals(a, b, sigma)
         turned = three.integrals(b, a, sigma)

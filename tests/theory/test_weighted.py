@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from marks import slow
 from mpmath import mp, mpf
 from theory.antiderivatives import relative_error
 
@@ -190,13 +191,10 @@ SCENES = [
 
 
 #: The reference takes seconds: all tests except every third one are slow.
-REFERENCES = [
-    pytest.param(scene, marks=[pytest.mark.slow] if i % 3 else [], id=repr(scene))
-    for i, scene in enumerate(SCENES)
-]
+REFERENCES = [slow(scene) if i % 3 else scene for i, scene in enumerate(SCENES)]
 
 
-@pytest.mark.parametrize("scene", REFERENCES)
+@pytest.mark.parametrize("scene", REFERENCES, ids=repr)
 def test_reference(scene):
     """All volumes and areas agree with the reference."""
     assert_close(numbers(scene), reference(scene))
@@ -241,7 +239,7 @@ def test_constant():
     assert math.isclose(virial.flux_constant(4) / 2, 2 / (3 * math.pi), rel_tol=1e-15)
 
 
-BOXES = [(1.5, 1.0), (1.0, 1.0), (1.0, 2.0), (3.0, 1.0), (1e6, 1.0)]
+BOXES = [(1.5, 1.0), slow((1.0, 1.0)), slow((1.0, 2.0)), (3.0, 1.0), (1e6, 1.0)]
 FRACTIONS = (1e-6, 0.1, 0.5, 0.65, 0.9, 1 - 1e-6, 1 - 1e-12)
 
 
