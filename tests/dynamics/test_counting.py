@@ -5,11 +5,13 @@ import math
 import numpy as np
 import pytest
 from dynamics.rates import check_rates
-from effect_scenes import SCENES
+from effect_scenes import ALL, SCENES
 from factory import all_reached
+from marks import slow
 
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import nearest_power_of_two
+from twodiscs.dynamics.law import WALL_Y1, WALL_Y2
 from twodiscs.dynamics.two import lockstep
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS, WALLS
@@ -26,10 +28,21 @@ PLAIN = [PAPER.with_radius(radius) for radius in RADII] + [
 ]
 
 
-@pytest.mark.parametrize("scene", [*PLAIN, SCENES["field"]], ids=repr)
+#: Walls with all that symmetry makes equal. The kernels of three take seconds to compile.
+EFFECTS = [SCENES["combination"], *(slow(s) for s in (SCENES["field"], SCENES["unequal"], ALL))]
+
+
+@pytest.mark.parametrize("scene", [*PLAIN, *EFFECTS], ids=repr)
 def test_counts_have_the_exact_rates(scene):
-    """In a field the floor is hit more often than the top."""
     check_rates(scene, seed=1, blocks=16)
+
+
+def test_in_a_field_a_disc_at_the_floor_does_not_hit_the_top():
+    for code, y in ((WALL_Y1, 1), (WALL_Y2, 3)):
+        for height in (-0.3, 0.3):
+            after = [0.0, -height, 0.0, -height]
+            after[y] = height
+            assert lockstep.SEEN["top_wall"](code, None, after, True, 0.4) == (height > 0)
 
 
 def test_packed_counts_do_not_run_over():
@@ -44,14 +57,14 @@ def test_any_duration_is_unbiased():
 
 
 def test_what_is_not_watched_is_not_detected():
-    walls = runs.engine_of(PAPER).run_blocks(PAPER, ("right_wall", "any_wall"), 7, 0, 1, 32.0)
-    everything = runs.engine_of(PAPER).run_blocks(PAPER, EVENTS, 7, 0, 1, 32.0)
-    hop = np.isin(EVENTS, HOPS)
-    assert np.array_equal(walls[0][~hop], everything[0][~hop])
-    assert not walls[0][hop].any()
-    bare = runs.engine_of(PAPER).run_blocks(PAPER, ("disc_collision",), 7, 0, 1, 32.0)
-    assert bare[0][EVENTS.index("disc_collision")] == everything[0][EVENTS.index("disc_collision")]
-    assert not bare[0][np.isin(EVENTS, (*HOPS, *WALLS))].any()
+    everything, hops, bare = (
+        runs.engine_of(PAPER).run_blocks(PAPER, events, 7, 0, 1, 32.0)[0]
+        for events in (EVENTS, ("horizontal_hop",), ("disc_collision",))
+    )
+    for found, detected in ((hops, (*HOPS, "disc_collision")), (bare, ("disc_collision",))):
+        kept = np.isin(EVENTS, detected)
+        assert np.array_equal(found[kept], everything[kept])
+        assert not found[np.isin(EVENTS, (*HOPS, *WALLS)) & ~kept].any()
 
 
 def test_accuracy_is_reached_or_the_budget_is_spent():

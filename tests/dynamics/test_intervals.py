@@ -10,40 +10,31 @@ from marks import slow
 from twodiscs.dynamics import runs, trajectory
 from twodiscs.dynamics.many import engine
 from twodiscs.dynamics.two import returns
-from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.points.intervals import BINS, GROWTH, wide_edges
-from twodiscs.sampling.many import initial, insertions
+from twodiscs.sampling.many import initial
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import density_at_zero
-from twodiscs.theory.virial import rates
 
 PAPER = Scene(1.5, 1.0, 0.2)
 
 
-@pytest.mark.parametrize("event", HOPS)
-@pytest.mark.parametrize("scene", [PAPER.with_radius(0.05), PAPER, slow(SCENES["field"])], ids=repr)
-def test_hop_intervals_have_the_exact_mean(event, scene):
-    """In a field the box cannot be turned by a quarter: horizontal hops have separate starts."""
-    found = runs.IntervalRun(scene, event, 1_000_000, 9).run()
+@pytest.mark.parametrize(("event", "side"), [("vertical_hop", 1.0), ("horizontal_hop", 1.5)])
+@pytest.mark.parametrize("scene", [PAPER.with_radius(0.1), PAPER, slow(SCENES["field"])], ids=repr)
+def test_hop_intervals_have_their_exact_mean_and_density_at_zero(event, side, scene):
+    """p(0⁺) = 3√2 / (16 (side − 2r)). In a field horizontal hops have separate starts."""
+    found = runs.IntervalRun(scene, event, 1_000_000, 10).run()
     assert abs(found.mean - mean_times(scene)[event]) <= 5 * found.stderr
     assert sum(found.equal.counts) + found.overflow == found.intervals >= 1_000_000
-    assert math.frexp(found.bin_width)[0] == 0.5  # a power of two
-
-
-@pytest.mark.parametrize(("event", "side"), [("vertical_hop", 1.0), ("horizontal_hop", 1.5)])
-def test_hop_intervals_have_the_exact_density_at_zero(event, side):
-    """p(0⁺) = 3√2 / (16 (side − 2r))."""
-    scene = PAPER.with_radius(0.1)
-    found = runs.IntervalRun(scene, event, 1_000_000, 10).run()
     width, n = found.bin_width, found.intervals
-    counts, squares = np.array(found.equal.counts[:2]), np.array(found.equal.squares[:2])
-    error = np.sqrt(squares - counts**2 / found.chains) / (n * width)
-    # The law is p(0) − at²: the density has no linear term.
-    at_zero = np.array([7.0, -1.0]) / 6
-    exact = 3 * math.sqrt(2) / (16 * (side - 0.2))
-    assert density_at_zero(scene, event) == pytest.approx(exact, rel=1e-15)
-    assert abs(counts @ at_zero / (n * width) - exact) <= 5 * np.hypot(*error * at_zero)
+    assert math.frexp(width)[0] == 0.5  # a power of two
+    if scene.radius == 0.1:  # where the law p(0) − at² holds for two bins
+        counts, squares = np.array(found.equal.counts[:2]), np.array(found.equal.squares[:2])
+        error = np.sqrt(squares - counts**2 / found.chains) / (n * width)
+        at_zero = np.array([7.0, -1.0]) / 6
+        exact = 3 * math.sqrt(2) / (16 * (side - 0.2))
+        assert density_at_zero(scene, event) == pytest.approx(exact, rel=1e-15)
+        assert abs(counts @ at_zero / (n * width) - exact) <= 5 * np.hypot(*error * at_zero)
 
 
 def test_squares_are_those_of_the_counts_of_each_chain():
@@ -79,35 +70,17 @@ def test_wide_bins_widen():
 # More than two discs -----------------------------------------------------------------------------
 
 
-MANY = {
-    "three": (Scene(1.5, 1.0, 0.15, discs=3), "vertical_hop"),
-    "three, across": (Scene(1.5, 1.0, 0.15, discs=3), "horizontal_hop"),
-    "four in a channel": (Scene(1.6, 0.6, 0.18, discs=4), "vertical_hop"),
-    "four": (Scene(1.5, 1.0, 0.12, discs=4), "vertical_hop"),
-    "four on a ring": (Scene(1.5, 1.0, 0.15, periodic="x", discs=4), "vertical_hop"),
-}
+THREE = Scene(1.5, 1.0, 0.15, discs=3)
+RING = Scene(1.5, 1.0, 0.15, discs=4, periodic="x")
 
 
 @pytest.mark.parametrize(
-    "name", [name if name in ("three", "four") else slow(name) for name in MANY]
+    ("scene", "event"),
+    [(THREE, "vertical_hop"), slow(THREE, "horizontal_hop"), (RING, "vertical_hop")],
+    ids=repr,
 )
-def test_intervals_of_many_have_the_mean_of_theory_or_monte_carlo(name):
-    """Five sigma: the first interval of a replica, or one cut off at an end, would show."""
-    scene, event = MANY[name]
-    found = runs.IntervalRun(scene, event, 2_000_000, 4).run()
-    mean, error = mean_times(scene)[event], 0.0
-    if mean is None:
-        known, spread = (rates(scene, part) for part in insertions.sample(scene, 10**6, 5))
-        mean, error = 1 / known[event], spread[event] / known[event] ** 2
-    assert abs(found.mean - mean) <= 5 * math.hypot(found.stderr, error)
-    assert found.stderr < 1.5e-3 * mean
-    assert sum(found.equal.counts) + found.overflow == found.intervals >= 2_000_000
-
-
-@pytest.mark.parametrize("name", ["three", slow("three, across"), "four on a ring"])
-def test_intervals_of_many_are_those_of_trajectories(name):
+def test_intervals_of_many_are_those_of_trajectories(scene, event):
     """All that begin within the window, to their end, counted from the rows of each replica."""
-    scene, event = MANY[name]
     replicas, window, width = 5, 16.0, 0.125
     wide, sums = np.full(65, 65), np.zeros((3, 66), np.int64)
     going = np.ones(1, np.bool_)

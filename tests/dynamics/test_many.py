@@ -16,20 +16,16 @@ from twodiscs.model.events import AXIS, EVENTS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial, insertions
 from twodiscs.theory.virial import rates
-from twodiscs_paper.studies.more_discs.measure import known_derivatives, virial_sum, virial_weights
+from twodiscs_paper.studies.more_discs.measure import known_derivatives
 
 
-def counted(scene, blocks, seed=1, replicas=REPLICAS, events=None):
-    """Return ({class: rate}, {class: standard error}, rates for the virial theorem by replica)."""
+def counted(scene, blocks, seed=1, events=None):
+    """Return ({class: rate}, {class: standard error})."""
     duration = engine.duration_of(scene, events)
-    sums, products = engine.run_classes(scene, seed, 0, blocks, duration, replicas=replicas)
-    replicas *= blocks
-    found = sums / replicas / duration
-    errors = found * np.where(sums > 0, relative_errors(sums, products, replicas), 0.0)
-    second = np.triu(products) + np.triu(products, 1).T
-    covariance = (second / replicas - np.outer(sums, sums) / replicas**2) / replicas / duration**2
-    named = dict(zip(SHELLS, found, strict=True))
-    return named, dict(zip(SHELLS, errors, strict=True)), covariance
+    sums, products = engine.run_classes(scene, seed, 0, blocks, duration, replicas=REPLICAS)
+    found = sums / (blocks * REPLICAS) / duration
+    errors = found * np.where(sums > 0, relative_errors(sums, products, blocks * REPLICAS), 0.0)
+    return dict(zip(SHELLS, found, strict=True)), dict(zip(SHELLS, errors, strict=True))
 
 
 def check(found, errors, expected, spread=None):
@@ -38,28 +34,20 @@ def check(found, errors, expected, spread=None):
         five(found[event], rate, math.hypot(errors[event], (spread or {}).get(event, 0.0)))
 
 
-def check_virial(scene, found, covariance, most):
-    """Five sigma on the virial theorem, with an error of ``most`` at most."""
-    weights = np.array([virial_weights(scene).get(event, 0.0) for event in SHELLS])
-    error = math.sqrt(weights @ covariance @ weights)
-    five(virial_sum(scene, found), 1, error)
-    assert error < most
-
-
 EXACT = {
     "three": Scene(1.5, 1.0, 0.15, discs=3),
     "three, dense": Scene(1.5, 1.0, 0.26, discs=3),
-    "three, upright": Scene(1.0, 1.5, 0.24, discs=3),
     "four in a channel": Scene(1.6, 0.6, 0.18, discs=4),
-    "eight, dense": Scene(2.4, 0.6, 0.18, discs=8),
     "four, upright": Scene(0.6, 1.6, 0.18, discs=4),
     "three, rough": Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.5),
-    "sixteen": Scene(7.0, 0.6, 0.18, discs=initial.LARGE),
+    # Upright: in a low channel no hops in x are counted, by a kernel of its own.
+    "twenty, upright": Scene(0.6, 7.0, 0.18, discs=initial.LARGE),
 }
 #: Rough discs in a channel and kicks have kernels of their own, which take seconds to compile.
 COMPILED = {
+    "twenty": Scene(7.0, 0.6, 0.18, discs=initial.LARGE),
     "eight, rough, in a channel": Scene(3.5, 0.6, 0.18, discs=8, moment_of_inertia=0.2),
-    "sixteen, rough": Scene(7.0, 0.6, 0.18, discs=initial.LARGE, moment_of_inertia=0.5),
+    "twenty, rough": Scene(7.0, 0.6, 0.18, discs=initial.LARGE, moment_of_inertia=0.5),
     "three, friction": Scene(1.5, 1.0, 0.15, discs=3, friction=4.0),
     "twenty, friction": Scene(8.75, 0.6, 0.18, discs=20, friction=4.0),
 }
@@ -69,37 +57,30 @@ COMPILED = {
 def test_rates_are_exact(name):
     scene = (EXACT | COMPILED)[name]
     large = initial.large_grid(scene) is not None
-    found, errors, covariance = counted(scene, 2 if large else 6, events=256 if large else None)
+    found, errors = counted(scene, 2 if large else 4, events=256 if large else None)
+    assert max(errors.values()) < 0.05 * max(found.values())
     check(found, errors, rates(scene, known_derivatives(scene)))
-    check_virial(scene, found, covariance, 0.05)
-
-
-def test_the_virial_theorem_holds_for_many_discs():
-    """At a packing fraction of .5 in a box."""
-    side = math.sqrt(64 * math.pi * 0.01 / 0.5)
-    scene = Scene(side, side, 0.1, discs=64)
-    found, _, covariance = counted(scene, 1, seed=8, replicas=256)
-    check_virial(scene, found, covariance, 0.01)
 
 
 #: Without an exact value: Monte Carlo, and another program, say what dynamics is to say.
-OTHERS = {
-    "four": Scene(1.5, 1.0, 0.12, discs=4),
-    "five, dense": Scene(1.5, 1.0, 0.19, discs=5),
-    "eight": Scene(2.0, 1.5, 0.15, discs=8),
-    "four on a ring": Scene(1.5, 1.0, 0.15, discs=4, periodic="x"),
-    "three on a narrow ring": Scene(1.5, 0.6, 0.18, discs=3, periodic="x"),
-    "two on a ring": Scene(1.5, 1.0, 0.2, discs=2, periodic="x"),
-    "five, rough": Scene(1.5, 1.0, 0.17, discs=5, moment_of_inertia=0.3),
-}
-#: Compiles a kernel of its own.
-ROUGH_RING = Scene(1.5, 1.0, 0.15, discs=4, periodic="x", moment_of_inertia=0.5)
+OTHERS = [
+    Scene(1.5, 1.0, 0.12, discs=4),
+    Scene(1.5, 1.0, 0.15, discs=4, periodic="x"),
+    Scene(1.5, 0.6, 0.18, discs=3, periodic="x"),
+    Scene(1.5, 1.0, 0.2, discs=2, periodic="x"),
+    Scene(1.5, 1.0, 0.17, discs=5, moment_of_inertia=0.3),
+]
+#: Takes longer, or compiles a kernel of its own.
+SLOW = [
+    slow(Scene(2.0, 1.5, 0.15, discs=8)),
+    slow(Scene(1.5, 1.0, 0.15, discs=4, periodic="x", moment_of_inertia=0.5)),
+]
 
 
-@pytest.mark.parametrize("scene", [*OTHERS.values(), slow(ROUGH_RING)], ids=repr)
+@pytest.mark.parametrize("scene", [*OTHERS, *SLOW], ids=repr)
 def test_monte_carlo_and_another_program_have_the_same_rates(scene):
     """Time averages of one trajectory: batches of some ten thousand events are independent."""
-    found, errors, _ = counted(scene, 4, seed=2)
+    found, errors = counted(scene, 4, seed=2)
     known, spread = insertions.sample(scene, 300_000, 3)
     expected = rates(scene, known)
     if scene.periodic:
@@ -143,7 +124,8 @@ def test_orders_are_those_of_the_ergodic_components(scene):
     for k in range(2):
         part = states[k * n : (k + 1) * n]
         part[:] = np.take_along_axis(part, order, axis=0)
-    many.advance_states(states, np.zeros((n, 2000)), 200.0, many.law_of(scene), None, None)
+    hops = np.zeros(2000) if scene.periodic else None  # as in other tests of these kernels
+    many.advance_states(states, np.zeros((n, 2000)), 200.0, many.law_of(scene), None, hops)
     order = np.argsort(states[start : start + n], axis=0)
     if scene.periodic:  # up to a cyclic shift
         order = np.take_along_axis(order, (np.argmin(order, axis=0) + np.arange(n)[:, None]) % n, 0)
@@ -175,5 +157,5 @@ def test_a_flight_on_a_ring_ends_before_a_third_image_comes_near(width, discs):
     u, v = np.zeros((discs, 1)), np.zeros((discs, 1))
     u[0], u[1] = 1 / fastest, -1 / fastest
     lanes = many.lanes_of(np.vstack([x, y, u, v]), np.full(1, np.inf), law)
-    many.find_events(lanes, law)
+    many.find_events(lanes, law, None)
     assert lanes.times[0] * fastest <= width / 2 * (1 + 1e-15)

@@ -33,7 +33,7 @@ SHORT = [
 
 
 #: Few rough discs, which only the other kernel follows.
-ROUGH = Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.3)
+ROUGH = slow(Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.3))
 #: Their kernels take seconds to compile.
 ROUGH_TOO = slow(BORDER[4])
 KICKED_TOO = slow(Scene(8.75, 0.6, 0.18, discs=20, friction=4.0))
@@ -43,7 +43,7 @@ KICKED_TOO = slow(Scene(8.75, 0.6, 0.18, discs=20, friction=4.0))
 THREE = Scene(1.5, 1.0, 0.26, discs=3)
 
 
-@pytest.mark.parametrize("scene", [THREE, *BORDER[:4], *SHORT, ROUGH_TOO], ids=repr)
+@pytest.mark.parametrize("scene", [THREE, *BORDER[:3], *map(slow, BORDER[3:] + SHORT)], ids=repr)
 def test_a_few_events_are_the_same_ones(scene):
     """From the same states, before roundings have grown: the same counts, every one of them."""
     replicas, duration = 256, engine.duration_of(scene, 2 * scene.discs)
@@ -68,7 +68,7 @@ def test_which_kernel_runs():
 
 @pytest.mark.parametrize(
     "scene",
-    [BORDER[0], BORDER[3], *SHORT, ROUGH_TOO, Scene(48.0, 1.0, 0.1, discs=64), ROUGH],
+    [BORDER[3], *SHORT, slow(BORDER[0]), ROUGH_TOO, slow(Scene(48.0, 1.0, 0.1, discs=64)), ROUGH],
     ids=repr,
 )
 def test_advanced_states_are_those_of_the_other_kernel(scene):
@@ -90,7 +90,9 @@ def test_advanced_states_are_those_of_the_other_kernel(scene):
     assert states == pytest.approx(start, abs=1e-7 * scene.width)
 
 
-@pytest.mark.parametrize("scene", [BORDER[0], BORDER[3], *SHORT, ROUGH_TOO, KICKED_TOO], ids=repr)
+@pytest.mark.parametrize(
+    "scene", [BORDER[3], *SHORT, slow(BORDER[0]), ROUGH_TOO, KICKED_TOO], ids=repr
+)
 def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
     """In the same order, hops as well, before roundings have grown; also past a full log."""
     state = initial.states(scene, 1, 1)[:, 0]
@@ -111,7 +113,7 @@ def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
 
 @pytest.mark.parametrize(
     ("scene", "hop"),
-    [(BORDER[0], "vertical_hop"), slow(BORDER[1], "horizontal_hop"), (BORDER[3], "vertical_hop")],
+    [slow(BORDER[1], "horizontal_hop"), (BORDER[3], "vertical_hop")],
     ids=repr,
 )
 def test_intervals_are_those_of_the_other_kernel(scene, hop, monkeypatch):
@@ -132,7 +134,7 @@ def test_intervals_are_those_of_the_other_kernel(scene, hop, monkeypatch):
     assert np.array_equal(sums[0, :65].sum(), found[1].sum())
 
 
-def check_state(scene, state, error):
+def check_state(scene, state):
     """Discs do not overlap and are between the walls; energy and momenta are what they were."""
     x, y, u, v, *s = np.reshape(state, (-1, scene.discs))
     i, j = np.array([*itertools.combinations(range(scene.discs), 2)]).T
@@ -144,48 +146,31 @@ def check_state(scene, state, error):
     assert scene.periodic or np.max(np.abs(x)) <= scene.range_x / 2 * (1 + 1e-15)
     assert np.max(np.abs(y)) <= scene.range_y / 2 * (1 + 1e-15)
     turning = scene.moment_of_inertia * np.sum(s[0] ** 2) if s else 0.0
-    assert abs(np.sum(u * u + v * v) + turning - 1) < error
-    assert "x" not in scene.conserved or abs(np.sum(u)) < 10 * error
+    assert abs(np.sum(u * u + v * v) + turning - 1) < 1e-11
+    assert "x" not in scene.conserved or abs(np.sum(u)) < 1e-10
 
 
 side = math.sqrt(256 * math.pi * 0.01 / 0.6)
-#: In both kernels: dilute, dense and hardly fitting discs, tiny ones, channels and rings.
+#: In both kernels: dilute, dense and hardly fitting discs, tiny ones and rings.
 STAYING = {
-    "three": Scene(1.5, 1.0, 0.15, discs=3),
     "hardly fit": Scene(1.5, 1.0, 0.3005102, discs=3),
     "tiny": Scene(1.5, 1.0, 1e-9, discs=5),
-    "dense channel": Scene(2.24, 0.6, 0.18, discs=8),
     "ring": Scene(1.5, 1.0, 0.2, discs=4, periodic="x"),
-    "many": Scene(side, side, 0.1, discs=256),
-    "long channel": Scene(18.0, 0.6, 0.18, discs=64),
     "dense ring": Scene(side, side, 0.1, discs=256, periodic="x"),
+    "three": Scene(1.5, 1.0, 0.15, discs=3),
+    "many": Scene(side, side, 0.1, discs=256),
     "rough": BORDER[4],
 }
 
 
 @pytest.mark.parametrize(
     ("name", "events"),
-    [
-        *((name, 1e5) for name in [*STAYING][:-1]),
-        *(slow(name, 2e7) for name in ("three", "many", "rough")),
-    ],
+    [*((name, 4e4) for name in [*STAYING][:4]), *(slow(name, 2e7) for name in [*STAYING][4:])],
 )
 def test_nothing_overlaps_or_drifts(name, events):
-    """In each row, where discs are level at hops and touch at collisions; and for a long time."""
     scene, states = STAYING[name], initial.states(STAYING[name], 1, 1)
-    rows = engine.events_of(scene, states[:, 0], engine.duration_of(scene, 2000))
-    for _, event, first, second, state in itertools.islice(rows, 20_000 // scene.discs):
-        check_state(scene, state, 1e-12)
-        x, y, *_ = np.reshape(state, (-1, scene.discs))
-        if event == "vertical_hop":
-            assert y[first - 1] == pytest.approx(y[second - 1], abs=1e-9)
-        if event == "disc_collision":
-            dx = x[first - 1] - x[second - 1]
-            dx -= scene.width * np.round(dx / scene.width) if scene.periodic else 0.0
-            apart = math.hypot(dx, y[first - 1] - y[second - 1])
-            assert apart == pytest.approx(scene.contact_distance, abs=1e-9)
     laps, part = np.zeros((scene.discs, 1)), engine.duration_of(scene, events)
     hops = np.zeros(1) if scene.periodic else None  # as the kernels that are compiled above
     for _ in range(5):
         engine.advance_all(scene, states, laps, part, None, hops)
-        check_state(scene, states, 1e-11)
+        check_state(scene, states)

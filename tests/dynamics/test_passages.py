@@ -25,9 +25,9 @@ TIMES = [0.2, 1.0, 5.0, 10.0]
 NARROW = 0.246  # 0.016 of the height is left to discs side by side along y
 
 
-@pytest.mark.parametrize(
-    ("periodic", "inertia"), [("", None), slow("x", None), slow("", 0.5), slow("x", 0.5)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("periodic", ["", "x"])
+@pytest.mark.parametrize("inertia", [None, 0.5])
 def test_correlations_are_those_of_another_program(inertia, periodic):
     for radius in (0.218, NARROW):
         scene = Scene(1.5, 1.0, radius, periodic=periodic, moment_of_inertia=inertia)
@@ -39,9 +39,6 @@ def test_correlations_are_those_of_another_program(inertia, periodic):
         means, errors = other.mean(axis=0), other.std(axis=0) / math.sqrt(len(other))
         for estimate, mean, error in zip(by_time(sums), means, errors, strict=True):
             five(estimate.value, mean, math.hypot(estimate.stderr, error) + 1e-12)
-        if not periodic:
-            # Hops alternate: C = 1 + 2 n is +1 or −1 in every replica.
-            np.testing.assert_array_equal(sums[:, 1], -sums[:, 0])
 
 
 @pytest.mark.parametrize(
@@ -114,16 +111,26 @@ def test_blocks_are_what_results_depend_on():
     whole, events = passages.hop_sums(scene, HOP, TIMES, 6, 11)
     parts = [passages.hop_sums(scene, HOP, TIMES, 3, 11, first) for first in (0, 3)]
     np.testing.assert_array_equal(whole, np.concatenate([sums for sums, _ in parts]))
+    # Hops between walls alternate: C = 1 + 2 n is +1 or −1 in every replica.
+    np.testing.assert_array_equal(whole[:, 1], -whole[:, 0])
     assert events == sum(events for _, events in parts)
     turned = Box.of(scene).turned().scene(0.24)
     np.testing.assert_array_equal(whole, passages.hop_sums(turned, "vertical_hop", TIMES, 6, 11)[0])
 
 
-@pytest.mark.parametrize("module", [passages, of_many])
-def test_blocks_have_separate_kicks(module):
+def test_blocks_of_a_pair_among_others_have_separate_kicks(monkeypatch):
+    opened = []
+    monkeypatch.setattr(of_many, "open_kicks", lambda *given: opened.append(given[2]))
+    monkeypatch.setattr(of_many, "follow_pair", lambda *given: 0)
+    monkeypatch.setattr(of_many, "follow_blocks", of_many.follow_blocks.py_func)
+    of_many.hop_sums(Scene(1.5, 1.0, 0.1, friction=20.0), HOP, [2.0], 2, 1, first=3)
+    assert opened == [*range(3 * passages.HOPS_OF_BLOCK, 5 * passages.HOPS_OF_BLOCK)]
+
+
+def test_blocks_have_separate_kicks():
     """The means of 20 seeds vary as those of 16 independent blocks: F test, five errors."""
     scene, blocks = Scene(1.5, 1.0, 0.1, friction=20.0), 16
-    sums = [module.hop_sums(scene, HOP, [2.0], blocks, seed)[0][:, 2, 0] for seed in range(20)]
+    sums = [passages.hop_sums(scene, HOP, [2.0], blocks, seed)[0][:, 2, 0] for seed in range(20)]
     within = np.var(sums, axis=1, ddof=1).mean()
     ratio = blocks * np.mean(sums, axis=1).var(ddof=1) / within
     assert f.sf(ratio, 19, 20 * (blocks - 1)) > 5.7e-7

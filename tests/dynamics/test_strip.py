@@ -23,15 +23,8 @@ from twodiscs_paper.studies.estimates import chi2_p, covers
 PAPER = Scene(1.5, 1.0, 0.2)
 
 #: Far from a threshold and close to both of them.
-PLACES = [
-    (PAPER.with_radius(radius), hop)
-    for radius, hop in (
-        (0.245, "horizontal_hop"),
-        (0.2494, "horizontal_hop"),
-        (0.25 * (1 - 1e-9), "horizontal_hop"),
-        (0.3747, "vertical_hop"),
-    )
-]
+PLACES = [(PAPER.with_radius(r), "horizontal_hop") for r in (0.245, 0.2494, 0.25 * (1 - 1e-9))]
+PLACES += [(PAPER.with_radius(0.3747), "vertical_hop")]
 
 #: Necks of scenes with effects: in a field the upper disc hardly gets that high.
 NECKS = {

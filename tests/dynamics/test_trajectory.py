@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from effect_scenes import SCENES
+from effect_scenes import ALL, SCENES
+from marks import slow
 
 from twodiscs.comparison.tables import Trajectory
 from twodiscs.dynamics import trajectory
@@ -41,13 +42,12 @@ GIVEN = {
     "ring": Scene(1.5, 1.0, 0.2, periodic="x"),
     "torus": SCENES["torus"],
     "combination": SCENES["combination"],
-    "rough": Scene(1.5, 1.0, 0.2, periodic="x", moment_of_inertia=0.5, radius_ratio=0.8),
-    "walls": SCENES["rough"],
+    "rough": SCENES["rough"],
     "many": Scene(1.5, 1.0, 0.15, periodic="x", discs=3),
 }
 
 
-@pytest.mark.parametrize("scene", GIVEN.values(), ids=GIVEN)
+@pytest.mark.parametrize("scene", [*GIVEN.values(), slow(ALL)], ids=repr)
 def test_a_trajectory_goes_on_from_its_end(scene):
     """The start that is given comes back, cells and all, and the motion is that of the whole path.
 

@@ -8,7 +8,6 @@ import pytest
 from factory import all_reached, through_json
 from hypothesis import given
 from hypothesis import strategies as st
-from marks import slow
 
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
@@ -19,7 +18,6 @@ from twodiscs.sampling import rounds
 from twodiscs_paper.pipeline import points
 
 PAPER = Box(1.5, 1.0)
-UNEQUAL = Box(1.5, 1.0, {"radius_ratio": 0.6, "mass_ratio": 3.0})
 
 
 def done_in_pieces(run, per_piece):
@@ -116,8 +114,7 @@ def test_a_budget_has_as_many_whole_blocks_as_it_can_pay(budget):
     assert reached(rounds.in_rounds(run))[1] == budget // 10
 
 
-@pytest.mark.parametrize("cores", [1, 3])
-@pytest.mark.parametrize("call", [1000, 7000, rounds.CALL])
+@pytest.mark.parametrize(("cores", "call"), [(1, 7000), (3, 7000), (3, rounds.CALL)])
 def test_an_error_asked_for_later_has_the_sums_of_one_asked_for_at_once(monkeypatch, cores, call):
     monkeypatch.setattr(rounds, "CALL", call)
     kept = {}
@@ -155,16 +152,11 @@ def test_a_run_goes_on_from_shards():
 TARGET = {"horizontal_hop": 0.01, "top_wall": 0.01, "any_wall": 0.003}
 
 
-#: Its kernels take seconds to compile.
-UNEQUAL_TOO = slow(UNEQUAL, 0.15)
-
-
-@pytest.mark.parametrize(("box", "radius"), [(PAPER, 0.24), UNEQUAL_TOO])
-def test_counts_in_pieces_are_those_of_their_blocks_and_reach_what_is_asked(box, radius):
+def test_counts_in_pieces_are_those_of_their_blocks_and_reach_what_is_asked():
     """This holds for rare hops, too, which are counted from separate starts."""
-    scene = box.scene(radius)
+    scene = PAPER.scene(0.24)
     run = runs.CountingRun(scene, TARGET, 4 * 10**7, 3)
-    assert {*run.parts} == ({"all", "horizontal_hop"} if box is PAPER else {"all"})
+    assert {*run.parts} == {"all", "horizontal_hop"}
     found = [
         run.point({name: done_in_pieces(one, n) for name, one in run.parts.items()})
         for n in (16, 1024)
@@ -198,9 +190,8 @@ def test_planned_events_follow_the_errors_asked_for_as_far_as_the_budget_goes(bu
             assert 0.9 * budget < events < (1 + 1 / 16) * 1.05 * budget
 
 
-@pytest.mark.parametrize(("box", "radius"), [(PAPER, 0.1), UNEQUAL_TOO])
-def test_intervals_in_pieces_are_those_of_one_process(box, radius):
-    run = runs.IntervalRun(box.scene(radius), "vertical_hop", 200_000, 5)
+def test_intervals_in_pieces_are_those_of_one_process():
+    run = runs.IntervalRun(PAPER.scene(0.1), "vertical_hop", 200_000, 5)
     assert run.parts["all"].planned == 4
     found = [run.point({"all": done_in_pieces(run.parts["all"], n)}) for n in (1, 2)]
     assert found[0] == found[1] == run.run()
