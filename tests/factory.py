@@ -29,6 +29,11 @@ def empty(table, **values):
     return dict.fromkeys(table.columns) | values
 
 
+def of(rows, **where):
+    """Return those of ``rows`` that have these values."""
+    return [row for row in rows if where.items() <= row.items()]
+
+
 def drawn(sampler, samples):
     """Return the point of a ``Sampler`` from at least this number of samples, whole blocks."""
     blocks = -(-samples // sampler.block)

@@ -8,7 +8,6 @@ import pytest
 
 import twodiscs as td
 from twodiscs.comparison import transmission
-from twodiscs.comparison.scores import student_deviate
 from twodiscs.dynamics.two.passages import (
     HOPS_OF_BLOCK,
     LARGEST_CLUSTER,
@@ -77,33 +76,6 @@ def test_a_pair_that_parts_has_fewer_passages(x, others):
     odd = (sizes % 2).sum() / sizes.sum()
     five_errors = 5 / math.sqrt(sizes.size)
     assert abs(odd - transmission.of_clusters(x, others)[0]) <= five_errors < 0.02
-
-
-@pytest.mark.slow
-def test_the_order_of_three_discs_decays_by_passages():
-    """Bonds swap at random at a rate k = κ/(2 τ), over starts of the invariant measure.
-
-    Let a be the mean of s(0) s(t), s the order of discs 1 and 2, over states with the third disc
-    outside, and b over those with it between: a' = −3 k a + 2 k b and b' = k a − 2 k b.
-    """
-    scene, hop = td.Scene(2.25, 1.0, 0.247, discs=3), "horizontal_hop"
-
-    def ordered(start, now):
-        pairs = (("x1", "x2"), ("x1", "x3"), ("x2", "x3"))
-        return sum(np.sign(start[i] - start[j]) * np.sign(now[i] - now[j]) for i, j in pairs) / 3
-
-    early, late = 60.0, 300.0
-    parts = [td.observe(scene, ordered, [early, late], 2**15, seed=n) for n in range(16)]
-    found = np.array([part.mean for part in parts])
-    kappa = td.transmission(scene, hop, 2**16, seed=1).coefficient
-    rate = kappa.value / td.mean_times(scene)[f"{hop}_time"] / 2
-    for time, means in zip((early, late), found.T, strict=True):
-        values, vectors = np.linalg.eig(np.array([[-3, 2], [1, -2]]) * rate * time)
-        start = np.linalg.solve(vectors, [2 / 3, 1 / 3])
-        due = (vectors @ (np.exp(values) * start)).sum()
-        error = math.hypot(means.std(ddof=1) / 4, kappa.relative_stderr * (1 - due))
-        assert abs(student_deviate((means.mean() - due) / error, 15)) <= 5
-        assert error < 0.02 * (1 - due)
 
 
 def test_the_face_has_the_coefficient_and_the_curve():

@@ -1,49 +1,20 @@
-"""Without these tests Brownian steps, κ, its exponents or the long run could be wrong.
+"""Without these tests Brownian steps or their κ could be wrong.
 
 Comparisons are held to five standard errors: false alarms in fewer than one of a million each.
 """
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
-import yaml
-from factory import empty
 from scipy.integrate import quad
 from scipy.stats import norm
 
-from twodiscs.points.base import read_json
 from twodiscs_paper.studies.passages import brownian as study
 from twodiscs_paper.studies.passages.models import brownian
-from twodiscs_paper.studies.passages.study import Brownian
 
 SIGMA = 5
-KEPT = Path(__file__).resolve().parents[2] / "paper" / "long_run" / "brownian"
 every_program = pytest.mark.parametrize("program", study.PROGRAMS)
-
-
-@pytest.fixture(scope="module")
-def kept():
-    """The rows of the long run."""
-    return Brownian.read(KEPT / "brownian.csv")
-
-
-@pytest.fixture(scope="module")
-def configuration():
-    """The configuration of the long run."""
-    return yaml.safe_load((KEPT / "config.yaml").read_text(encoding="utf-8"))
-
-
-@pytest.fixture(scope="module")
-def counts():
-    """The counts of the long run."""
-    return read_json(KEPT / "counts.json")
-
-
-def of(rows, **where):
-    """Return those of ``rows`` that have these values."""
-    return [row for row in rows if where.items() <= row.items()]
 
 
 def deviation(found, other):
@@ -164,47 +135,3 @@ def test_positions_stay_uniform(program):
     ):  # fmt: skip
         change = value(states).astype(float) - value(before)
         assert abs(change.mean()) < SIGMA * change.std() / math.sqrt(len(change))
-
-
-# The long run -----------------------------------------------------------------------------------
-
-
-def test_the_table_is_that_of_its_counts(kept, counts):
-    made = [empty(Brownian, **row) for row in Brownian.rows(counts)]
-    assert len(made) == len(kept)
-    for one, other in zip(made, kept, strict=True):
-        for column, value in other.items():
-            if isinstance(value, float):
-                value = pytest.approx(value, rel=1e-9)
-            assert one[column] == value, column
-
-
-def test_the_counts_are_those_of_the_configuration(monkeypatch, configuration, counts):
-    for kind in ("crossings", "passages"):
-        for point, due in zip(counts[kind], study.points(configuration[kind]), strict=True):
-            assert (point["program"], point["step"], point["halvings"]) == due[:3]
-            assert len(point["seeds"]) == len(configuration["seeds"]) == 2
-            for seed in point["seeds"]:
-                assert (seed.get("pairs") or sum(n for _, n in seed["sizes"])) == due[3]
-    monkeypatch.setattr(study, "counted", lambda *given: given)
-    monkeypatch.setattr(study, "rows", lambda counted: counted)
-    assert Brownian.part(**configuration) == tuple(configuration.values())
-
-
-def test_seeds_and_methods_agree(kept):
-    judged = [row["seeds_z"] for row in kept if row["seeds_z"] is not None]
-    judged += [row["z"] for row in kept if row["z"] is not None and row["program"] != "kicked"]
-    assert len(judged) > 100
-    # Hundreds of scores: one beyond 4.9 in 10^4 of such runs.
-    assert max(map(abs, judged)) < SIGMA
-
-
-def test_reflected_discs_have_the_exponents_of_both_theories(kept):
-    """A neck of 8 steps and more, and one of 1/8 and less, have theirs from each seed."""
-    fits = of(kept, program="reflected", method="crossings", quantity="exponent")
-    long, short = ([r for r in fits if (r["neck"] > 1) == long] for long in (True, False))
-    assert {row["seed"] for row in long} == {row["seed"] for row in short} == {None, 1, 2}
-    assert max(row["stderr"] for row in fits) < 0.03
-    assert all(abs(row["estimate"] + 1.5) < SIGMA * row["stderr"] for row in long)
-    # 1 − κ ∝ ε^½ for short necks: half of it is left at the widest one.
-    assert all(-2 < row["estimate"] < -1.95 for row in short)

@@ -9,14 +9,16 @@ from pathlib import Path
 
 import pytest
 import yaml
+from factory import empty, of
 
 from twodiscs.comparison.transmission import by_clusters, of_clusters, plateau
 from twodiscs.dynamics.many.passages import cluster_sizes
 from twodiscs.dynamics.two.passages import HOPS_OF_BLOCK
 from twodiscs.model.box import Box
 from twodiscs.points.base import read_json
+from twodiscs_paper.studies.passages import brownian
 from twodiscs_paper.studies.passages import measure as passages
-from twodiscs_paper.studies.passages.study import Passages
+from twodiscs_paper.studies.passages.study import Brownian, Passages
 from twodiscs_paper.studies.tails import measure as tails
 from twodiscs_paper.studies.tails.study import Tails
 
@@ -24,25 +26,11 @@ PAPER = Path(__file__).resolve().parents[2] / "paper"
 
 
 def kept(name, table):
-    """Return (configuration, rows) of a long run."""
+    """Return (configuration, rows, counts or None) of a long run."""
     folder = PAPER / "long_run" / name
     configuration = yaml.safe_load((folder / "config.yaml").read_text(encoding="utf-8"))
-    return configuration, table.read(folder / f"{table.name()}.csv")
-
-
-def of(rows, **where):
-    """Return those of ``rows`` that have these values."""
-    return [row for row in rows if where.items() <= row.items()]
-
-
-def assert_same(made, found):
-    """Assert that rows are the same, numbers to twelve digits."""
-    assert len(made) == len(found)
-    for one, other in zip(made, found, strict=True):
-        for column, value in other.items():
-            if isinstance(value, float):
-                value = pytest.approx(value, rel=1e-12)
-            assert one.get(column) == value, column
+    counts = next((read_json(path) for path in folder.glob("*.json")), None)
+    return configuration, table.read(folder / f"{table.name()}.csv"), counts
 
 
 def deviation(one, other):
@@ -51,48 +39,58 @@ def deviation(one, other):
     return abs(one["estimate"] - other["estimate"]) / error
 
 
-def test_the_table_of_passages_is_that_of_its_counts():
-    configuration, found = kept("passages", Passages)
-    counts = read_json(PAPER / "long_run" / "passages" / "clusters.json")
-    made = [
-        row
-        for one in configuration["thresholds"]
-        for row in passages.cluster_rows(one, counts[one["name"]])
-    ]
-    assert_same(made, found)
+def rows_of_clusters(configuration, counts):
     for one in configuration["thresholds"]:
         for count in counts[one["name"]]:
             blocks = -(-one["hops"] // HOPS_OF_BLOCK)
             assert sum(hops for _, hops in count["sizes"]) == blocks * HOPS_OF_BLOCK
+        yield from passages.cluster_rows(one, counts[one["name"]])
 
 
-@pytest.mark.parametrize(("name", "table"), [("passages", Passages), ("tails", Tails)])
+def rows_of_files(configuration, counts):
+    for one, count in zip(configuration["files"], counts["files"], strict=True):
+        assert len(count) == one["replicas"]
+        yield from passages.file_rows(one, configuration, count)
+
+
+def rows_of_steps(configuration, counts):
+    for kind in ("crossings", "passages"):
+        for point, due in zip(counts[kind], brownian.points(configuration[kind]), strict=True):
+            assert (point["program"], point["step"], point["halvings"]) == due[:3]
+            assert len(point["seeds"]) == len(configuration["seeds"]) == 2
+            for seed in point["seeds"]:
+                assert (seed.get("pairs") or sum(n for _, n in seed["sizes"])) == due[3]
+    return Brownian.rows(counts)
+
+
+@pytest.mark.parametrize(
+    ("name", "table", "rows"),
+    [
+        ("passages", Passages, rows_of_clusters),
+        ("files", Passages, rows_of_files),
+        ("brownian", Brownian, rows_of_steps),
+    ],
+)
+def test_a_table_is_that_of_its_counts(name, table, rows):
+    configuration, found, counts = kept(name, table)
+    made = [empty(table, **row) for row in rows(configuration, counts)]
+    for one, other in zip(made, found, strict=True):
+        for column, value in other.items():
+            value = pytest.approx(value, rel=1e-9) if isinstance(value, float) else value
+            assert one[column] == value, column
+
+
+@pytest.mark.parametrize(
+    ("name", "table"), [("passages", Passages), ("tails", Tails), ("brownian", Brownian)]
+)
 def test_the_parameters_of_a_long_run_are_those_of_a_part(name, table, monkeypatch):
-    configuration, _ = kept(name, table)
-    given = []
-    monkeypatch.setitem(passages.PARTS, "long_run", lambda thresholds: given.append(thresholds))
-    monkeypatch.setattr(tails, "long_run", lambda weighted, counted: given.append(counted))
-    table.part(**configuration)
-    assert given == [configuration.get("thresholds", configuration.get("counted"))]
-
-
-def kept_files():
-    """Return (run, files, counts, rows) of the long run of files."""
-    configuration, found = kept("files", Passages)
-    run = {name: value for name, value in configuration.items() if name not in ("part", "files")}
-    counts = read_json(PAPER / "long_run" / "files" / "counts.json")["files"]
-    return run, configuration["files"], counts, found
-
-
-def test_the_table_of_files_is_that_of_its_counts():
-    run, files, counts, found = kept_files()
-    made = [
-        row
-        for one, count in zip(files, counts, strict=True)
-        for row in passages.file_rows(one, run, count)
-    ]
-    assert_same(made, found)
-    assert [len(count) for count in counts] == [one["replicas"] for one in files]
+    configuration, *_ = kept(name, table)
+    monkeypatch.setitem(passages.PARTS, "long_run", lambda thresholds: (thresholds,))
+    monkeypatch.setattr(tails, "long_run", lambda *given: given)
+    monkeypatch.setattr(brownian, "counted", lambda *given: given)
+    monkeypatch.setattr(brownian, "rows", lambda counted: counted)
+    due = [value for name, value in configuration.items() if name != "part"]
+    assert [*table.part(**configuration)] == due
 
 
 def test_files_diffuse_by_passages_if_hops_are_rare():
@@ -101,7 +99,7 @@ def test_files_diffuse_by_passages_if_hops_are_rare():
     κ of 128 discs is that of the same motion. κ of short files is that of hops that are drawn on
     their surface, from other states and by another kernel.
     """
-    rows = of(kept_files()[3], distance=1 / 32)
+    rows = of(kept("files", Passages)[1], distance=1 / 32)
     files = {(row["discs"], row["friction"]) for row in rows}
     assert len(files) == 4
     for discs, friction in files:
@@ -130,7 +128,7 @@ def test_files_diffuse_by_passages_if_hops_are_rare():
     ],
 )
 def test_long_runs_agree_with_the_build(name, table, quantity, keys, fewest):
-    _, found = kept(name, table)
+    _, found, _ = kept(name, table)
     rows = of(table.read(PAPER / "expected" / f"{table.name()}.csv"), quantity=quantity)
     expected = [row for row in rows if row.get("scene", "paper") == "paper"]
     compared = 0
@@ -140,6 +138,27 @@ def test_long_runs_agree_with_the_build(name, table, quantity, keys, fewest):
                 assert deviation(row, other) < 5
                 compared += 1
     assert compared >= fewest
+
+
+def test_seeds_and_methods_of_brownian_steps_agree():
+    _, found, _ = kept("brownian", Brownian)
+    judged = [row["seeds_z"] for row in found if row["seeds_z"] is not None]
+    judged += [row["z"] for row in found if row["z"] is not None and row["program"] != "kicked"]
+    assert len(judged) > 100
+    # Hundreds of scores: one beyond 4.9 in 10^4 of such runs.
+    assert max(map(abs, judged)) < 5
+
+
+def test_reflected_discs_have_the_exponents_of_both_theories():
+    """A neck of 8 steps and more, and one of 1/8 and less, have theirs from each seed."""
+    _, found, _ = kept("brownian", Brownian)
+    fits = of(found, program="reflected", method="crossings", quantity="exponent")
+    long, short = ([r for r in fits if (r["neck"] > 1) == long] for long in (True, False))
+    assert {row["seed"] for row in long} == {row["seed"] for row in short} == {None, 1, 2}
+    assert max(row["stderr"] for row in fits) < 0.03
+    assert all(abs(row["estimate"] + 1.5) < 5 * row["stderr"] for row in long)
+    # 1 − κ ∝ ε^½ for short necks: half of it is left at the widest one.
+    assert all(-2 < row["estimate"] < -1.95 for row in short)
 
 
 def test_a_small_run_counts_every_hop_once():

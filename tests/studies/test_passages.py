@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from factory import empty
 from marks import slow
 from scipy.stats import chi2
 
@@ -53,11 +54,6 @@ def test_errors_of_the_slope_are_those_of_its_spread():
     assert chi2.cdf(square, len(scores)) > 5e-7
 
 
-def complete(row):
-    """Return a row with its empty cells."""
-    return dict.fromkeys(Passages.columns) | row
-
-
 def power_rows(power, sizes, inertia=None):
     """Return rows of κ or 1 − κ that fall as a power of the distance."""
     rows = []
@@ -65,7 +61,7 @@ def power_rows(power, sizes, inertia=None):
         value = 2.0 ** (-n * power)
         row = {"quantity": "coefficient", "distance": 2.0**-n, "stderr": size * value}
         row |= {"scene": "paper", "event": HOP, "discs": 2, "moment_of_inertia": inertia}
-        rows.append(complete(row | {"estimate": value if inertia else 1 - value}))
+        rows.append(empty(Passages, **row, estimate=value if inertia else 1 - value))
     return rows
 
 
@@ -249,8 +245,8 @@ def joined(name, box, inertias=(0.5,)):
         given = {"name": name, "box": box, "blocked": [0.28 * box.height], "seed": 1}
         parts.append({"part": "in_long_file", **given})
     parts.append({"part": "in_the_limit", "seed": 1})
-    found = [complete(row) for given in parts for row in Passages.part(**given)]
-    return [complete(row) for row in Passages.rows({"all": found})]
+    found = [empty(Passages, **row) for given in parts for row in Passages.part(**given)]
+    return [empty(Passages, **row) for row in Passages.rows({"all": found})]
 
 
 @pytest.mark.parametrize("rough", [False, slow(True)])
@@ -340,7 +336,7 @@ def test_rows_with_friction(kicked, monkeypatch):
         square = sum((row["stderr"] / row["estimate"]) ** 2 for row in (before, after))
         assert slope["stderr"] == pytest.approx(math.sqrt(square) / math.log(4) / octaves)
     assert len(slopes) == 2
-    assert list(measure.fits([complete(row) for row in rows])) == []
+    assert list(measure.fits([empty(Passages, **row) for row in rows])) == []
 
 
 @pytest.mark.parametrize("halvings", [8, 10])

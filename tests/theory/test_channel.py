@@ -136,3 +136,20 @@ def test_many_discs_tend_to_the_largest_eigenvalue():
     # Each order takes off a power of 1/N, N = 256.
     assert np.all(np.abs(first[1]) < 5e-4)
     assert np.all(np.abs(second) < 2e-5)
+
+
+@pytest.mark.parametrize("share", [0.3, 0.6, 0.9])
+def test_residue_at_close_packing_in_a_channel(share):
+    """The force times the length left is 2 kT for each disc in a zigzag at close packing.
+
+    Montero and Santos, arXiv:2212.08932: the equation of state has a simple pole with residue 2
+    there, where hard rods on a line have 1. The rest of the expansion is linear in kT/force.
+    """
+    across = share * math.sqrt(0.75)
+    least = math.sqrt((1 - across) * (1 + across))
+
+    def residue(force):
+        return force * (limit(1 + across, 0.5, force).length - least)
+
+    extrapolated = 2 * residue(2e5) - residue(1e5)
+    assert extrapolated == pytest.approx(2, rel=1e-7)

@@ -1,8 +1,6 @@
 """Rates could ignore the parts that confine events, or numbers keep what a caller changed."""
 
 import math
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -46,21 +44,7 @@ def test_events_are_wall_hits_and_collisions(scene):
     assert exact.event_rate(torus) == exact.rate(torus, "disc_collision")
 
 
-# Hand-over --------------------------------------------------------------------------------------
-
-
-def test_plain_scenes_need_the_standard_library_only():
-    """The exact numbers of a plain scene are there before NumPy would be imported."""
-    code = (
-        "import sys; from twodiscs.theory.exact import exact;"
-        "from twodiscs.model.scene import Scene;"
-        "exact(Scene(1.5, 1.0, 0.2));"
-        "print(*sys.modules)"
-    )
-    run = subprocess.run(
-        [sys.executable, "-c", code], check=True, timeout=60, text=True, capture_output=True
-    )
-    assert not {"numpy", "mpmath", "scipy", "numba"} & set(run.stdout.split())
+# Prism ------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
