@@ -175,6 +175,12 @@ def test_only_rare_hops_of_a_neck_have_strips():
     assert strip.rare_hops(Scene(100.0, 1.0, 0.01)) == ()
     for scene, hop in NECKS.values():
         assert set(strip.rare_hops(scene)) <= {hop}
+    # A hop that is all but impossible is waited for: its strip would take for ever to fill.
+    for width, radius, field in (
+        (0.9313773251626372, 0.09311188377144873, 2.6849301205525116),
+        (2.851903922399709, 0.045663183366862564, 5.474870133112426),
+    ):
+        assert strip.rare_hops(Scene(width, 1.0, radius, field=field)) == ()
 
 
 @pytest.mark.parametrize(("hop", "distance"), [("vertical_hop", 1e-4), ("horizontal_hop", 1e-9)])

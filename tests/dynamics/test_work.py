@@ -119,21 +119,6 @@ def test_draws_are_within_the_price_of_a_budget(drawn):
     assert proposals <= 1.01 * strip.PROPOSALS_PER_EVENT * 10**9
 
 
-#: Scenes in which a hop is all but impossible: its strip would take for ever to fill.
-HOPELESS = [
-    (0.9313773251626372, 1.0, 0.09311188377144873, {"field": 2.6849301205525116}),
-    (2.851903922399709, 1.0, 0.045663183366862564, {"field": 5.474870133112426}),
-]
-
-
-@pytest.mark.parametrize(("width", "height", "radius", "effects"), HOPELESS)
-def test_what_is_too_rare_to_be_drawn_has_no_strip(width, height, radius, effects):
-    scene = Box(width, height, effects).scene(radius)
-    assert strip.rare_hops(scene) == ()
-    run = runs.CountingRun(scene, dict.fromkeys(scene.events, 0.01), 10**6, 1)
-    assert [*run.parts] == ["all"]
-
-
 def test_a_strip_is_no_longer_than_its_events_allow():
     """A large disc that just fits between two walls hits them all the time."""
     scene = Box(
