@@ -20,7 +20,7 @@ from twodiscs.model.box import Box
 
 BOX, RADIUS = Box(1.5, 1.0), 0.24
 
-#: Frames to either side of a hop in the files: a few more than those with its sign.
+#: Frames on either side of a hop in a file: a few more than those with its sign.
 FEW = MARKED + 4
 
 
@@ -28,37 +28,6 @@ FEW = MARKED + 4
 def rows():
     """Rows of trajectory.csv with hops of both kinds."""
     return Trajectory.rows(BOX, RADIUS, 1908)
-
-
-@pytest.fixture(scope="module")
-def stage(rows):
-    with style.context():
-        return animation.Stage(BOX, RADIUS, rows)
-
-
-@pytest.fixture(scope="module")
-def frames(rows, tmp_path_factory):
-    """Return [(milliseconds, pixels)] of a GIF; a PNG and a page beside it show the same.
-
-    They have ``FEW`` frames on either side of the hop.
-    """
-    folder = tmp_path_factory.mktemp("animation")
-    paths = [folder / "a.gif", folder / "a.png", folder / "a.html"]
-    with pytest.MonkeyPatch.context() as patch, style.context():
-        patch.setattr(animation, "BEFORE", FEW)
-        patch.setattr(animation, "AFTER", FEW)
-        animation.animate(BOX, RADIUS, rows, paths)
-    gif, png = map(unpacked, paths[:2])
-    text = paths[2].read_text(encoding="utf-8")
-    assert "http" not in text
-    pictures, times = re.search(r"pictures = (\[.*\]), milliseconds = (\[.*\]);", text).groups()
-    shown = [Image.open(BytesIO(b64decode(one))).convert("RGB") for one in json.loads(pictures)]
-    page = [*zip(json.loads(times), (np.asarray(image, int) for image in shown), strict=True)]
-    for others in (png, page):
-        for ours, theirs in zip(gif, others, strict=True):
-            assert ours[0] == theirs[0]
-            np.testing.assert_array_equal(ours[1], theirs[1])
-    return gif
 
 
 def unpacked(path):
@@ -112,7 +81,25 @@ def test_hops_that_are_never_alone_and_trajectories_that_are_too_short():
 # Content of the frames ---------------------------------------------------------------------------
 
 
-def test_the_hop_is_a_frame_and_the_only_one_that_stops(stage, rows, frames):
+def test_the_hop_is_a_frame_and_the_only_one_that_stops(rows, tmp_path, monkeypatch):
+    """A GIF, a PNG and a page show the same, ``FEW`` frames on either side of the hop."""
+    monkeypatch.setattr(animation, "BEFORE", FEW)
+    monkeypatch.setattr(animation, "AFTER", FEW)
+    paths = [tmp_path / f"a.{kind}" for kind in ("gif", "png", "html")]
+    with style.context():
+        animation.animate(BOX, RADIUS, rows, paths)
+        stage = animation.Stage(BOX, RADIUS, rows)
+    frames, png = map(unpacked, paths[:2])
+    text = paths[2].read_text(encoding="utf-8")
+    assert "http" not in text
+    pictures, times = re.search(r"pictures = (\[.*\]), milliseconds = (\[.*\]);", text).groups()
+    shown = [Image.open(BytesIO(b64decode(one))).convert("RGB") for one in json.loads(pictures)]
+    page = [*zip(json.loads(times), (np.asarray(image, int) for image in shown), strict=True)]
+    for others in (png, page):
+        for ours, theirs in zip(frames, others, strict=True):
+            assert ours[0] == theirs[0]
+            np.testing.assert_array_equal(ours[1], theirs[1])
+
     assert stage.hop == "horizontal_hop"
     assert stage.centre in [row["time"] for row in rows if row["event"] == stage.hop]
     assert abs(stage.apart([stage.centre])[0]) < 1e-12

@@ -24,8 +24,8 @@ from twodiscs_paper.studies.thresholds.measure import leading_law
 QUICK = ("square", "paper", "long", *OTHERS)
 TABLED = (*QUICK, "ten", "nearly square", "tiny", "large")
 
-#: Without a layout a figure takes a tenth of the time. Its texts stand in these boxes.
-LAID_OUT = ("paper", "effects")
+#: Most of the time of a figure is the layout of its texts: fast tests look at them in these boxes.
+LAID_OUT = ("paper", *OTHERS)
 
 QUANTITIES = {quantity for entry in FIGURES.values() for quantity in entry.needs}
 

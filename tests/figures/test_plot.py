@@ -99,7 +99,7 @@ def pixels(path):
 
 def test_a_returned_figure_is_saved_as_plot_saves_it(tmp_path):
     """By its own method, after it was pickled, and as a notebook shows a copy that was changed."""
-    figure = td.plot(scan(COLLISIONS), tmp_path / "ours.png")
+    figure = td.plot(scan(HOPS), tmp_path / "ours.png")
     pickle.loads(pickle.dumps(figure)).savefig(tmp_path / "own.png")
     np.testing.assert_array_equal(pixels(tmp_path / "own.png"), pixels(tmp_path / "ours.png"))
     figure.savefig(tmp_path / "own.pdf")
