@@ -41,10 +41,9 @@ rule mine:
         "cp {{input}} {{output}}"
 """
 
-#: The last line of the script of studies, and the lines in a checkout. Tests of a study measure; a
-#: build takes the expected rows. Tables with seconds, and those of other tables, are made.
+#: The studies whose rows a build takes from the expected tables, because their tests measure.
+#: Tables with seconds, and those of other tables, are made.
 EXPECTED = "errata", "distributions", "more_discs", "passages", "stability", "tails"
-STUDIED = "table.write(snakemake.output.table, work(**given))"
 KEPT = f"""
 from pathlib import Path
 
@@ -60,11 +59,22 @@ else:
 table.write(snakemake.output.table, rows)
 """
 
-#: (File below studies, its text, its text in a checkout). Of the parts of a table one is made.
-#: Repetitions do not follow from the budget of a scene.
+STUDIES = "src/twodiscs_paper/studies"
+
+#: (File, its text, its text in a checkout). Every figure is made, but files show one of them only.
+#: Of the parts of a table one is made. Repetitions do not follow from the budget of a scene. The
+#: cost of effects is measured without kernels that nothing else compiles.
 QUICKER = (
-    ("passages/study.py", 'return parts | {"in_the_limit"', 'return {"in_the_limit"'),
-    ("accuracy_cost/measure.py", "DISTANCES = (0.6, 0.2, 0.05, 1e-2, ", "DISTANCES = ("),
+    ("workflow/scripts/study.py", "table.write(snakemake.output.table, work(**given))", KEPT),
+    (
+        "workflow/scripts/figure.py",
+        "style.save(figure, path",
+        'style.save(figure if name == "volume" else style.new_figure(1), path',
+    ),
+    (f"{STUDIES}/passages/study.py", 'return parts | {"in_the_limit"', 'return {"in_the_limit"'),
+    (f"{STUDIES}/accuracy_cost/measure.py", "(0.6, 0.2, 0.05, 1e-2, ", "("),
+    (f"{STUDIES}/effects/cost.py", "scenes.items()} | MORE", "scenes.items()}"),
+    (f"{STUDIES}/effects/cost.py", "= package_without_effects()", "= twodiscs.__name__"),
 )
 
 #: The rules that build nothing but lists of files: targets, and checksums of sources.
@@ -93,7 +103,7 @@ def forked(arguments, folder, sources):
                 sys.stdout, sys.stderr = (os.fdopen(os.dup(fd), "w") for fd in (1, 2))
                 os.chdir(folder)
                 sys.argv = ["snakemake", *arguments]
-                os.environ["PYTHONPATH"] = sources
+                os.environ["PYTHONPATH"] = first(sources)
                 for name in [name for name in sys.modules if name.startswith("twodiscs")]:
                     del sys.modules[name]
                 sys.path.insert(0, sources)
@@ -134,22 +144,12 @@ class Checkout:
     def snakemake(self, *arguments, passes=True):
         """Run snakemake here; by default it must succeed. Returns the completed process.
 
-        A dry run starts no job: a copy of this process is enough for it, which has imported
-        Snakemake already, but nothing of the package.
+        A copy of this process runs, which has imported Snakemake already, but nothing of the
+        package. Jobs are processes of their own.
         """
-        sources = str(self.home.path / "src")
         if not (self.path / "Snakefile").exists():
             arguments = "--snakefile", str(self.home.path / "Snakefile"), *arguments
-        if "--dry-run" in arguments:
-            run = forked(arguments, self.path, sources)
-        else:
-            run = subprocess.run(
-                [sys.executable, "-m", "snakemake", *arguments],
-                cwd=self.path,
-                env=os.environ | {"PYTHONPATH": first(sources)},
-                capture_output=True,
-                text=True,
-            )
+        run = forked(arguments, self.path, str(self.home.path / "src"))
         if passes:
             assert run.returncode == 0, run.stdout + run.stderr
         return run
@@ -196,17 +196,14 @@ def fresh(path):
     for part in PARTS:
         source, target = REPOSITORY / part, path / part
         if source.is_dir():
-            shutil.copytree(
-                source, target, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info")
-            )
+            shutil.copytree(source, target, ignore=shutil.ignore_patterns("*.egg-info"))
         else:
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(source, target)
     shutil.copy(Path(__file__).with_name("small.yaml"), path / "config" / "config.yaml")
     checkout = Checkout(path)
-    checkout.replace("workflow/scripts/study.py", STUDIED, KEPT)
-    for file, *texts in QUICKER:
-        checkout.replace(f"src/twodiscs_paper/studies/{file}", *texts)
+    for edit in QUICKER:
+        checkout.replace(*edit)
     return checkout
 
 

@@ -13,8 +13,8 @@ from checkout import Checkout, fresh
 # Jobs start as `python`, as where the environment of the tests is activated.
 os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
 
-#: The scene with effects that is built, at this radius: each scene compiles another engine.
-EFFECTS = {"torus": [0.3]}
+#: The scene with effects that is built, at this radius: other tests compile its engine.
+EFFECTS = {"field": [0.3]}
 
 
 @pytest.fixture(scope="session")

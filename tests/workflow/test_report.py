@@ -92,7 +92,7 @@ def test_key_figures_have_their_captions_beneath_them_and_the_rest_are_thumbnail
     assert front["figures"][0]["title"] == f"{ANIMATION.title}."
     key = [figure for figure in front["figures"] if figure["key"]]
     titles = {f"{entry.title}.": entry for entry in (SCENE_FIGURES | STUDY_FIGURES).values()}
-    assert len({figure["title"] for figure in key}) == 2 + 2 + 3  # of full, walls, all
+    assert len({figure["title"] for figure in key}) == 2 + 2 + 2  # of full, walls, all
     for figure in front["figures"]:
         # Nearly as wide as a column of a journal in its natural size, or as the window.
         assert min(figure["loaded"], figure["shown"]) > 300
