@@ -377,14 +377,11 @@ def test_passages_along_a_ring():
 def test_thick_and_thin_collision_shells():
     """Collision shells are differences of volumes, those too thin for that as well."""
     scene = SCENES[7]
-    sigma = sum(scene.exact_radii)
-    relative = math.sqrt(1 / scene.masses[0] + 1 / scene.masses[1])
+    axes, sigma = [Axis(scene, a, mpf(1.5)) for a in "yx"], mpf(float(sum(scene.exact_radii)))
+    relative = mpf(math.sqrt(1 / scene.masses[0] + 1 / scene.masses[1]))
+    inner = beyond(axes, sigma**2)
     for epsilon in (0.1, 1e-3, 3e-5):
-        thickness = mpf(epsilon) * mpf(relative)
-        inner = beyond([Axis(scene, a, mpf(1.5)) for a in "yx"], mpf(float(sigma)) ** 2)
-        outer = beyond(
-            [Axis(scene, a, mpf(1.5)) for a in "yx"], (mpf(float(sigma)) + thickness) ** 2
-        )
+        outer = beyond(axes, (sigma + mpf(epsilon) * relative) ** 2)
         found = weighted.shell_expectation(scene, "disc_collision", epsilon)
         assert relative_error(found, (inner - outer) / epsilon) < 1e-11
 
