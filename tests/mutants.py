@@ -225,6 +225,7 @@ MUTANTS = [
     ("two shells without their overlap", '"right*top": self.right_and_top, "top*top"', '"right*top": 0, "top*top"'),
     ("flux without the error of Monte Carlo", "stderr = ratio * math.hypot(*relative)", "stderr = ratio * relative[0]"),
     ("rate of decay of independent counts", "np.std(counted[:, 0] / early - counted[:, 1] / late", "np.std(counted[:, 0] / early + counted[:, 1] / late"),
+    ("earlier parts twice in the total", "before + done, sum(work.values()))", "before + done, before + sum(work.values()))"),
 ]
 # fmt: on
 

@@ -100,6 +100,14 @@ def test_rounds_end_where_the_error_is_reached_or_the_budget_spent(budget):
     assert known[-1][0] <= known[-1][1]
 
 
+def test_the_work_of_runs_one_after_the_other_ends_at_their_total():
+    seen = []
+    parts = {name: fabricated(0.01, 1e12)[0] for name in ("all", "vertical_hop")}
+    done = rounds.all_in_rounds(parts, lambda *given: seen.append(given))
+    work = [reached(pieces)[1] * parts[name].block_work for name, pieces in done.items()]
+    assert seen[-1] == (sum(work), sum(work))
+
+
 @pytest.mark.parametrize("budget", [325, 1005, 12345])
 def test_a_budget_has_as_many_whole_blocks_as_it_can_pay(budget):
     """A block has ten events, and the error is never reached."""
