@@ -13,6 +13,7 @@ from twodiscs.dynamics.runs import wide_edges
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.draw import draw as draw_figure
 from twodiscs.model.box import Box
+from twodiscs.model.events import HOPS
 from twodiscs.theory import exact
 from twodiscs_paper.configuration.radii import radii
 
@@ -127,17 +128,18 @@ def trajectory(rng, box, events=400):
 
     Its lengths are below half of the shortest side, and so are its times apart.
     """
-    unit, more = box.shortest, [f"{axis}{n}" for n in range(3, box.discs + 1) for axis in "xy"]
-    others = dict.fromkeys(("z1", "z2", "first", "second")) | dict.fromkeys(more, 0.1 * unit)
+    unit, rows = box.shortest, []
+    more = {f"{axis}{n}": 0.1 * unit for n in range(3, box.discs + 1) for axis in "xy"}
+
+    def add(time, event, x):
+        places = {"x1": -x, "y1": -x, "x2": x, "y2": x} | more
+        rows.append(empty(SCENE_TABLES["trajectory"], time=time * unit, event=event, **places))
+
     side = np.where(np.arange(events) // 90 % 2, 1, -1)
-    rows = []
     for i, x in enumerate(side * unit * rng.uniform(0.1, 0.4, events)):
-        if i > 0 and side[i] != side[i - 1]:
-            for event in ("horizontal_hop", "vertical_hop"):
-                place = dict.fromkeys(("x1", "y1", "x2", "y2"), 0)
-                rows.append({"time": unit * (i - 0.5), "event": event, **place, **others})
-        place = {"x1": -x, "y1": -x, "x2": x, "y2": x, **others}
-        rows.append({"time": unit * i, "event": "wall_x1", **place})
+        for event in HOPS if i > 0 and side[i] != side[i - 1] else ():
+            add(i - 0.5, event, 0)
+        add(i, "wall_x1", x)
     return rows
 
 

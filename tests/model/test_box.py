@@ -35,6 +35,7 @@ def test_a_plain_box_does_not_know_that_there_are_effects_and_more_discs():
     assert scene == Scene(1.5, 1.0, 0.1) == Scene(1.5, 1.0, 0.1, discs=2)
     assert repr(scene) == "Scene(1.5, 1.0, 0.1)"
     assert scene.calls_for == PAPER.calls_for == {}
+    assert (scene.family, scene.is_plain) == ("plain", True)
 
 
 @pytest.mark.parametrize("effects", EFFECTS, ids=str)
@@ -45,9 +46,13 @@ def test_the_same_box_is_equal_and_has_the_same_hash_and_parameters(effects):
     if "periodic" in effects:
         spelled["periodic"] = effects["periodic"][::-1]
     box, other = Box(1.5, 1.0, effects), Box(1.5, 1, spelled)
+    scene = box.scene(0.1)
     text = json.dumps(box.parameters())
-    assert box == other == Box(**json.loads(text)) == Box.of(box.scene(0.1))
-    assert box.scene(0.1) == Scene(1.5, 1.0, 0.1, **effects)
+    assert box == other == Box(**json.loads(text)) == Box.of(scene)
+    assert scene == Scene(1.5, 1.0, 0.1, **effects)
+    assert (scene.family, scene.is_plain) == ("effects", False)
+    assert scene.masses == (1.0, effects.get("mass_ratio", 1.0))
+    assert scene.radii == (0.1, 0.1 * effects.get("radius_ratio", 1.0))
     assert hash(box) == hash(other)
     assert text == json.dumps(other.parameters())
     assert list(box.effects) == sorted(effects)

@@ -79,9 +79,7 @@ def test_effects_are_the_fields_of_a_scene_after_its_radius():
     assert {field.name: field.default for field in rest} == ABSENT
     # The parameters of a scene are in the order of the declarations.
     assert [field.name for field in rest] == list(EFFECTS)
-
-
-def test_only_the_depth_is_a_side_of_the_box():
+    # Only the depth is a side of the box.
     assert [name for name, effect in EFFECTS.items() if effect.of_box] == ["depth"]
 
 

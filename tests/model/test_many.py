@@ -55,6 +55,7 @@ def test_a_scene_of_more_discs():
     assert Box(**box.parameters()) == box
     assert box.scene(0.15) == scene == eval(repr(scene), {"Scene": Scene})
     assert box.parameters()["discs"] == 3
+    assert (scene.family, scene.is_plain) == ("many", False)
     assert (scene.radii, scene.masses) == ((0.15,) * 3, (1.0,) * 3)
     assert scene.effects == {}
     assert scene.calls_for == {"discs": 3}

@@ -70,14 +70,6 @@ def test_a_copy_is_the_same_whatever_was_asked_before():
         scene.width = 2.0
 
 
-def test_scenes_of_two_discs_and_of_more_are_told_apart():
-    plain, many = Scene(1.5, 1.0, 0.2), Scene(1.5, 1.0, 0.15, discs=3)
-    unequal = replace(plain, mass_ratio=2.0)
-    assert [one.family for one in (plain, unequal, many)] == ["plain", "effects", "many"]
-    assert [one.is_plain for one in (plain, unequal, many)] == [True, False, False]
-    assert (unequal.radii, unequal.masses) == ((0.2, 0.2), (1.0, 2.0))
-
-
 SCENES = [
     Scene(1.5, 1.0, 0.2, radius_ratio=1.3),
     Scene(1.5, 1.0, 0.2, radius_ratio=1.9),
