@@ -35,13 +35,9 @@ EXPECTED = Path(__file__).parents[1] / "paper" / "expected"
 #: {name: a call of a public function, with a scene, and a use of its result}
 CALLS = {
     "a mistake": lambda s: _refused(),
-    "animate": lambda s: td.animate(td.trajectory(s, 2), _file("gif")),
+    "animate": lambda s: td.animate(td.trajectory(s, 0.2), _file("gif")),
     "areas": lambda s: td.areas(s),
-    "cost": lambda s: (
-        str(td.cost(s)),
-        td.cost(s, 1e-3).frame(),
-        td.cost(s).prices[0].seconds(0.1),
-    ),
+    "cost": lambda s: _used(td.cost(s, 1e-3)),
     "diffusion": lambda s: td.diffusion(td.Scene(**SCENE, periodic="x"), [0.1], 8),
     "exact": lambda s: td.exact(s),
     "exact_table": lambda s: td.exact_table(1.5, 1.0, [0.2]),
@@ -66,6 +62,10 @@ CALLS = {
 
 def _speed(before, after):
     return after["u1"] ** 2
+
+
+def _used(cost):
+    return str(cost), cost.frame(), cost.prices[0].seconds(0.1)
 
 
 def _refused():
