@@ -132,13 +132,14 @@ def trajectory(rng, box, events=400):
     more = {f"{axis}{n}": 0.1 * unit for n in range(3, box.discs + 1) for axis in "xy"}
 
     def add(time, event, x):
-        places = {"x1": -x, "y1": -x, "x2": x, "y2": x} | more
+        places = {"x1": -x, "y1": -0.9 * x, "x2": x, "y2": 0.9 * x} | more
         rows.append(empty(SCENE_TABLES["trajectory"], time=time * unit, event=event, **places))
 
     side = np.where(np.arange(events) // 90 % 2, 1, -1)
     for i, x in enumerate(side * unit * rng.uniform(0.1, 0.4, events)):
-        for event in HOPS if i > 0 and side[i] != side[i - 1] else ():
-            add(i - 0.5, event, 0)
+        for event, time in zip(HOPS, (i - 0.6, i - 0.5), strict=True):
+            if i > 0 and side[i] != side[i - 1]:
+                add(time, event, 0)
         add(i, "wall_x1", x)
     return rows
 
