@@ -136,17 +136,14 @@ def can_be_level(scene, axis):
     Two discs with the same y are at least σ apart along x, and a third one is at least σ from both.
     It has the most room at the other wall of y, in the middle between them or beside them. The
     condition is exact for three discs. For two discs the third is ignored. For more than three it
-    is necessary, not sufficient.
+    is necessary, not sufficient. On a ring the discs of a row can be level up to the last radius.
     """
     along, across = scene.range_x, scene.range_y
     if axis == "x":
         along, across = across, along
-    ring = bool(scene.periodic) and axis == "y"  # of at least 2σ, see ``largest_known_radius``
     sigma = scene.contact_distance
-    if along <= sigma:
-        return False
-    beside = (along - sigma) / 2 if ring else max(along / 2, along - sigma)
-    return scene.discs < 3 or math.hypot(beside, across) > sigma
+    beside = max(along / 2, along - sigma)
+    return along > sigma and (scene.discs < 3 or math.hypot(beside, across) > sigma)
 
 
 def arrangement(scene):
