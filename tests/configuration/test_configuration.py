@@ -196,13 +196,6 @@ def test_an_edit_concerns_the_jobs_that_depend_on_it(edit, concerned):
     assert {job[0] for job in before if repr(before[job]) != repr(after[job])} == concerned
 
 
-def test_another_radius_is_one_more_job_of_each_method():
-    before, after = edited(), edited(radii=[0.1, 0.15, 0.2])
-    assert after.keys() - before.keys() == {("monte_carlo", "0.15"), ("dynamics", "0.15")}
-    changed = {job[0] for job in before if repr(before[job]) != repr(after[job])}
-    assert changed == {"theory", "grid"}
-
-
 def test_seeds_differ_between_scenes_methods_and_radii_and_follow_the_root():
     every = []
     for seed in (1, 2):
