@@ -1,6 +1,5 @@
 """A checkout to build in: the repository's files with a small configuration."""
 
-import atexit
 import gc
 import os
 import re
@@ -8,6 +7,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from multiprocessing import get_context
 from pathlib import Path
 
 import pydantic  # noqa: F401
@@ -92,42 +92,28 @@ def first(sources):
 def forked(arguments, folder, sources):
     """Run snakemake in ``folder`` in a copy of this process; return the completed one."""
     with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as error:
-        child = os.fork()
-        if child == 0:
-            status = 1
-            gc.freeze()  # or each collection reads, and so copies, all objects of the tests
-            atexit._clear()  # what ends the tests is not for a copy of them
-            try:
-                os.dup2(out.fileno(), 1)
-                os.dup2(error.fileno(), 2)
-                sys.stdout, sys.stderr = (os.fdopen(os.dup(fd), "w") for fd in (1, 2))
-                os.chdir(folder)
-                sys.argv = ["snakemake", *arguments]
-                os.environ["PYTHONPATH"] = first(sources)
-                for name in [name for name in sys.modules if name.startswith("twodiscs")]:
-                    del sys.modules[name]
-                sys.path.insert(0, sources)
-                status = snakemake_main(arguments)
-                atexit._run_exitfuncs()
-            finally:
-                sys.stdout.flush()
-                sys.stderr.flush()
-                os._exit(status)
-        status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+        given = arguments, folder, sources, (out, error)
+        child = get_context("fork").Process(target=snakemake, args=given)
+        child.start()
+        child.join()
         for file in (out, error):
             file.seek(0)
-        return subprocess.CompletedProcess(arguments, status, out.read(), error.read())
+        return subprocess.CompletedProcess(arguments, child.exitcode, out.read(), error.read())
 
 
-def snakemake_main(arguments):
-    """Run the command ``snakemake``; return its exit status."""
-    try:
-        cli.main(list(arguments))
-    except SystemExit as ended:
-        if isinstance(ended.code, str):
-            print(ended.code, file=sys.stderr)
-        return ended.code if isinstance(ended.code, int) else int(ended.code is not None)
-    return 0
+def snakemake(arguments, folder, sources, files):
+    """Be the command ``snakemake``, with standard output and error in ``files``."""
+    gc.freeze()  # or each collection reads, and so copies, all objects of the tests
+    for number, file in enumerate(files, 1):
+        os.dup2(file.fileno(), number)
+    sys.stdout, sys.stderr = (os.fdopen(os.dup(number), "w") for number in (1, 2))
+    os.chdir(folder)
+    sys.argv = ["snakemake", *arguments]
+    os.environ["PYTHONPATH"] = first(sources)
+    for name in [name for name in sys.modules if name.startswith("twodiscs")]:
+        del sys.modules[name]
+    sys.path.insert(0, sources)
+    cli.main([*arguments])
 
 
 class Checkout:
