@@ -302,3 +302,12 @@ def test_every_status_has_its_symbol():
 )
 def test_small_and_large_numbers_are_written_with_powers_of_ten(number, text):
     assert panels.math_of(number) == text
+
+
+@pytest.mark.parametrize(
+    ("ratio", "named"), [(100, []), (99, [20, 50]), (2.9, [*range(20, 100, 10)])]
+)
+def test_ticks_between_powers_of_ten_have_numbers_if_these_are_few(ratio, named):
+    axis = style.new_figure(1.0).subplots(subplot_kw={"ylim": (10, 10 * ratio)}).yaxis
+    panels.label_decades(axis, ratio)
+    assert [x for x in range(20, 100, 10) if axis.get_minor_formatter()(x)] == named

@@ -130,6 +130,7 @@ def test_exact_values_alone_are_curves():
     assert not others
     curves = [line for line in main.lines if len(line.get_xdata()) > 2]
     assert len(curves) == 6
+    assert main.get_legend() is None  # no place in the panel is large enough for six names
     assert {line.get_marker() for line in curves} == {"None"}
     (curve,) = (line for line in volume.lines if len(line.get_xdata()) > 2)
     radii, values = curve.get_data()
