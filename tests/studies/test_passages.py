@@ -178,9 +178,11 @@ def test_order_changes_by_exchanges_alone():
     assert walk == pytest.approx([2 / 9])
 
 
-def test_long_files_have_the_law_of_their_density(small, monkeypatch):
+@pytest.mark.parametrize("inertia", [None, slow(0.5)])
+def test_long_files_have_the_law_of_their_density(inertia, small, monkeypatch):
     """F within five standard errors of theory and, where discs pass, of the measured density."""
     monkeypatch.setattr(measure, "OPEN", (4,))
+    monkeypatch.setattr(measure, "ONE_INERTIA", inertia)
     rows = list(measure.displacements("long", 1.5, 1.0, [0.28, 0.3], 1, 16))
     judged = [row for row in rows if row.get("z") is not None]
     assert [row["quantity"] for row in judged] == ["single_file"] * 3

@@ -97,8 +97,8 @@ def by_moments(scene, order=40):
 @pytest.mark.parametrize(
     ("discs", "width", "height", "radius"),
     [
-        (4, 2.5, 1.0, 0.28), (4, 6.0, 1.0, 0.3), (5, 2.4, 0.6, 0.17), (8, 4.9, 1.0, 0.3),
-        slow(4, 1.5, 0.6, 0.18), slow(4, 1.6, 0.6, 0.18),
+        (4, 3.0, 1.0, 0.28), (4, 6.0, 1.0, 0.3), (5, 2.4, 0.6, 0.17), (8, 4.9, 1.0, 0.3),
+        slow(4, 1.5, 0.6, 0.18), slow(4, 1.6, 0.6, 0.18), slow(4, 2.5, 1.0, 0.28),
     ],
 )  # fmt: skip
 def test_long_channels_are_made_of_moments(discs, width, height, radius):
@@ -121,7 +121,7 @@ def test_many_discs_tend_to_the_largest_eigenvalue():
     height, radius, force = 0.6, 0.18, 20.0
     ideal = limit(height, radius, force)
     differences = []
-    for discs in (64, 128, 256):
+    for discs in (32, 64, 128):
         scene = Scene(ideal.length * discs + radius, height, radius, discs=discs)
         known = channel.derivatives(scene, hops=False)
         differences.append(
@@ -133,9 +133,9 @@ def test_many_discs_tend_to_the_largest_eigenvalue():
     first = 2 * differences[1:] - differences[:-1]
     second = (4 * first[1] - first[0]) / 3
     assert np.all(np.abs(differences[-1]) > 0.005)
-    # Each order takes off a power of 1/N, N = 256.
-    assert np.all(np.abs(first[1]) < 5e-4)
-    assert np.all(np.abs(second) < 2e-5)
+    # Each order takes off a power of 1/N, N = 128.
+    assert np.all(np.abs(first[1]) < 2e-3)
+    assert np.all(np.abs(second) < 1.6e-4)
 
 
 @pytest.mark.parametrize("share", [0.3, 0.6, 0.9])
