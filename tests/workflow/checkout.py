@@ -71,8 +71,14 @@ QUICKER = (
         "style.save(figure, path",
         'style.save(figure if name == "volume" else style.new_figure(1), path',
     ),
+    ("src/twodiscs/figures/animation.py", "CROSSING = 110, 60,", "CROSSING = 11, 6,"),
     (f"{STUDIES}/passages/study.py", 'return parts | {"in_the_limit"', 'return {"in_the_limit"'),
     (f"{STUDIES}/accuracy_cost/measure.py", "(0.6, 0.2, 0.05, 1e-2, ", "("),
+    (
+        f"{STUDIES}/effects/cost.py",
+        '"blocks": 40, "repetitions": 5',
+        '"blocks": 8, "repetitions": 1',
+    ),
     (f"{STUDIES}/effects/cost.py", "scenes.items()} | MORE", "scenes.items()}"),
     (f"{STUDIES}/effects/cost.py", "_without_effects()\n", "_without_effects() and 'twodiscs'\n"),
 )
