@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from figure_cases import tables_of, unclear
+from matplotlib.figure import Figure
 
 from twodiscs.comparison.tables import Trajectory
 from twodiscs.figures import motion, style
@@ -101,9 +102,10 @@ def test_a_curve_ends_before_a_bin_that_holds_too_few():
 
 
 def test_a_density_that_bins_are_too_wide_for_is_not_marked():
-    rows = [row for row in tables_of("paper")["hop_histogram"] if row["left"] == 0]
-    wide = [row | {"right": row["right"] + 0.2 * (i > 0)} for i, row in enumerate(rows)]
-    with style.context():
-        axes = [motion.draw_hop_histogram(BOX, r).axes[1] for r in (rows, wide)]
-    marked = [sum(not line.get_clip_on() for line in one.lines) for one in axes]
-    assert marked[0] > marked[1]
+    """Bins must be finer than the space of a disc that passes the other, or is beside it."""
+    row = {"radius": 0.2, "left": 0.0, "exact_mean": 1.0}
+    for hop, space in (("vertical_hop", 1.0 - 0.4), ("horizontal_hop", 1.0 - 0.8)):
+        for factor in (0.99, 1.01):
+            axes, bin_ = Figure().subplots(), {"event": hop, "right": factor * space / motion.FINE}
+            motion._mark_zero(axes, BOX, row | bin_, "black")
+            assert len(axes.lines) == (factor < 1)

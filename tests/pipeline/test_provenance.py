@@ -32,9 +32,14 @@ def test_the_commit_is_that_of_the_sources_and_says_if_files_differ(repository, 
     assert re.fullmatch(r"[0-9a-f]{12}", clean)
     git(repository, "tag", "v1")
     assert provenance.commit(repository) == clean
-    paths = [repository / "paper.typ"]
+    paths = [repository / name for name in ("paper.typ", "last.csv", "first.csv")]
+    for path, moment in zip(paths, (60, 120, 0), strict=True):
+        path.touch()
+        os.utime(path, (moment, moment))
     known = provenance.provenance(repository, paths)
     assert known["changed_since_the_commit"] is False
+    ends = known["first_file"], known["last_file"]
+    assert ends == ("1970-01-01T00:00:00+00:00", "1970-01-01T00:02:00+00:00")
     paths[0].write_text("two\n")
     assert provenance.commit(repository) == f"{clean} with changes"
     monkeypatch.setenv("PATH", os.devnull)  # without git

@@ -95,6 +95,17 @@ def test_the_rate_of_decay_is_that_of_the_counts():
     assert tails.decay(np.array([[2.0, 1.0], [4.0, 2.0]]), first, last).stderr < 1e-12
 
 
+def test_the_error_of_a_rate_between_survivals_is_that_of_those_that_last_longer():
+    """Of 50 intervals of 100 that last to 1, 10 last to 3, with a binomial error."""
+    rows = [
+        {"time": time, "estimate": p, "stderr": math.sqrt(p * (1 - p) / 100), "exact_mean": 1.0}
+        for time, p in ((1.0, 0.5), (3.0, 0.1))
+    ]
+    rate = tails.rate_between(*rows)
+    assert rate["estimate"] == pytest.approx(math.log(5) / 2)
+    assert rate["stderr"] == pytest.approx(math.sqrt(0.2 * 0.8 / 50) / 0.2 / 2)
+
+
 def test_cases_of_other_boxes():
     assert tails.cases(BOX) == [
         ("disc_collision", 0.24), ("vertical_hop", 0.1), ("vertical_hop", 0.3)
