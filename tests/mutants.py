@@ -229,6 +229,7 @@ MUTANTS = [
     ("axes of the start of a histogram", '(scene.width, scene.height)[:: 1 if AXIS[hop] == "y" else -1]', '(scene.width, scene.height)[:: 1 if AXIS[hop] == "x" else -1]'),
     ("first file of a list", "for moment in (min(times), max(times))", "for moment in (times[0], times[-1])"),
     ("nested survivals as independent", "math.sqrt(late - early) / time}", "math.sqrt(late + early) / time}"),
+    ("Monte Carlo as a reference without error", "if known else (sampled_time, spread)", "if known else (sampled_time, 0.0)"),
 ]
 # fmt: on
 
