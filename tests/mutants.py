@@ -230,6 +230,7 @@ MUTANTS = [
     ("first file of a list", "for moment in (min(times), max(times))", "for moment in (times[0], times[-1])"),
     ("nested survivals as independent", "math.sqrt(late - early) / time}", "math.sqrt(late + early) / time}"),
     ("Monte Carlo as a reference without error", "if known else (sampled_time, spread)", "if known else (sampled_time, 0.0)"),
+    ("quotient without its correlation", "(np.asarray(values) - ratio * np.asarray(others)) / below", "np.asarray(values) / below"),
 ]
 # fmt: on
 

@@ -108,6 +108,11 @@ def walked(scene, time, replicas, seed):
     return file.quotient((late - early) / time, per_time), mean_of(per_time)
 
 
+def test_numbers_in_proportion_have_a_quotient_without_error():
+    quotient = file.quotient([2.0, 4.0], [1.0, 2.0])
+    assert (quotient.value, quotient.stderr) == (2.0, 0.0)
+
+
 def test_two_discs_in_a_file_move_as_their_hops_are_correlated():
     """Against the exact rate, and D by correlations of hops, which another kernel counts."""
     scene = Box(1.5, 1.0, {"periodic": "x"}).scene(0.21875)
