@@ -231,6 +231,7 @@ MUTANTS = [
     ("nested survivals as independent", "math.sqrt(late - early) / time}", "math.sqrt(late + early) / time}"),
     ("Monte Carlo as a reference without error", "if known else (sampled_time, spread)", "if known else (sampled_time, 0.0)"),
     ("quotient without its correlation", "(np.asarray(values) - ratio * np.asarray(others)) / below", "np.asarray(values) / below"),
+    ("one seed for all trajectories", "SCENES[w.scene].trajectory_seed", "CONFIGURATION.seed"),
 ]
 # fmt: on
 

@@ -22,13 +22,11 @@ from snakemake.jobs import Reason
 
 import twodiscs
 from twodiscs import cli
-from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.checks import InputError
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.theory.exact import exact as exact_numbers
-from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.load import load, read
 from twodiscs_paper.pipeline import build
 
@@ -264,15 +262,6 @@ def test_targets_may_stand_behind_options(monkeypatch, capsys):
         monkeypatch, cli, "run", "my.yaml", "volume", "-n", "pressure", "--cores", "2"
     )
     assert given == [("my.yaml", ["volume", "pressure"], 2, True)]
-
-
-def test_targets_are_those_of_the_page():
-    page = (REPOSITORY / "docs/pipeline.md").read_text(encoding="utf-8")
-    rows = re.findall(r"^\| (?:<!--.*?--> )?(`[^|]*) \|", page, re.MULTILINE)
-    assert {*re.findall("`(\\w+)`", " ".join(rows))} <= {*build.TARGETS}
-    rules = " ".join(p.read_text() for p in (REPOSITORY / "workflow").rglob("*smk"))
-    fixed = {*build.TARGETS} - {*FIGURES} - {*STUDIES} - {"all"}
-    assert [n for n in fixed if not re.search(f"rule {n}:|rule \\w+ as {n} with:", rules)] == []
 
 
 def _dag(targets, made):

@@ -321,13 +321,3 @@ def test_rows_of_the_check_are_those_of_the_page(checked):
             number = value and name not in key and re.fullmatch(r"[-\d.e]+", value)
             close = number and math.isclose(float(value), float(row[name]), rel_tol=1e-9)
             assert close or value == row[name], name
-
-
-def test_numbers_of_rows_are_those_of_the_page(checked):
-    text = " ".join(page("docs/reading-check.md").split())
-    said = re.search(r"has (\d+) rows at two radii, and (\d+) rows over all", text)
-    radii = [row["radius"] for row in SCENE_TABLES["check"].read(checked)]
-    assert len({*radii} - {None}) == 2
-    assert [int(number) for number in said.groups()] == [
-        len(radii) - radii.count(None), radii.count(None)
-    ]  # fmt: skip

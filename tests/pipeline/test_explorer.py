@@ -45,18 +45,14 @@ def written(path, scenes):
     return path
 
 
-def evaluated(expression, folder, *scripts):
-    """Return the value of an expression about the ``scripts``, by Node or else by Chromium."""
+def evaluated(expression, *scripts):
+    """Return the value of an expression about the ``scripts``, by Node."""
+    if (node := shutil.which("node")) is None:
+        pytest.skip("no Node is installed")
     script = "".join((SOURCES / name).read_text(encoding="utf-8") for name in scripts)
-    if node := shutil.which("node"):
-        script += f"\nconsole.log(JSON.stringify({expression}));"
-        run = subprocess.run([node, "-"], input=script, capture_output=True, text=True, check=True)
-        return json.loads(run.stdout)
-    if BROWSER is None:
-        pytest.skip(f"no Node and {ABSENT}")
-    with browser(folder) as page:
-        page.look(f"{script}; 0")
-        return page.look(expression)
+    script += f"\nconsole.log(JSON.stringify({expression}));"
+    run = subprocess.run([node, "-"], input=script, capture_output=True, text=True, check=True)
+    return json.loads(run.stdout)
 
 
 # Formulas -----------------------------------------------------------------------------------------
@@ -78,14 +74,14 @@ def radii(box):
     return some
 
 
-def test_formulas_and_limits_in_javascript_are_those_of_the_package(tmp_path):
+def test_formulas_and_limits_in_javascript_are_those_of_the_package():
     boxes = BOXES + MORE
     given = [[box.width, box.height, radius, box.effects] for box in boxes for radius in radii(box)]
     limits = [[box.width, box.height, box.effects] for box in boxes]
     computed, found = evaluated(
         f"[{json.dumps(given)}.map((of) => exact(...of)),"
         f" {json.dumps(limits)}.map((box) => [largestRadius(...box), thresholds(...box)])]",
-        *(tmp_path, "theory.js"),
+        "theory.js",
     )
     for (width, height, radius, effects), ours in zip(given, computed, strict=True):
         box = Box(width, height, effects)
@@ -113,7 +109,7 @@ def test_formulas_and_limits_in_javascript_are_those_of_the_package(tmp_path):
 # Motion and errors --------------------------------------------------------------------------------
 
 
-def test_scores_scatter_by_one(tmp_path):
+def test_scores_scatter_by_one():
     """The mean square of scores of Student's law with 99 degrees of freedom, at 5 sigma."""
     number = 600
     scores = evaluated(
@@ -121,7 +117,7 @@ def test_scores_scatter_by_one(tmp_path):
         " const many = new Runs(1.5, 1, 0.2, 1000 + seed);"
         " while (many.done < ENOUGH) many.advance(100, ENOUGH);"
         " return [0, 2, 3].map(i => many.measured(i).z); })",
-        *(tmp_path, "theory.js", "dynamics.js"),
+        *("theory.js", "dynamics.js"),
     )
     for z in zip(*scores, strict=True):
         square = sum(score * score for score in z) / number
@@ -179,9 +175,9 @@ MOTION = """
 """
 
 
-def test_motion_is_that_of_theory(tmp_path):
+def test_motion_is_that_of_theory():
     given = json.dumps([[*sides, effects] for sides, effects in MOVING])
-    found = evaluated(f"{given}.map({MOTION})", tmp_path, "theory.js", "dynamics.js")
+    found = evaluated(f"{given}.map({MOTION})", "theory.js", "dynamics.js")
     compared = 0
     for (sides, effects), seen in zip(MOVING, found, strict=True):
         times = exact.mean_times(Box(*sides[:2], effects).scene(sides[2]))

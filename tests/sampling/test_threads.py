@@ -6,7 +6,6 @@ import time
 import pytest
 from commands import python
 
-from twodiscs.model.checks import InputError
 from twodiscs.sampling.rounds import in_threads
 
 
@@ -63,9 +62,3 @@ list(in_threads(work, [{call}], waiting=sys.exit))
 def test_a_process_that_ends_waits_for_a_compilation_alone(call, said):
     run = python("-c", ENDING.format(call=call), timeout=60, check=True)
     assert (run.stdout, run.stderr) == (said, "")
-
-
-@pytest.mark.parametrize("cores", [0, -1, 1.5, True, "2", None, 10**6])
-def test_cores_are_a_number_of_them(cores):
-    with pytest.raises(InputError, match="cores must be an integer"):
-        list(in_threads(len, [("a",)], cores))

@@ -6,6 +6,8 @@ import subprocess
 import pytest
 from checkout import fresh
 
+import twodiscs as td
+from twodiscs.comparison.tables import Trajectory
 from twodiscs.figures.catalogue import FIGURES
 
 #: Files with wall-clock seconds, or the date.
@@ -32,6 +34,9 @@ def test_everything_that_is_called_for_is_built(complete):
     assert walls == {f"walls/{n}.csv" for n in ("grid", "theory", "mean_times", "check", "cost")}
     assert {"check.passed", "tails.csv", "report.html", "configuration.json"} <= set(results)
     assert [n for n, text in results.items() if not text and not n.startswith("logs/")] == []
+    path = Trajectory.read(complete.path / "results/full/trajectory.csv")
+    states = td.trajectory(td.Scene(1.5, 1.0, 0.24), duration=9, seed=7, name="full")
+    assert [row["x1"] for row in path[:20]] == [*states["x1"][:20]]
 
 
 def test_every_file_is_made_by_a_rule(complete):
