@@ -47,8 +47,7 @@ def written(path, scenes):
 
 def evaluated(expression, *scripts):
     """Return the value of an expression about the ``scripts``, by Node."""
-    if (node := shutil.which("node")) is None:
-        pytest.skip("no Node is installed")
+    node = shutil.which("node") or pytest.skip("no Node is installed")
     script = "".join((SOURCES / name).read_text(encoding="utf-8") for name in scripts)
     script += f"\nconsole.log(JSON.stringify({expression}));"
     run = subprocess.run([node, "-"], input=script, capture_output=True, text=True, check=True)
