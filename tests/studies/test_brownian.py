@@ -93,7 +93,7 @@ def test_first_passages_in_a_wide_channel_are_those_of_a_random_walk(program):
 
 @every_program
 def test_both_methods_agree(program):
-    """Of pairs that start far apart, and of crossings followed in both directions of time.
+    """Pairs start far apart, or at a crossing that is followed in both directions of time.
 
     Reflected discs cross at the exact rate.
     """

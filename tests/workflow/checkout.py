@@ -61,9 +61,9 @@ table.write(snakemake.output.table, rows)
 
 STUDIES = "src/twodiscs_paper/studies"
 
-#: (File, its text, its text in a checkout). Every figure is made, but files show one of them only.
-#: Of the parts of a table one is made. Repetitions do not follow from the budget of a scene. The
-#: cost of effects is measured without kernels that nothing else compiles.
+#: (File, its text, its text in a checkout). Every figure is drawn, but only ``volume`` is rendered.
+#: One part of a table is made. Repetitions do not follow from the budget of a scene. The cost of
+#: effects is measured without kernels that nothing else compiles.
 QUICKER = (
     ("workflow/scripts/study.py", "table.write(snakemake.output.table, work(**given))", KEPT),
     (
