@@ -2,12 +2,14 @@
 
 import json
 import math
+from contextlib import contextmanager
 from functools import cached_property
+from unittest.mock import patch
 
 import numpy as np
 
-from twodiscs.comparison.tables import Theory
-from twodiscs.model.box import Box
+from twodiscs.comparison import tables
+from twodiscs.model.box import Box, parameters_of
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.points.base import content_of, with_arrays, write_json
 from twodiscs.points.dynamics import DynamicsPoint
@@ -55,14 +57,22 @@ def scenes(radii=RADII):
     return [BOX.scene(radius) for radius in radii]
 
 
-def theory_rows(radii=RADII):
-    """Return the rows of theory.csv."""
-    return Theory.rows(BOX, radii)
+def exact_values(radii=RADII):
+    """Return {(radius, quantity): exact value}, as theory.csv has them."""
+    rows = tables.Theory.rows(BOX, radii)
+    return {(row["radius"], row["quantity"]): row["exact"] for row in rows}
 
 
-def rows_of(values):
-    """Return the rows of theory.csv that say ``values``, {(radius, quantity): exact value}."""
-    return [empty(Theory, radius=r, quantity=q, exact=value) for (r, q), value in values.items()]
+@contextmanager
+def as_theory(values):
+    """Let tables take these exact ``values``, {(radius, quantity): value}, for the right ones."""
+
+    def of_events(kind):
+        return lambda scene: {e: values.get((scene.radius, f"{e}_{kind}")) for e in EVENTS}
+
+    fakes = {"areas": of_events("area"), "mean_times": of_events("time")}
+    with patch.multiple(exact, volume=lambda s: values.get((s.radius, "volume")), **fakes):
+        yield
 
 
 # As a test says -------------------------------------------------------------------------------
@@ -71,13 +81,13 @@ def rows_of(values):
 def hits_point(radius=0.1, samples=1000, **hits):
     """Return a Monte Carlo point with some ``hits`` by quantity; the measure is 1, ε is 0.1."""
     quantities = {quantity: Hits(number, 1.0, 0.1) for quantity, number in hits.items()}
-    return MonteCarloPoint(radius, "monte_carlo", samples, quantities)
+    return MonteCarloPoint(BOX.scene(radius), "monte_carlo", samples, quantities)
 
 
 def counts_point(radius=0.37, event="vertical_hop", total=0, squares=0, **fields):
     """Return a dynamics point with Σ N and Σ N² of one event, and other ``fields``."""
     given = {
-        **{"radius": radius, "duration": 10.0, "replicas": 2048, "events": 10**6},
+        **{"scene": BOX.scene(radius), "duration": 10.0, "replicas": 2048, "events": 10**6},
         **{"counts": {event: total}, "products": {f"{event}*{event}": squares}, "strips": {}},
         **{"target": {event: 3e-4}},
     }
@@ -88,7 +98,7 @@ def bins_point(radius=0.1, counts=(7, 5, 0), **fields):
     """Return a point of intervals of the vertical hop, a chain each, and other ``fields``."""
     bins = Bins([*range(len(counts) + 1)], [*counts], [*counts])
     given = {
-        **{"radius": radius, "event": "vertical_hop", "bin_width": 0.125, "overflow": 0},
+        **{"scene": BOX.scene(radius), "event": "vertical_hop", "bin_width": 0.125, "overflow": 0},
         **{"intervals": sum(counts), "chains": sum(counts), "mean": 0.5, "stderr": 0.1},
         **{"equal": bins, "wide": bins},
     }
@@ -125,7 +135,7 @@ def write(point, path):
         hits = [hits.hits for hits in point.quantities.values()]
         part = {"method": point.method, "samples": point.samples, "quantities": quantities}
         part |= {"right_and_top": len(hits), "sums": {(0, 1): [[*hits, point.right_and_top]]}}
-    write_json(path, content_of("", {"radius": point.radius}, {}, {"all": part}))
+    write_json(path, content_of("", parameters_of(point.scene), {}, {"all": part}))
 
 
 # By laws ----------------------------------------------------------------------------------------
@@ -160,7 +170,7 @@ class Laws:
         share = self.parts["top_wall_area"][0]
         # Given the hits of both shells, their overlap is hypergeometric; binomial serves here.
         both = min(right, top, int(rng.binomial(right, share)))
-        return MonteCarloPoint(self.scene.radius, "monte_carlo", samples, found, both)
+        return MonteCarloPoint(self.scene, "monte_carlo", samples, found, both)
 
     def dynamics(self, rng, replicas=1024, relative=3e-4, events=EVENTS):
         """Return a dynamics point; counts are Poisson, as precise as ``relative`` or more."""
@@ -180,7 +190,7 @@ class Laws:
                 counts["any_wall"] = sum(counts[wall] for wall in first.values())
         events = [event for event in EVENTS if event in events]
         return DynamicsPoint(
-            radius=self.scene.radius,
+            scene=self.scene,
             duration=duration,
             replicas=replicas,
             events=10**6,
@@ -209,7 +219,7 @@ class Laws:
 
         wide = [0, 1, 2, 4, 8, 12]
         return IntervalsPoint(
-            radius=self.scene.radius,
+            scene=self.scene,
             event="vertical_hop",
             bin_width=width,
             equal=of_chains([*range(13)], counts[:-1]),

@@ -247,7 +247,7 @@ def agreement(folder, scene):
     compared = [abs(row["z"]) for row in rows if row["passed"] is not None]
     points = json.loads((folder / scene.name / "points" / "dynamics.json").read_text())
     parts = [with_arrays(point["parts"]) for point in points.values()]
-    events = sum(DynamicsPoint.of(0.0, part).events for part in parts)
+    events = sum(DynamicsPoint.of(None, part).events for part in parts)
     independent = sum(row["independent"] for row in rows)
     largest = Context(prec=2, rounding=ROUND_CEILING).create_decimal(max(compared))
     counts = f"{len(points)} | {len(compared)} | {independent} | {largest} | {events:.1e}"
@@ -299,12 +299,12 @@ def test_a_new_box_runs_the_jobs_that_the_page_says(dry):
 def checked(tmp_path_factory):
     """Do the work of the scene ``look``; return the path of its check.csv."""
     scene, path = load.load(with_examples()).folders["look"], tmp_path_factory.mktemp("look")
-    points = {
-        stage: [cost.run_at(scene, stage, radius).run() for radius in keys.values()]
+    points = [
+        cost.run_at(scene, stage, radius).run()
         for stage, keys in scene.keys.items()
-    }
-    theory = SCENE_TABLES["theory"].rows(scene.box, scene.exact_radii("theory"))
-    rows = SCENE_TABLES["check"].rows(scene.box, theory, points, scene.quantities.areas)
+        for radius in keys.values()
+    ]
+    rows = SCENE_TABLES["check"].rows(points, scene.quantities.areas)
     SCENE_TABLES["check"].write(path / "check.csv", rows)
     return path / "check.csv"
 

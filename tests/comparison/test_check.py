@@ -7,11 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from effect_scenes import SCENES
-from factory import BOX, RADII, Laws, rows_of, scenes, theory_rows
+from factory import BOX, RADII, Laws, as_theory, exact_values, scenes
 
-from twodiscs.comparison import check, scores, tables
-from twodiscs.comparison.tables import Areas, HopHistogram, MeanTimes, Volume, exact_values
-from twodiscs.model.box import Box
+from twodiscs.comparison import check, scores
+from twodiscs.comparison.tables import Areas, HopHistogram, MeanTimes, Volume
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.theory import exact
@@ -47,21 +46,21 @@ def points(laws):
 
 
 def table_of(points, theory, alarm=scores.FALSE_ALARM, scene=SCENE):
-    box, theory = Box.of(scene), rows_of(theory)
-    compared = check.comparisons(
-        box,
-        Volume.rows(theory, points),
-        Areas.rows(box, theory, points),
-        MeanTimes.rows(box, theory, points),
-        HopHistogram.rows(theory, points),
-        points.get("dynamics", []),
-    )
+    points = [point for some in points.values() for point in some]
+    with as_theory(theory):
+        compared = check.comparisons(
+            Volume.rows(points),
+            Areas.rows(points),
+            MeanTimes.rows(points),
+            HopHistogram.rows(points),
+            [point for point in points if point.stage == "dynamics"],
+        )
     return check.check_rows(compared, alarm)
 
 
 @pytest.fixture
 def theory():
-    return exact_values(theory_rows())
+    return exact_values()
 
 
 def failed(rows):
@@ -110,10 +109,12 @@ ALSO |= {f"{wall}_area": "any_wall_area" for wall in WALLS}
     "name", ["volume", *(f"{e}_time" for e in EVENTS), *(f"{e}_area" for e in SHELLS)]
 )
 def test_a_number_off_by_one_percent_is_named(points, theory, name, monkeypatch):
-    def shell_expectation(scene, of, epsilon):
-        return exact.shell_expectation(scene, of, epsilon) * (1.01 if f"{of}_area" == name else 1)
+    true = exact.shell_expectation
 
-    monkeypatch.setattr(tables, "shell_expectation", shell_expectation)
+    def shell_expectation(scene, of, epsilon):
+        return true(scene, of, epsilon) * (1.01 if f"{of}_area" == name else 1)
+
+    monkeypatch.setattr(exact, "shell_expectation", shell_expectation)
     event, _, kind = name.rpartition("_")
     radii = possible_radii(event or "any_wall")
     for radius in radii if kind != "area" else ():
@@ -136,7 +137,7 @@ def test_the_sum_rule_needs_the_initial_states_of_all_its_events(replicas, statu
     """Collisions and the top wall of these rough discs need 45411, the right wall 19254."""
     scene = Scene(1.5, 1.0, 0.245, moment_of_inertia=0.5)
     point = Laws(scene).dynamics(np.random.default_rng(3), replicas, 1e-2)
-    rows = check.comparisons(Box.of(scene), [], [], [], [], [point])
+    rows = check.comparisons([], [], [], [], [point])
     assert [row["status"] for row in rows if row["comparison"] == "sum_rule"] == [status]
 
 
@@ -188,7 +189,7 @@ def errors_times(factor, point):
 def test_errors_of_the_wrong_size_show_in_the_spread(factor, sign):
     radii = tuple(np.linspace(0.05, 0.23, 40))
     rng = np.random.default_rng(4)
-    theory = exact_values(theory_rows(radii))
+    theory = exact_values(radii)
     dynamics = [
         errors_times(factor, Laws(scene).dynamics(rng, 128, 5e-3, ("right_wall", "any_wall")))
         for scene in scenes(radii)
@@ -208,7 +209,7 @@ def test_errors_of_the_wrong_size_show_in_the_spread(factor, sign):
 def test_a_common_shift_below_one_error_shows_in_the_mean():
     radii = tuple(np.linspace(0.05, 0.23, 40))
     rng = np.random.default_rng(5)
-    theory = exact_values(theory_rows(radii))
+    theory = exact_values(radii)
     dynamics = [
         Laws(scene).dynamics(rng, 1024, 3e-4, ("disc_collision",)) for scene in scenes(radii)
     ]
@@ -238,7 +239,7 @@ def test_the_sum_rule_is_for_equal_discs_between_walls():
     cases = (SCENE, ["sum_rule"]), (SCENES["rough"], ["sum_rule"]), (SCENES["unequal"], [])
     for scene, expected in cases:
         point = Laws(scene).dynamics(np.random.default_rng(3), events=check.SUM_RULE)
-        found = check.comparisons(Box.of(scene), [], [], [], [], [point])
+        found = check.comparisons([], [], [], [], [point])
         assert [row["comparison"] for row in found] == expected
 
 

@@ -11,11 +11,10 @@ from factory import POINTS
 
 import twodiscs as td
 from twodiscs.comparison import check
-from twodiscs.comparison.tables import Check, Theory
+from twodiscs.comparison.tables import Check
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import engine
-from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.points.base import content_of, with_arrays
@@ -63,15 +62,13 @@ def measured(request):
         "dynamics": [runs.CountingRun(scene, target, 5 * 10**6, 3).run()],
         "monte_carlo": [montecarlo.SamplingRun(scene, quantities, 100_000, 0.02, 4).run()],
     }
-    box = Box.of(scene)
     for stage, some in points.items():
         contents = [content_of(stage, {}, {}, point.parts) for point in some]
         points[stage] = [
-            POINTS[stage].of(scene.radius, with_arrays(content["parts"]))
+            POINTS[stage].of(scene, with_arrays(content["parts"]))
             for content in json.loads(json.dumps(contents))
         ]
-    theory = Theory.rows(box, [scene.radius])
-    return request.param, scene, points, Check.rows(box, theory, points)
+    return request.param, scene, points, Check.rows([p for some in points.values() for p in some])
 
 
 def test_nothing_fails(measured):
@@ -90,7 +87,7 @@ def test_nothing_fails(measured):
     for row in rows:
         if row["comparison"] == "flux" and row["z"] is not None:
             event = row["quantity"].removesuffix("_time")
-            errors = counted.estimate(event), check.flux_time(scene, event, inserted)
+            errors = counted.estimate(event), check.flux_time(event, inserted)
             relative = math.hypot(*(one.relative_stderr for one in errors))
             assert row["stderr"] / row["estimate"] == pytest.approx(relative)
 
@@ -102,8 +99,7 @@ def test_a_wrong_rate_is_found_without_an_exact_value(measured):
         pytest.skip("of scenes between walls without an exact value")
     point = points["dynamics"][0]
     point = replace(point, duration=1.1 * point.duration)
-    theory = Theory.rows(Box.of(scene), [scene.radius])
-    rows = Check.rows(Box.of(scene), theory, points | {"dynamics": [point]})
+    rows = Check.rows([point, *points["monte_carlo"]])
     failed = {row["comparison"] for row in rows if row["passed"] is False}
     assert {"sum_rule", "flux"} <= failed
 
@@ -149,19 +145,14 @@ def test_a_trajectory_is_that_of_another_program(name):
 @pytest.mark.parametrize("name", ["three", "four"])
 def test_the_mean_interval_is_compared_where_it_is_known(name):
     """A result goes on to more intervals, and its density at 0 is that of its first two bins."""
-    scene, hop, box = SCENES[name], "vertical_hop", Box.of(SCENES[name])
+    scene, hop = SCENES[name], "vertical_hop"
     found = td.intervals(scene, hop, 1e5, seed=2, name=name)
     assert found.intervals == sum(found.counts) + found.overflow >= 10**5
     first, second = found.density[:2]
     assert found.at_zero.value == pytest.approx((3 * first - second) / 2, rel=1e-12)
     assert found.more(3e5).rows == td.intervals(scene, hop, 3e5, seed=2, name=name).rows
     point = runs.IntervalRun(scene, hop, 10**5, 6).run()
-    theory = Theory.rows(box, [scene.radius])
-    (row,) = (
-        row
-        for row in Check.rows(box, theory, {"intervals": [point]})
-        if row["comparison"] == "hop_interval"
-    )
+    (row,) = (row for row in Check.rows([point]) if row["comparison"] == "hop_interval")
     if name in KNOWN:
         assert row["passed"] is row["independent"] is True
     else:

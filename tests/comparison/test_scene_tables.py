@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from factory import BOX, RADII, Laws, counts_point, hits_point, rows_of, scenes, theory_rows
+from factory import BOX, RADII, Laws, as_theory, counts_point, hits_point, scenes
 from scipy.special import ndtri, stdtr
 
 import twodiscs as td
@@ -13,7 +13,6 @@ from twodiscs.comparison.tables import (
     Areas,
     HopHistogram,
     MeanTimes,
-    Theory,
     Volume,
     _sampled_row,
 )
@@ -30,11 +29,6 @@ from twodiscs.theory.exact import rate, replicas_needed
 
 
 @pytest.fixture(scope="module")
-def theory():
-    return theory_rows()
-
-
-@pytest.fixture(scope="module")
 def laws():
     return [Laws(scene) for scene in scenes()]
 
@@ -42,9 +36,9 @@ def laws():
 # Monte Carlo ----------------------------------------------------------------------------------
 
 
-def test_the_whole_wall_area_is_four_times_right_and_top(theory, laws):
+def test_the_whole_wall_area_is_four_times_right_and_top(laws):
     point = laws[1].monte_carlo(np.random.default_rng(2), 10**7)
-    found = {row["quantity"]: row for row in Areas.rows(BOX, theory, {"monte_carlo": [point]})}
+    found = {row["quantity"]: row for row in Areas.rows([point])}
     right, top, whole = (found[f"{e}_area"] for e in ("right_wall", "top_wall", "any_wall"))
     assert whole["estimate"] == pytest.approx(4 * (right["estimate"] + top["estimate"]), rel=1e-14)
     assert whole["expectation"] == 4 * (right["expectation"] + top["expectation"])
@@ -53,15 +47,15 @@ def test_the_whole_wall_area_is_four_times_right_and_top(theory, laws):
         4 * math.hypot(right["stderr"], top["stderr"]), rel=1e-2
     )
     correlated = replace(point, right_and_top=min(right["hits"], top["hits"]))
-    found = {row["quantity"]: row for row in Areas.rows(BOX, theory, {"monte_carlo": [correlated]})}
+    found = {row["quantity"]: row for row in Areas.rows([correlated])}
     assert found["any_wall_area"]["stderr"] > 1.1 * whole["stderr"]
 
 
-def test_only_watched_areas_have_rows(theory, laws):
+def test_only_watched_areas_have_rows(laws):
     point = laws[1].monte_carlo(np.random.default_rng(2), 10**6)
-    found = Areas.rows(BOX, theory, {"monte_carlo": [point]}, ("any_wall", "vertical_hop"))
+    found = Areas.rows([point], ("any_wall", "vertical_hop"))
     assert [row["quantity"] for row in found] == ["vertical_hop_area", "any_wall_area"]
-    assert Volume.rows(theory, {"monte_carlo": [replace(point, quantities={})]}) == []
+    assert Volume.rows([replace(point, quantities={})]) == []
 
 
 def part_row(hits, samples, expectation=0.5, exact=0.5):
@@ -97,17 +91,17 @@ def test_the_shell_of_a_blocked_hop_must_be_as_empty_as_it_is():
 
 def time_row(total=0, squares=0, exact=50.0, radius=0.37, **given):
     point = counts_point(radius, total=total, squares=squares, **given)
-    theory = rows_of({(radius, "vertical_hop_time"): exact})
-    (row,) = MeanTimes.rows(BOX, theory, {"dynamics": [point]})
+    with as_theory({(radius, "vertical_hop_time"): exact}):
+        (row,) = MeanTimes.rows([point])
     return row
 
 
-def test_walls_that_symmetry_makes_equal_have_one_row(theory, laws):
+def test_walls_that_symmetry_makes_equal_have_one_row(laws):
     """Four pairs of a disc and a wall beneath h/4, beyond it two of them for either component."""
     for radius, copies in ((0.2, 4), (0.3, 2)):
         law = laws[RADII.index(radius)]
         point = law.dynamics(np.random.default_rng(4))
-        found = {row["event"]: row for row in MeanTimes.rows(BOX, theory, {"dynamics": [point]})}
+        found = {row["event"]: row for row in MeanTimes.rows([point])}
         row = found["right_wall"]
         assert row["copies"] == copies
         assert abs(row["z"]) < 5
@@ -116,7 +110,7 @@ def test_walls_that_symmetry_makes_equal_have_one_row(theory, laws):
         assert row["exact"] == pytest.approx(copies / 4 / rate(law.scene, "right_wall"))
 
 
-def test_a_rare_hop_has_the_row_of_its_strip(theory, laws):
+def test_a_rare_hop_has_the_row_of_its_strip(laws):
     law = laws[RADII.index(0.24)]
     point = law.dynamics(np.random.default_rng(5), relative=0.1)
     tau = law.times["horizontal_hop"]
@@ -129,7 +123,7 @@ def test_a_rare_hop_has_the_row_of_its_strip(theory, laws):
         strata=([[0.499, 0.501]], [[n, n]], [[slow, fast]], [[slow, fast]]),
     )  # fmt: skip
     point = replace(point, strips={"horizontal_hop": strip})
-    found = {row["event"]: row for row in MeanTimes.rows(BOX, theory, {"dynamics": [point]})}
+    found = {row["event"]: row for row in MeanTimes.rows([point])}
     assert [row["starts"] for row in found.values()].count("strip") == 1
     row = found["horizontal_hop"]
     assert (row["starts"], row["share"], row["count"]) == ("strip", 0.004, count)
@@ -140,7 +134,7 @@ def test_a_rare_hop_has_the_row_of_its_strip(theory, laws):
     mean = [0.499, 0.501] @ rates
     assert row["relative_stderr"] == pytest.approx(error / mean, rel=1e-9)
     assert row["z"] == pytest.approx((mean / 1.001 - mean) / error, abs=1e-3)
-    (other,) = MeanTimes.rows(BOX, theory, {"dynamics": [point]}, without_strips=True)
+    (other,) = MeanTimes.rows([point], without_strips=True)
     assert (other["starts"], other["event"]) == ("invariant", "horizontal_hop")
     assert other["count"] == point.counts["horizontal_hop"]
     assert other["replicas"] == point.replicas
@@ -188,10 +182,10 @@ def test_where_no_exact_value_is_known_what_is_seen_stands():
 # Histogram ------------------------------------------------------------------------------------
 
 
-def test_rows_of_the_histogram(theory, laws):
+def test_rows_of_the_histogram(laws):
     rng = np.random.default_rng(5)
     points = [laws[i].intervals(rng) for i in (2, 1)]
-    found = HopHistogram.rows(theory, {"intervals": points})
+    found = HopHistogram.rows(points)
     assert [row["radius"] for row in found] == [0.1] * 17 + [0.2] * 17
     for row in found:
         tau = row["exact_mean"]
@@ -201,12 +195,10 @@ def test_rows_of_the_histogram(theory, laws):
         assert abs(row["z"]) < 5
         assert row["z"] == pytest.approx((row["mean"] - tau) / row["mean_stderr"], rel=0.02)
     empty = replace(points[0], equal=Bins([0, 1, 2], [0, 5], [0, 5]))
-    first, second = [
-        row for row in HopHistogram.rows(theory, {"intervals": [empty]}) if row["bins"] == "equal"
-    ]
+    first, second = [row for row in HopHistogram.rows([empty]) if row["bins"] == "equal"]
     assert (first["density"], first["stderr"]) == (0.0, None)
     assert second["stderr"] > 0
-    few = HopHistogram.rows(theory, {"intervals": [laws[2].intervals(rng, chains=99)]})
+    few = HopHistogram.rows([laws[2].intervals(rng, chains=99)])
     assert few[0]["z"] is few[0]["mean_stderr"] is None
 
 
@@ -222,17 +214,15 @@ def test_columns_scale_as_their_units_say():
     found = []
     for unit in (1, 2):
         box, radius = Box(1.5 * unit, 1.0 * unit), 0.2 * unit
-        scene, theory = box.scene(radius), Theory.rows(box, [radius])
+        scene = box.scene(radius)
         sampled = ["volume", "vertical_hop_area", "disc_collision_area"]
-        points = {
-            "dynamics": [runs.CountingRun(scene, dict.fromkeys(EVENTS, 1.0), 1, 7).run()],
-            "intervals": [runs.IntervalRun(scene, "vertical_hop", 1, 7).run()],
-            "monte_carlo": [SamplingRun(scene, sampled, 1, 0.02, 7).run()],
-        }
-        rows = [(Volume, row) for row in Volume.rows(theory, points)]
-        rows += [(Areas, row) for row in Areas.rows(box, theory, points)]
-        rows += [(MeanTimes, row) for row in MeanTimes.rows(box, theory, points)]
-        rows += [(HopHistogram, row) for row in HopHistogram.rows(theory, points)]
+        points = [
+            runs.CountingRun(scene, dict.fromkeys(EVENTS, 1.0), 1, 7).run(),
+            runs.IntervalRun(scene, "vertical_hop", 1, 7).run(),
+            SamplingRun(scene, sampled, 1, 0.02, 7).run(),
+        ]
+        tables = Volume, Areas, MeanTimes, HopHistogram
+        rows = [(table, row) for table in tables for row in table.rows(points)]
         found.append([(name, c, row[name]) for t, row in rows for name, c in t.columns.items()])
     for (name, column, one), (*_, other) in zip(*found, strict=True):
         if column.type is float and one is not None:
@@ -252,7 +242,7 @@ def test_the_bound_of_a_wall_never_hit_counts_no_copy_twice():
     point = Laws(scene).dynamics(np.random.default_rng(1))
     none = {name: dict.fromkeys(getattr(point, name), 0) for name in ("counts", "products")}
     point = replace(point, **none)
-    rows = MeanTimes.rows(BOX, theory_rows([0.3]), {"dynamics": [point]})
+    rows = MeanTimes.rows([point])
     possible = [row for row in rows if row["status"] != "impossible"]
     assert {row["copies"] for row in possible} == {1, 2, 4}
     due = point.replicas * point.duration / (4 * math.log(20))
@@ -269,10 +259,10 @@ def test_an_error_smaller_than_asked_needs_its_own_initial_states(replicas, stat
     total = 1000 * replicas
     point = counts_point(
         scene.radius, event, total, 1010 * total,
-        replicas=replicas, target={event: 0.5},
+        scene=scene, replicas=replicas, target={event: 0.5},
     )  # fmt: skip
-    theory = rows_of({(scene.radius, f"{event}_time"): 1.0})
-    (row,) = MeanTimes.rows(Box.of(scene), theory, {"dynamics": [point]})
+    with as_theory({(scene.radius, f"{event}_time"): 1.0}):
+        (row,) = MeanTimes.rows([point])
     assert row["status"] == status
     assert (row["stderr"] is None) == (status == "too-few")
 
@@ -284,7 +274,7 @@ def test_the_mean_of_a_histogram_is_tested_over_chains(chains):
     point = laws.intervals(np.random.default_rng(2), chains)
     exact = laws.times["vertical_hop"]
     point = replace(point, mean=exact - 5 * point.stderr)
-    (z,) = {row["z"] for row in HopHistogram.rows(theory_rows([0.2]), {"intervals": [point]})}
+    (z,) = {row["z"] for row in HopHistogram.rows([point])}
     assert z == pytest.approx(ndtri(stdtr(chains - 1, -5.0)), abs=2e-3)
     assert abs(z - ndtri(stdtr(point.intervals - 1, -5.0))) > 0.1
 

@@ -51,7 +51,7 @@ CHECK_ROW = empty(Check,
     z=-math.inf, p=0.0, bound=5, passed=False, independent=True, status="none-seen",
     test="exact-tail",
 )  # fmt: skip
-BOX, LAWS, THEORY = factory.BOX, factory.Laws(factory.BOX.scene(0.2)), factory.theory_rows([0.2])
+BOX, LAWS = factory.BOX, factory.Laws(factory.BOX.scene(0.2))
 RNG = np.random.default_rng(1)
 COST_ROW = {"stage": "dynamics", "radius": 1e-05, "events": 2**53 + 1, "seconds": 0.1 + 0.2}
 
@@ -65,9 +65,9 @@ COST_ROW = {"stage": "dynamics", "radius": 1e-05, "events": 2**53 + 1, "seconds"
         (Theory, lambda: Theory.rows(BOX, [0.3, 0.1])),
         (Grid, lambda: Grid.rows(Box(40.0, 0.6, discs=64), [0.1, 0.2])),
         (Trajectory, lambda: Trajectory.rows(Box(1.5, 1.0, discs=4), 0.1, 1)),
-        (MeanTimes, lambda: MeanTimes.rows(BOX, THEORY, {"dynamics": [LAWS.dynamics(RNG)]})),
-        (Areas, lambda: Areas.rows(BOX, THEORY, {"monte_carlo": [LAWS.monte_carlo(RNG, 10**7)]})),
-        (HopHistogram, lambda: HopHistogram.rows(THEORY, {"intervals": [LAWS.intervals(RNG)]})),
+        (MeanTimes, lambda: MeanTimes.rows([LAWS.dynamics(RNG)])),
+        (Areas, lambda: Areas.rows([LAWS.monte_carlo(RNG, 10**7)])),
+        (HopHistogram, lambda: HopHistogram.rows([LAWS.intervals(RNG)])),
     ],
 )
 def test_a_table_is_read_as_it_was_written(tmp_path, table, rows):

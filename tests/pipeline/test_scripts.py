@@ -115,10 +115,8 @@ def test_a_part_of_a_point_that_is_missing_is_named(run):
 
 @pytest.fixture
 def points(run, tmp_path):
-    """The files of the exact values and of fabricated points at some radii."""
-    exact = {"box": PARAMETERS, "given": {"radii": [*RADII]}}
-    run("table", exact, table="theory.csv")
-    files, rng = {"theory": "theory.csv", "intervals": []}, np.random.default_rng(1)
+    """The files of fabricated points at some radii."""
+    files, rng = {"intervals": []}, np.random.default_rng(1)
     for stage in ("monte_carlo", "dynamics"):
         samples = {"monte_carlo": {"samples": 10**7}, "dynamics": {}}[stage]
         files[stage] = [tmp_path / f"{stage}-{scene.radius}.json" for scene in scenes()]
@@ -127,7 +125,7 @@ def points(run, tmp_path):
     return files
 
 
-MADE = {"box": PARAMETERS, "given": {"areas": ["right_wall", "disc_collision"]}}
+MADE = {"box": PARAMETERS, "given": {"events": ["right_wall", "disc_collision"]}}
 
 
 @pytest.mark.parametrize("name", ["volume", "areas", "mean_times", "check"])

@@ -215,7 +215,7 @@ def test_sum_rule_holds_for_the_exact_rates(radius):
     pairs = combinations_with_replacement(counts, 2)
     products = {f"{x}*{y}": counts[x] * (x == y) for x, y in pairs}
     fields = {"duration": time, "replicas": replicas, "counts": counts, "products": products}
-    found = sum_rule(scene, counts_point(radius, **fields, target=dict.fromkeys(counts, 1.0)))
+    found = sum_rule(counts_point(radius, **fields, target=dict.fromkeys(counts, 1.0)))
     assert found.value == pytest.approx(1, abs=1e-8)  # counts are rounded to some 1e-9
     scale = 3 * math.pi / (4 * time)
     weights = {"disc_collision": scale * 2 * radius / math.sqrt(8)}

@@ -24,7 +24,7 @@ STRIP = StripCount(
     strata=([[0.5, 0.5]], [[9, 9]], [[1, 2]], [[1, 4]]),
 )  # fmt: skip
 INSERTED = InsertionPoint(
-    radius=0.1, method="insertion", samples=10**6, unit=2**20,
+    scene=BOX.scene(0.1), method="insertion", samples=10**6, unit=2**20,
     quantities={
         "volume": Weights(10**12, 2 * 10**12, 3.0), "top_wall_area": Weights(10**11, 10**11, 4.0),
     },
@@ -50,8 +50,8 @@ def test_a_saved_result_is_a_point_and_no_other_point(tmp_path, stage, name):
     result, path = RESULTS[stage](SCENES[name]), tmp_path / "a.json"
     result.save(path)
     point = read_point(POINTS[stage], path)
-    assert point.radius == SCENES[name].radius
-    assert point == type(point).of(point.radius, result.parts)
+    assert point.scene == SCENES[name]
+    assert point == type(point).of(point.scene, result.parts)
     assert point.parts.keys() == result.parts.keys()
     for other in POINTS.keys() - {stage}:
         with pytest.raises(InputError, match=rf"must be a point of {other}, but was made by"):
@@ -133,7 +133,7 @@ def test_the_error_of_a_ratio_of_insertions_is_that_of_its_samples():
     common = RNG.poisson(100, samples)
     volume, area = common + RNG.poisson(50, samples), common + RNG.poisson(20, samples)
     point = InsertionPoint(
-        radius=0.1, method="insertion", samples=samples, unit=unit,
+        scene=BOX.scene(0.1), method="insertion", samples=samples, unit=unit,
         quantities={
             "volume": Weights(int(volume.sum()), int((volume**2).sum()), 3.0),
             "top_wall_area": Weights(int(area.sum()), int((area**2).sum()), 4.0),
@@ -156,12 +156,12 @@ def test_all_samples_in_a_shell_are_samples_of_the_volume():
 
 def test_the_area_of_all_walls_is_as_sure_as_that_of_the_rarer_wall():
     hits = {"right_wall_area": Hits(5000, 1.0, 0.1), "top_wall_area": Hits(50, 1.0, 0.1)}
-    point = MonteCarloPoint(0.1, "monte_carlo", 10**6, hits, right_and_top=1)
-    assert point.all_walls(BOX.scene(0.1)).enough == 50
+    point = MonteCarloPoint(BOX.scene(0.1), "monte_carlo", 10**6, hits, right_and_top=1)
+    assert point.all_walls().enough == 50
     # If all hits are of both shells, they are those of one shell of twice the area.
     hits["right_wall_area"] = hits["top_wall_area"]
     point = replace(point, quantities=hits, right_and_top=50)
-    area = point.all_walls(BOX.scene(0.1)).estimate
+    area = point.all_walls().estimate
     assert area.relative_stderr == pytest.approx(point.estimate("top_wall_area").relative_stderr)
 
 

@@ -11,7 +11,7 @@ from factory import Laws, empty, written
 from marks import slow
 from numba.core.errors import NumbaError
 
-from twodiscs.comparison.tables import MeanTimes, Theory
+from twodiscs.comparison.tables import MeanTimes
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.trajectory import events_of
 from twodiscs.figures import curves, style
@@ -71,7 +71,7 @@ def tables_of(names, rng):
         box, radii = request(name).box, request(name).radii
         laws = [Laws(box.scene(radius)) for radius in radii]
         points = [law.dynamics(rng, relative=1e-2, events=law.scene.events) for law in laws]
-        rows = MeanTimes.rows(box, Theory.rows(box, radii), {"dynamics": points})
+        rows = MeanTimes.rows(points)
         tables[f"{name}/mean_times"] = rows
     return tables
 

@@ -67,10 +67,15 @@ def test_on_one_core_the_bytes_are_the_same(complete, tmp_path_factory):
 
 
 def test_a_formula_off_by_one_percent_fails_the_check_and_is_named(built):
-    wrong = '"exact": 1.01 * x if q == "disc_collision_time" else x}'
-    built.replace("src/twodiscs/comparison/tables.py", '"exact": x}', wrong)
-    # Points do not change: exact values are made again, and all comparisons with them.
-    again = "--rerun-triggers", "mtime", "--forcerun", "exact"
+    right = "theory.mean_times(point.scene)[event]"
+    wrong = f'{right} if event != "disc_collision" else 1.01 * {right}'
+    built.replace(
+        "src/twodiscs/comparison/tables.py",
+        f"scene, exact = point.scene, {right}",
+        f"scene, exact = point.scene, {wrong}",
+    )
+    # Points do not change: tables are made again, and all comparisons with them.
+    again = "--rerun-triggers", "mtime", "--forcerun", "table"
     run = built.snakemake("--cores", "2", *again, "--", "check", passes=False)
     assert run.returncode != 0
     said, failed = run.stdout + run.stderr, "comparison mean_time, quantity disc_collision_time"

@@ -132,7 +132,7 @@ def test_effects_are_a_target_that_counts_every_scene_as_any_other(unbuilt):
     jobs = unbuilt.jobs("effects", "--cores", "3")
     # The job that measures seconds has all cores, so no other one runs beside it.
     assert re.findall(r"wildcards: (.*)\n    threads: 3", unbuilt.printed) == ["table=effects_cost"]
-    rules = {"dynamics", "exact", "table"}
+    rules = {"dynamics", "table"}
     assert {rule for rule, _ in jobs} == rules | {"effects", "study_table", "shared_figure"}
     for rule in rules:
         scenes = {words[0] for name, words in jobs if name == rule}

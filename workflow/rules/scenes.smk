@@ -98,7 +98,6 @@ use rule trajectory as exact with:
 use rule exact as table with:
     """The points of a scene in a table, beside the exact values."""
     input:
-        theory=f"{RESULTS}/{{scene}}/theory.csv",
         monte_carlo=lambda w: CONFIGURATION.points(w.scene, w.table, "monte_carlo"),
         dynamics=lambda w: CONFIGURATION.points(w.scene, w.table, "dynamics"),
         intervals=lambda w: CONFIGURATION.points(w.scene, w.table, "intervals"),
@@ -109,7 +108,7 @@ use rule exact as table with:
         table="|".join(GATHERED),
     localrule: True
     params:
-        given=lambda w: {"areas": SCENES[w.scene].quantities.areas},
+        given=lambda w: {"events": SCENES[w.scene].quantities.areas},
 
 
 rule check:

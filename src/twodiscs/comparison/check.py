@@ -70,19 +70,20 @@ def _values(*values):
     return dict(zip(TAKEN, values, strict=True))
 
 
-def sum_rule(scene, point):
+def sum_rule(point):
     """Return the estimate of the sum of virials over 2⟨K⟩, which is 1 (see ``theory.virial``).
 
     The rates are averages over all replicas of a dynamics ``point``, whether they can reach a wall
     or not. A wall's rate has the hits of all walls and discs that are equal by symmetry.
     """
+    scene = point.scene
     rates = {e: scene.accessible_fraction(e) / scene.copies(e) / point.duration for e in SUM_RULE}
     return point.combination({e: w * rates[e] for e, w in virial.weights(scene).items()})
 
 
-def _sum_rule(scene, point):
-    """Return the comparison of the sum rule for one dynamics point, at the radius of ``scene``."""
-    rule, replicas = sum_rule(scene, point), point.replicas
+def _sum_rule(point):
+    """Return the comparison of the sum rule for one dynamics point."""
+    rule, scene, replicas = sum_rule(point), point.scene, point.replicas
     stderr = z = None
     enough = min(point.counts[event] for event in SUM_RULE) >= scores.NORMAL
     enough = enough and replicas >= MIN_EVENTS and rule.stderr
@@ -96,12 +97,13 @@ def _sum_rule(scene, point):
     return _comparison("sum_rule", "mean_times", "dynamics", values, derived=True)
 
 
-def flux_time(scene, event, point):
+def flux_time(event, point):
     """Return the mean time between events that follows from volume and area of a point.
 
     It is an ``Estimate`` from a point of insertions: the rate is c_D/2 × area/volume from each side
     of the surface, see ``theory``. It is None if the error is not known or the point lacks one.
     """
+    scene = point.scene
     weights = wall_weights(scene) if event == "any_wall" else {f"{event}_area": 1.0}
     if not {"volume", *weights} <= point.quantities.keys():
         return None
@@ -112,12 +114,12 @@ def flux_time(scene, event, point):
     return Estimate(1 / rate, ratio.relative_stderr / rate, ratio.n)
 
 
-def _flux(scene, row, point, derived):
+def _flux(row, point, derived):
     """Return the comparison of a mean time of dynamics with volume and area by Monte Carlo.
 
     ``row`` is the row of the time in mean_times.csv, ``point`` a point of insertions.
     """
-    sampled = flux_time(scene, row["event"], point)
+    sampled = flux_time(row["event"], point)
     ratio = stderr = z = None
     if sampled is not None and row["stderr"] is not None:
         ratio = row["estimate"] / sampled.value
@@ -125,33 +127,33 @@ def _flux(scene, row, point, derived):
         stderr = ratio * math.hypot(*relative)
         if max(relative) ** 2 * scores.NORMAL <= 1:
             z = (ratio - 1) / stderr
-    values = _normal_values(scene.radius, 1.0, ratio, stderr, z)
+    values = _normal_values(point.radius, 1.0, ratio, stderr, z)
     return _comparison("flux", f"{row['event']}_time", "dynamics", values, derived)
 
 
-def comparisons(box, volume, areas, times, histogram, dynamics, monte_carlo=()):
-    """Return a comparison for every estimate at a radius of a ``Box``, without verdicts.
+def comparisons(volume, areas, times, histogram, points):
+    """Return a comparison for every estimate at a radius, without verdicts.
 
-    ``volume``, ``areas``, ``times`` and ``histogram`` are rows of the tables. The points of
-    ``dynamics`` name the counts that are sums of others. They also give the sum rule of virials, if
-    its three events were counted. If no exact mean time is known, volume and area in the points of
-    ``monte_carlo`` give the time to compare with.
+    ``volume``, ``areas``, ``times`` and ``histogram`` are rows of the tables. The ``points`` of
+    dynamics name the counts that are sums of others. They also give the sum rule of virials, if its
+    three events were counted. If no exact mean time is known, volume and area in the points of
+    Monte Carlo give the time to compare with.
     """
-    rows = []
+    rows, dynamics = [], [point for point in points if point.stage == "dynamics"]
     for name, table in (("volume", volume), ("area", areas)):
         for row in table:
             values = {**row, "exact": row["expectation"]}
             joined = row["quantity"] == "any_wall_area" and row["epsilon"] is None  # two shells
             rows.append(_comparison(name, row["quantity"], row["method"], values, joined))
     summed = {(point.radius, event) for point in dynamics for event in point.sums_of_others()}
-    inserted = {p.radius: p for p in monte_carlo if p.method == "insertion"}
+    inserted = {p.radius: p for p in points if getattr(p, "method", None) == "insertion"}
     for row in times:
         method = "dynamics" if row["starts"] == "invariant" else row["starts"]
         derived = method == "dynamics" and (row["radius"], row["event"]) in summed
         rows.append(_comparison("mean_time", f"{row['event']}_time", method, row, derived))
         unknown = row["exact"] is None and row["status"] != "impossible"
         if unknown and (point := inserted.get(row["radius"])):
-            rows.append(_flux(box.scene(row["radius"]), row, point, derived))
+            rows.append(_flux(row, point, derived))
     for (radius, event), bins in groupby(histogram, key=lambda row: (row["radius"], row["event"])):
         row = next(bins)
         mean = (row[name] for name in ("exact_mean", "mean", "mean_stderr", "z"))
@@ -160,9 +162,8 @@ def comparisons(box, volume, areas, times, histogram, dynamics, monte_carlo=()):
             values["status"] = "counted"
         rows.append(_comparison("hop_interval", f"{event}_interval", "intervals", values))
     for point in dynamics:
-        scene = box.scene(point.radius)
-        if set(SUM_RULE) <= set(point.counts) and virial.weights(scene):
-            rows.append(_sum_rule(scene, point))
+        if set(SUM_RULE) <= set(point.counts) and virial.weights(point.scene):
+            rows.append(_sum_rule(point))
     return sorted(rows, key=lambda row: row["radius"])
 
 

@@ -244,7 +244,7 @@ def variances(scene, sampler, sums, blocks):
         return _variances_of_hits(scene, sampler.constants["quantities"], sampler.block)
     point = sampler.point({(0, blocks): (sums,)})
     sampled = {quantity: point.sampled(quantity) for quantity in point.quantities}
-    sampled["any_wall_area"] = point.all_walls(scene)
+    sampled["any_wall_area"] = point.all_walls()
     return {
         quantity: (one.estimate.relative_stderr**2 * blocks, 0.0)
         for quantity, one in sampled.items()

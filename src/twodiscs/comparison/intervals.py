@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from twodiscs.comparison.measurements import Measurement, frame_of, table_of, theory_rows
+from twodiscs.comparison.measurements import Measurement, frame_of, table_of
 from twodiscs.comparison.result import Result, note_of_number, progress_bar, seed_of
 from twodiscs.comparison.tables import HopHistogram
 from twodiscs.model.checks import InputError, answering, check_choice, check_count
@@ -87,7 +87,7 @@ class Intervals(Result):
         self.settings, self.parts = settings, point.parts
         self.intervals, self.overflow = point.intervals, point.overflow
         self.note = note_of_number("intervals", settings["number"], self.intervals)
-        self.rows = HopHistogram.rows(theory_rows(scene), {"intervals": [point]})
+        self.rows = HopHistogram.rows([point])
         self.counts = point.equal.counts
         # Wide bins, which hold the same intervals again, come after the equal ones.
         self._bins = self.rows[: len(self.counts)]

@@ -16,8 +16,7 @@ import numpy as np
 
 from twodiscs.comparison.quantities import Quantities
 from twodiscs.comparison.result import Result, note_of_number, progress_bar, seed_of
-from twodiscs.comparison.tables import Areas, MeanTimes, Theory, Volume, quantity_of, shortfall
-from twodiscs.model.box import Box
+from twodiscs.comparison.tables import Areas, MeanTimes, Volume, quantity_of, shortfall
 from twodiscs.model.checks import (
     AccuracyWarning,
     InputError,
@@ -29,7 +28,6 @@ from twodiscs.model.checks import (
     did_you_mean,
     quote,
 )
-from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene, check_scene, why_absent
 from twodiscs.points.estimates import Estimate
 from twodiscs.points.monte_carlo import WALL_AREAS, wall_weights
@@ -366,11 +364,6 @@ def frame_of(rows, index):
     return pd.DataFrame(rows).set_index(index)
 
 
-def theory_rows(scene):
-    """Return the rows of theory.csv of one ``Scene``."""
-    return Theory.rows(Box.of(scene), [scene.radius])
-
-
 # The calls -------------------------------------------------------------------------------------
 
 
@@ -502,7 +495,7 @@ def run_simulation(
         run = CountingRun(scene, target, budget, stream)
     with progress_bar(progress, f"simulate r = {scene.radius:g}") as progress:
         point = run.run(progress, cores, kept)
-    rows = MeanTimes.rows(Box.of(scene), theory_rows(scene), {"dynamics": [point]})
+    rows = MeanTimes.rows([point])
     if timed:
         note = (
             f"duration {duration:g} asked for, {point.replicas * point.duration:g} simulated: "
@@ -598,9 +591,7 @@ def run_sampling(scene, samples, seed, quantities, shell, name, cores=1, progres
     run = SamplingRun(scene, quantities, samples, shell, stream)
     with progress_bar(progress, f"sample r = {scene.radius:g}") as progress:
         point = run.run(progress, cores, kept)
-    points = {"monte_carlo": [point]}
-    theory, areas = theory_rows(scene), [e for e in EVENTS if f"{e}_area" in quantities]
-    rows = Volume.rows(theory, points) + Areas.rows(Box.of(scene), theory, points, areas)
+    rows = Volume.rows([point]) + Areas.rows([point])
     # Insertions always have the volume.
     rows = [row for row in rows if row["quantity"] in quantities]
     note = note_of_number("samples", samples, point.samples)

@@ -18,12 +18,11 @@ import re
 from dataclasses import dataclass
 from functools import partial
 from numbers import Integral, Real
-from operator import attrgetter
 from typing import ClassVar
 
 from twodiscs.model.checks import InputError, format_number, format_seconds
 from twodiscs.model.events import EVENTS
-from twodiscs.theory.exact import exact, shell_expectation
+from twodiscs.theory import exact as theory
 
 
 @dataclass(frozen=True)
@@ -129,9 +128,9 @@ class Table:
         return frame.astype(object).where(frame.notna(), None).to_dict("records")
 
 
-def by_radius(points):
-    """Return ``points`` in the order of radii."""
-    return sorted(points, key=attrgetter("radius"))
+def of_stage(points, stage):
+    """Return the ``points`` of a ``stage`` in the order of radii."""
+    return sorted((p for p in points if p.stage == stage), key=lambda point: point.radius)
 
 
 def quantity_of(row):
@@ -216,17 +215,12 @@ class Theory(Table):
         """Return the rows of a ``Box``, radius by radius."""
         rows = []
         for radius in radii:
-            numbers = exact(box.scene(radius))
+            numbers = theory.exact(box.scene(radius))
             values = {"volume": numbers["volume"]}
             values |= {f"{event}_area": area for event, area in numbers["areas"].items()}
             values |= {f"{event}_time": time for event, time in numbers["mean_times"].items()}
             rows += [{"radius": radius, "quantity": q, "exact": x} for q, x in values.items()]
         return rows
-
-
-def exact_values(theory):
-    """Return {(radius, quantity): exact value or None}, made of the rows of theory.csv."""
-    return {(row["radius"], row["quantity"]): row["exact"] for row in theory}
 
 
 # Monte Carlo --------------------------------------------------------------------------------------
@@ -281,15 +275,12 @@ class Volume(Table):
     columns = _sampled_columns("length⁴")
 
     @staticmethod
-    def rows(theory, points):
-        """Return the rows of the Monte Carlo points that have the volume.
-
-        ``theory`` are the rows of theory.csv, ``points`` is {"monte_carlo": [point, …]}.
-        """
-        exact, rows = exact_values(theory), []
-        for point in by_radius(points.get("monte_carlo", ())):
+    def rows(points):
+        """Return the rows of the Monte Carlo points that have the volume."""
+        rows = []
+        for point in of_stage(points, "monte_carlo"):
             if sampled := point.sampled("volume"):
-                value = exact[point.radius, "volume"]
+                value = theory.volume(point.scene)
                 rows.append(_sampled_row(point, "volume", sampled, value, value))
         return rows
 
@@ -304,41 +295,39 @@ class Areas(Table):
     columns = _sampled_columns("length³")
 
     @staticmethod
-    def rows(box, theory, points, areas=EVENTS):
-        """Return the rows of Monte Carlo points for the events ``areas``.
+    def rows(points, events=EVENTS):
+        """Return the rows of Monte Carlo points for these ``events``.
 
-        Arguments are as in ``Volume.rows``. With effects the area of all walls is sampled. Without,
-        it follows from the right and the top wall, so a point has these two even if only the area
-        of all walls is asked for.
+        With effects the area of all walls is sampled. Without, it follows from the right and the
+        top wall, so a point has these two even if only the area of all walls is asked for.
         """
-        exact, rows = exact_values(theory), []
-        for point in by_radius(points.get("monte_carlo", ())):
-            scene = box.scene(point.radius)
-            wanted = (event for event in EVENTS if event in areas)
-            rows += filter(None, (_area_row(scene, point, event, exact) for event in wanted))
-        return rows
+        wanted = [event for event in EVENTS if event in events]
+        found = (_area_row(p, event) for p in of_stage(points, "monte_carlo") for event in wanted)
+        return [row for row in found if row]
 
 
-def _area_row(scene, point, event, exact):
+def _area_row(point, event):
     """Return the row of an ``event``, None if the point does not have its area."""
     from twodiscs.comparison import scores  # which needs numpy and scipy
 
-    quantity = f"{event}_area"
+    scene, quantity = point.scene, f"{event}_area"
     sampled = point.sampled(quantity)
     if sampled is None and event == "any_wall":
-        sampled = point.all_walls(scene)
+        sampled = point.all_walls()
     if sampled is None:
         return None
-    value = exact[scene.radius, quantity]
+    value = theory.areas(scene)[event]
     if point.method == "insertion":
         return _sampled_row(point, quantity, sampled, value, value)
     if sampled.epsilon is not None:
-        expectation = shell_expectation(scene, event, sampled.epsilon)
+        expectation = theory.shell_expectation(scene, event, sampled.epsilon)
         return _sampled_row(point, quantity, sampled, value, expectation)
     # By symmetry, 4 times the sum over two shells, which overlap.
     walls = {wall: point.quantities[f"{wall}_area"] for wall in ("right_wall", "top_wall")}
     hits, measures = zip(*((part.hits, 4 * part.measure) for part in walls.values()), strict=True)
-    expectations = [4 * shell_expectation(scene, wall, walls[wall].epsilon) for wall in walls]
+    expectations = [
+        4 * theory.shell_expectation(scene, wall, walls[wall].epsilon) for wall in walls
+    ]
     probabilities = [min(e / m, 1.0) for e, m in zip(expectations, measures, strict=True)]
     score = scores.shells_z(hits, point.right_and_top, point.samples, measures, probabilities)
     return _sampled_row(point, quantity, sampled, value, sum(expectations), score)
@@ -453,30 +442,27 @@ class MeanTimes(Table):
     }
 
     @staticmethod
-    def rows(box, theory, points, without_strips=False):
+    def rows(points, without_strips=False):
         """Return the rows of dynamics points, for the events that they counted.
 
-        ``theory`` are the rows of theory.csv, ``points`` is {"dynamics": [point, …]}. A rare hop
-        has the row of its strip. The rows ``without_strips`` are those of rare hops alone, with
-        their counts from all initial states.
+        A rare hop has the row of its strip. The rows ``without_strips`` are those of rare hops
+        alone, with their counts from all initial states.
         """
-        exact, rows = exact_values(theory), []
-        for point in by_radius(points.get("dynamics", ())):
-            scene = box.scene(point.radius)
-            for event in point.counted:
-                if event in point.strips or not without_strips:
-                    count = point.everywhere(event) if without_strips else point.count(event)
-                    time = exact[point.radius, f"{event}_time"]
-                    rows.append(_mean_time_row(scene, event, point, time, count))
-        return rows
+        return [
+            _mean_time_row(p, event, p.everywhere(event) if without_strips else p.count(event))
+            for p in of_stage(points, "dynamics")
+            for event in p.counted
+            if event in p.strips or not without_strips
+        ]
 
 
-def _mean_time_row(scene, event, point, exact, count):
+def _mean_time_row(point, event, count):
     """Return the row of an event of a ``point`` from a ``Count`` of it."""
     from twodiscs.comparison import scores  # which needs numpy and scipy
     from twodiscs.points.estimates import has_error_bar
     from twodiscs.theory.exact import replicas_needed
 
+    scene, exact = point.scene, theory.mean_times(point.scene)[event]
     target, copies = point.target[event], scene.copies(event)
     estimate, bound = count.estimate(copies), None
     if target is None or (count.share == 1 and event in point.strips):
@@ -584,15 +570,15 @@ class HopHistogram(Table):
     }
 
     @staticmethod
-    def rows(theory, points):
+    def rows(points):
         """Return the rows of intervals points.
 
-        ``theory`` are the rows of theory.csv, ``points`` is {"intervals": [point, …]}. The mean is
-        tested by Student's t over the chains, if there are 100 of them and 1000 intervals.
+        The mean is tested by Student's t over the chains, if there are 100 of them and 1000
+        intervals.
         """
-        exact, rows = exact_values(theory), []
-        for point in by_radius(points.get("intervals", ())):
-            mean = _mean_interval(point, exact[point.radius, f"{point.event}_time"])
+        rows = []
+        for point in of_stage(points, "intervals"):
+            mean = _mean_interval(point)
             start = {"radius": point.radius, "event": point.event}
             for each in point.bins():
                 cells = each._asdict()
@@ -602,12 +588,12 @@ class HopHistogram(Table):
         return rows
 
 
-def _mean_interval(point, exact):
-    """Return the columns about the mean of a point; the ``exact`` mean may be None."""
+def _mean_interval(point):
+    """Return the columns about the mean of a point; its exact mean may be None."""
     from twodiscs.comparison import scores  # which needs numpy and scipy
     from twodiscs.points.estimates import MIN_EVENTS
 
-    z, mean = None, point.estimate("mean")
+    z, mean, exact = None, point.estimate("mean"), theory.mean_times(point.scene)[point.event]
     stderr = mean.stderr or None if mean.n >= MIN_EVENTS else None
     if stderr and point.intervals >= scores.NORMAL and exact is not None:
         z = scores.student_deviate((mean.value - exact) / stderr, mean.n - 1)
@@ -703,23 +689,19 @@ class Check(Table):
     }
 
     @staticmethod
-    def rows(box, theory, points, areas=EVENTS):
-        """Return the comparisons of all points of a scene, with verdicts (see ``check``).
+    def rows(points, events=EVENTS):
+        """Return the comparisons of all ``points`` of a scene, with verdicts (see ``check``).
 
-        ``theory`` are the rows of theory.csv, ``points`` is {stage: [point, …]}, and ``areas`` are
-        the events of which areas are asked for.
+        Areas are those of the ``events``.
         """
         from twodiscs.comparison import check  # which needs numpy and scipy
 
         compared = check.comparisons(
-            box,
-            Volume.rows(theory, points),
-            Areas.rows(box, theory, points, areas),
-            MeanTimes.rows(box, theory, points)
-            + MeanTimes.rows(box, theory, points, without_strips=True),
-            HopHistogram.rows(theory, points),
-            points.get("dynamics", ()),
-            points.get("monte_carlo", ()),
+            Volume.rows(points),
+            Areas.rows(points, events),
+            MeanTimes.rows(points) + MeanTimes.rows(points, without_strips=True),
+            HopHistogram.rows(points),
+            points,
         )
         return check.check_rows(compared)
 
@@ -742,19 +724,19 @@ class Cost(Table):
 
     @staticmethod
     def rows(points, seconds):
-        """Return the rows of the jobs by stage and radius.
+        """Return the rows of the jobs of ``points`` by stage and radius.
 
-        ``points`` is {stage: [point, …]}; ``seconds`` is {(stage, radius): time}, as far as known.
+        ``seconds`` is {(stage, radius): time}, as far as known.
         """
         return [
             {
                 "stage": stage,
                 "radius": point.radius,
-                "events": getattr(point, WORK[stage]),
+                "events": getattr(point, work),
                 "seconds": seconds.get((stage, point.radius)),
             }
-            for stage in sorted(points)
-            for point in by_radius(points[stage])
+            for stage, work in sorted(WORK.items())
+            for point in of_stage(points, stage)
         ]
 
 

@@ -160,7 +160,7 @@ class CountingRun(Run):
         parts = {"all": constants | {"sums": pieces["all"]}}
         for hop in self._rare:
             parts[hop] = strip.constants(self.scene, hop) | {"sums": pieces[hop]}
-        return DynamicsPoint.of(self.scene.radius, parts)
+        return DynamicsPoint.of(self.scene, parts)
 
     @property
     def _target(self):
@@ -337,7 +337,7 @@ class IntervalRun(Run):
             "returns": RETURNS,
             "sums": pieces["all"],
         }
-        return IntervalsPoint.of(self.scene.radius, {"all": part})
+        return IntervalsPoint.of(self.scene, {"all": part})
 
     def run(self, progress=None, cores=1, kept=None):
         """Return the ``IntervalsPoint``; stop long kernels if nobody waits any more."""

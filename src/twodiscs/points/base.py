@@ -17,6 +17,7 @@ import numpy as np
 
 import twodiscs
 from twodiscs.model.checks import InputError
+from twodiscs.model.scene import Scene
 
 # Files --------------------------------------------------------------------------------------------
 
@@ -68,15 +69,20 @@ def _digest_of(content):
 
 
 class Point:
-    """The arithmetic on the sums of one method at one ``radius``.
+    """The arithmetic on the sums of one method in one ``scene``.
 
     ``parts`` are the parts of its run, None if it was made without one. A class has a method
-    ``of(radius, parts)``, which makes the point of the ``parts`` of a run, and ``estimate``, which
+    ``of(scene, parts)``, which makes the point of the ``parts`` of a run, and ``estimate``, which
     returns an ``Estimate`` by name, or None without a count.
     """
 
     stage: ClassVar[str]
-    radius: float
+    scene: Scene
+
+    @property
+    def radius(self):
+        """The radius of disc 1."""
+        return self.scene.radius
 
 
 def reached(pieces, most=math.inf):

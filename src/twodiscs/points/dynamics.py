@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from twodiscs.model.events import EVENTS
+from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.base import Point, reached
 from twodiscs.points.estimates import stratified_mean
@@ -103,7 +104,7 @@ class DynamicsPoint(Point):
 
     stage: ClassVar[str] = "dynamics"
 
-    radius: float
+    scene: Scene
     duration: float
     replicas: int
     events: int
@@ -114,14 +115,14 @@ class DynamicsPoint(Point):
     parts: dict | None = field(default=None, compare=False, repr=False)
 
     @classmethod
-    def of(cls, radius, parts):
+    def of(cls, scene, parts):
         """Return the point of the ``parts`` of a run: "all", and the rare hops in strips."""
         part = parts["all"]
         (sums, products), blocks = reached(part["sums"])
         places = {event: k for k, event in enumerate(EVENTS) if event in part["target"]}
         strips = {name: StripCount.of(part) for name, part in parts.items() if name != "all"}
         return cls(
-            radius=radius,
+            scene=scene,
             duration=part["duration"],
             replicas=blocks * part["replicas"],
             events=simulated_events(sums) + sum(strip.events for strip in strips.values()),

@@ -6,6 +6,7 @@ from fractions import Fraction
 from itertools import pairwise, repeat
 from typing import ClassVar, NamedTuple
 
+from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.base import Point, reached
 from twodiscs.points.estimates import Estimate
@@ -66,7 +67,7 @@ class IntervalsPoint(Point):
 
     stage: ClassVar[str] = "intervals"
 
-    radius: float
+    scene: Scene
     event: str
     bin_width: float
     overflow: int
@@ -80,7 +81,7 @@ class IntervalsPoint(Point):
     parts: dict | None = field(default=None, compare=False, repr=False)
 
     @classmethod
-    def of(cls, radius, parts):
+    def of(cls, scene, parts):
         """Return the point of the ``parts`` of a run, {"all": part}.
 
         Its sums are counts of the bins, equal ones, then wide ones, and Σ t and Σ t² over the times
@@ -101,7 +102,7 @@ class IntervalsPoint(Point):
             error, unit = math.sqrt(variance), part["bin_width"] * GRAIN / part["returns"]
         rows, wide = sums.tolist(), slice(BINS + 1, BINS + len(edges))
         return cls(
-            radius=radius,
+            scene=scene,
             event=part["event"],
             bin_width=part["bin_width"],
             overflow=rows[0][BINS],

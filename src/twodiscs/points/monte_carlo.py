@@ -7,6 +7,7 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
+from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.base import Point, reached
 from twodiscs.points.estimates import Estimate
@@ -70,7 +71,7 @@ class MonteCarloPoint(SampledPoint):
     shells, for scenes in which all walls have four times the area of these two.
     """
 
-    radius: float
+    scene: Scene
     method: str
     samples: int
     quantities: dict[str, Hits]
@@ -78,14 +79,14 @@ class MonteCarloPoint(SampledPoint):
     parts: dict | None = field(default=None, compare=False, repr=False)
 
     @classmethod
-    def of(cls, radius, parts):
+    def of(cls, scene, parts):
         """Return the point of the ``parts`` of a run: this one, or an ``InsertionPoint``.
 
         A quantity has the ``place`` of its hits among the sums, its measure and thickness.
         """
         part = parts["all"]
         if part["method"] == InsertionPoint.METHOD:
-            return InsertionPoint.of(radius, parts)
+            return InsertionPoint.of(scene, parts)
         (hits,), blocks = reached(part["sums"])
         quantities = {
             name: Hits(int(hits[one["place"]]), one["measure"], one["epsilon"])
@@ -93,7 +94,7 @@ class MonteCarloPoint(SampledPoint):
         }
         both = part["right_and_top"]
         return cls(
-            radius,
+            scene,
             part["method"],
             blocks * part["samples"],
             quantities,
@@ -121,7 +122,7 @@ class MonteCarloPoint(SampledPoint):
             return self.right_and_top / self.samples
         return math.prod(shares.values())
 
-    def all_walls(self, scene):
+    def all_walls(self):
         """Return the area of all walls from two shells as ``Sampled``, or None."""
         if self.right_and_top is None or not {*WALL_AREAS} <= self.quantities.keys():
             return None
@@ -155,7 +156,7 @@ class InsertionPoint(SampledPoint):
 
     METHOD: ClassVar[str] = "insertion"
 
-    radius: float
+    scene: Scene
     method: str
     samples: int
     unit: int
@@ -164,14 +165,14 @@ class InsertionPoint(SampledPoint):
     parts: dict | None = field(default=None, compare=False, repr=False)
 
     @classmethod
-    def of(cls, radius, parts):
+    def of(cls, scene, parts):
         """Return the point of the ``parts`` of a run: Σ w, then the rows of Σ w_a w_b."""
         part = parts["all"]
         ((sums, *products),), blocks = reached(part["sums"])
         sampled = part["quantities"]
         places = {name: one["place"] for name, one in sampled.items()}
         return cls(
-            radius=radius,
+            scene=scene,
             method=part["method"],
             samples=blocks * part["samples"],
             unit=part["unit"],
@@ -203,9 +204,9 @@ class InsertionPoint(SampledPoint):
         found = estimates.weighted_estimate(*sums, self.quantities[quantity].measure)
         return self._sampled(*found, estimates.effective_misses(*sums))
 
-    def all_walls(self, scene):
-        """Return the area of all walls of a ``Scene`` as ``Sampled``, or None."""
-        weights = wall_weights(scene)
+    def all_walls(self):
+        """Return the area of all walls as ``Sampled``, or None."""
+        weights = wall_weights(self.scene)
         if not weights.keys() <= self.quantities.keys():
             return None
         misses = min(estimates.effective_misses(*self._sums(wall)) for wall in weights)

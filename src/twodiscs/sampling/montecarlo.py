@@ -281,7 +281,7 @@ def _sampler(
     both = SETS - 1 if joined else None
     constants = {"method": method, "samples": block, "quantities": sampled, "right_and_top": both}
     return Sampler(
-        scene.radius, block, lambda first, stop: kernel(seed, first, stop, *arguments), constants,
+        scene, block, lambda first, stop: kernel(seed, first, stop, *arguments), constants,
         ratio,
     )  # fmt: skip
 

@@ -24,6 +24,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.model.checks import check_integer
+from twodiscs.model.scene import Scene
 from twodiscs.points.base import added, reached
 from twodiscs.points.monte_carlo import MonteCarloPoint
 
@@ -143,11 +144,11 @@ class Sampler(NamedTuple):
     """Draws in blocks of ``block`` samples.
 
     ``count(first, stop)`` returns the counts of a range of blocks, ``constants`` are those of the
-    part of a ``MonteCarloPoint`` at the ``radius``. ``cost_ratio`` is the time of a sample over the
+    part of a ``MonteCarloPoint`` of the ``scene``. ``cost_ratio`` is the time of a sample over the
     time of a sample of the prism.
     """
 
-    radius: float
+    scene: Scene
     block: int
     count: Callable
     constants: dict
@@ -155,7 +156,7 @@ class Sampler(NamedTuple):
 
     def point(self, pieces):
         """Return the ``MonteCarloPoint`` of the ``pieces`` of a run."""
-        return MonteCarloPoint.of(self.radius, {"all": self.constants | {"sums": pieces}})
+        return MonteCarloPoint.of(self.scene, {"all": self.constants | {"sums": pieces}})
 
 
 def all_in_rounds(parts, progress=None, cores=1, kept=None):

@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from twodiscs.model.box import key, stream_seed
+from twodiscs.model.box import key, scene_of, stream_seed
 from twodiscs.model.checks import InputError
 from twodiscs.points.base import SECONDS, read_json, with_arrays
 
@@ -37,7 +37,7 @@ def read_point(kind, path):
     """
     content = read_json(path)
     try:
-        return kind.of(content["scene"]["radius"], with_arrays(content["parts"]))
+        return kind.of(scene_of(content["scene"]), with_arrays(content["parts"]))
     except (KeyError, TypeError, ValueError):
         raise InputError(
             f"{path} must be a point of {kind.stage}, but was made by another version or stage; "

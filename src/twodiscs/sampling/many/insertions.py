@@ -283,7 +283,7 @@ def inserted(scene, quantities, shell, seed):
         "quantities": {n: {"place": k, "measure": measures[k]} for n, k in sampled.items()},
     }
     return Sampler(
-        scene.radius, BLOCK, lambda first, stop: np.vstack(run_blocks(scene, seed, first, stop)),
+        scene, BLOCK, lambda first, stop: np.vstack(run_blocks(scene, seed, first, stop)),
         constants, COST_RATIO * scene.discs,
     )  # fmt: skip
 

@@ -16,7 +16,7 @@ from mpmath import mp, mpf
 
 from twodiscs.comparison import scores
 from twodiscs.comparison.check import comparisons
-from twodiscs.comparison.tables import Areas, MeanTimes, Theory, Volume
+from twodiscs.comparison.tables import Areas, MeanTimes, Volume
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import after_event, contact_quotient, law_of, wall_quotient
@@ -249,9 +249,8 @@ def estimate_rows(box, seed):
         scene = box.scene(radius)
         quantities = ["volume", *(f"{event}_area" for event in EVENTS)]
         point = conditioned_point(scene, quantities, ESTIMATE_PROPOSALS, other_seed(seed, i))
-        theory, points = Theory.rows(box, [radius]), {"monte_carlo": [point]}
         start = start_of("estimates", case, radius, distance) | {"method": "conditioned"}
-        for found in Volume.rows(theory, points) + Areas.rows(box, theory, points):
+        for found in Volume.rows([point]) + Areas.rows([point]):
             kept = {"stderr": found["stderr"], "z": found["z"], "status": found["status"]}
             kept |= {"count": found["samples"], "exact": found["expectation"]}
             yield judged(start, found["quantity"], found["estimate"], **kept)
@@ -506,13 +505,12 @@ def extreme_rows(seed, scenes=EXTREMES):
     A count without a normal law is tested by a bound. If the bound says nothing, z is empty.
     """
     for i, (case, scene) in enumerate(scenes.items()):
-        box, events = Box.of(scene), KICKED.get(case, EXTREME_EVENTS)
+        events = KICKED.get(case, EXTREME_EVENTS)
         target = dict.fromkeys(scene.events, EXTREME_ERROR)
         point = runs.CountingRun(scene, target, events, other_seed(seed, i)).run()
-        theory = Theory.rows(box, [scene.radius])
-        times = MeanTimes.rows(box, theory, {"dynamics": [point]})
+        times = MeanTimes.rows([point])
         start = start_of("extremes", case, scene.radius)
-        for found in comparisons(box, [], [], times, [], [point]):
+        for found in comparisons([], [], times, [], [point]):
             if found["test"] == "certain":
                 continue
             z = found["z"] if found["test"] == "normal" else found["z"] or None
