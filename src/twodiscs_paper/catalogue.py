@@ -9,7 +9,7 @@ from importlib import import_module
 from pathlib import Path
 
 from twodiscs.comparison.tables import SCENE_TABLES
-from twodiscs_paper.captions import ANIMATION, SCENE_FIGURES
+from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs_paper.studies.effects.study import Benchmark
 from twodiscs_paper.study import Study
 
@@ -26,9 +26,9 @@ def _declared():
 #: {name: ``Study``}
 STUDIES = {s.name: s for s in sorted(_declared(), key=lambda study: (study.order, study.name))}
 
-#: The figures of studies, and all figures with the animation, {name: ``Entry``}.
+#: The figures of studies, and all figures with the animation, {name: ``Figure``}.
 STUDY_FIGURES = {name: e for study in STUDIES.values() for name, e in study.figures.items()}
-ENTRIES = {**SCENE_FIGURES, **STUDY_FIGURES, "animation": ANIMATION}
+ENTRIES = {**FIGURES, **STUDY_FIGURES, "animation": ANIMATION}
 
 #: The tables of studies, {name: table}, those of long runs that figures read, and all tables.
 STUDY_TABLES = {table.name(): table for study in STUDIES.values() for table in study.tables}

@@ -21,7 +21,7 @@ class Study:
     {name: (name of a scene or None, table)}. If the first table takes long, it has ``parts``,
     {name: parameters}: jobs of its function ``part``, whose rows are read as tables of these names.
 
-    ``figures`` are {name: ``Entry``}. ``about_plain`` studies are about scenes without effects.
+    ``figures`` are {name: ``Figure``}. ``about_plain`` studies are about scenes without effects.
     ``seconds`` is about how long the table takes: a number, or a function of a ``Configuration``.
     ``kept`` tables are those of long runs, in ``paper/long_run``, which figures read.
     ``timed`` tables hold seconds, which differ from run to run. Pages list studies by their

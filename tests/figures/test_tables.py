@@ -17,10 +17,10 @@ from matplotlib.patches import StepPatch
 from twodiscs.comparison.tables import SCENE_TABLES
 from twodiscs.comparison.transmission import box_time
 from twodiscs.figures import style
+from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.style import LOOKS
 from twodiscs.model.events import HOPS, SHELLS
 from twodiscs.theory import exact
-from twodiscs_paper.captions import SCENE_FIGURES
 from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES, read_table
 from twodiscs_paper.drawings import DRAW
 from twodiscs_paper.studies.effects import figure as effects
@@ -53,7 +53,7 @@ def table(name):
 @cache
 def drawn(name):
     """Return {label of the panel, or its place: axes} of a figure of the committed tables."""
-    entry = (SCENE_FIGURES | STUDY_FIGURES)[name]
+    entry = (FIGURES | STUDY_FIGURES)[name]
     tables = {name: table(name) for name in (*entry.tables, *entry.main_tables)}
     tables |= {name: read_table(EXPECTED.parents[1] / path) for name, path in entry.kept.items()}
     with style.context():

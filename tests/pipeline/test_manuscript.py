@@ -9,7 +9,7 @@ from typst import TypstError
 
 from twodiscs.comparison.tables import SCENE_TABLES
 from twodiscs.figures import style
-from twodiscs_paper.captions import SCENE_FIGURES
+from twodiscs.figures.catalogue import FIGURES
 from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES
 from twodiscs_paper.pipeline.documents import manuscript
 
@@ -54,7 +54,7 @@ def test_every_number_is_printed_by_its_name():
 def test_no_figure_is_shown_twice_and_those_that_are_shown_are_there_and_spoken_of():
     named = re.findall(r'"(\w+)"', " ".join(re.findall(r"#drawn\((.*?)\)", SOURCE)))
     assert len({*named}) == len(named) > 1
-    assert {*named} <= {*SCENE_FIGURES, *STUDY_FIGURES}
+    assert {*named} <= {*FIGURES, *STUDY_FIGURES}
     spoken = " ".join(re.findall(r"#see\((.*?)\)", SOURCE))
     assert {*named} == {*re.findall(r"\w+", spoken)}
 
@@ -74,9 +74,7 @@ def paper(tmp_path_factory, tables_of):
     with style.context():
         style.save(style.new_figure(1.0), page)
 
-    def make(
-        figures=(*SCENE_FIGURES,), common=(*STUDY_FIGURES,), scenes=1, empty=(), edit=("", "", "")
-    ):
+    def make(figures=(*FIGURES,), common=(*STUDY_FIGURES,), scenes=1, empty=(), edit=("", "", "")):
         tmp_path = tmp_path_factory.mktemp("paper")
         results, folder = tmp_path / "results", tmp_path / "elsewhere"
         names = ["paper", "other", "third"][:scenes]
@@ -116,7 +114,7 @@ def test_it_is_the_same_bytes_again_until_a_number_of_a_table_is_another(paper):
 
 @pytest.mark.parametrize(("start", "scenes"), [(0, 1), (1, 3)])
 def test_a_missing_figure_leaves_no_dangling_reference(paper, start, scenes):
-    paper([*SCENE_FIGURES][start::2], [*STUDY_FIGURES][start::2], scenes)
+    paper([*FIGURES][start::2], [*STUDY_FIGURES][start::2], scenes)
 
 
 def test_it_compiles_without_rows(paper):
@@ -141,6 +139,6 @@ def test_a_misspelt_name_stops_the_compiler(paper, file, old, new):
 def test_what_captions_explain_alike_is_split_off():
     found = manuscript.captions({"name": "one", "width": 5.0, "height": 1.0})
     assert found["volume"][1].startswith("Error bars")
-    assert " ".join(found["volume"]) == SCENE_FIGURES["volume"].caption()
-    assert found["model"] == (SCENE_FIGURES["model"].caption(), "")
-    assert found.keys() == SCENE_FIGURES.keys() | STUDY_FIGURES.keys()
+    assert " ".join(found["volume"]) == FIGURES["volume"].caption()
+    assert found["model"] == (FIGURES["model"].caption(), "")
+    assert found.keys() == FIGURES.keys() | STUDY_FIGURES.keys()

@@ -9,7 +9,7 @@ import re
 import pytest
 from browser import ABSENT, BROWSER, browser
 
-from twodiscs_paper.captions import ANIMATION, SCENE_FIGURES
+from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs_paper.catalogue import STUDY_FIGURES
 
 pytestmark = pytest.mark.skipif(BROWSER is None, reason=ABSENT)
@@ -91,7 +91,7 @@ def test_the_report_opens_on_verdict_and_agreement(front, complete):
 def test_key_figures_have_their_captions_beneath_them_and_the_rest_are_thumbnails(front, complete):
     assert front["figures"][0]["title"] == f"{ANIMATION.title}."
     key = [figure for figure in front["figures"] if figure["key"]]
-    titles = {f"{entry.title}.": entry for entry in (SCENE_FIGURES | STUDY_FIGURES).values()}
+    titles = {f"{entry.title}.": entry for entry in (FIGURES | STUDY_FIGURES).values()}
     assert len({figure["title"] for figure in key}) == 2 + 2 + 2  # of full, walls, all
     for figure in front["figures"]:
         # Nearly as wide as a column of a journal in its natural size, or as the window.

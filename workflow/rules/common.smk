@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import twodiscs
-from twodiscs_paper.captions import ANIMATION, SCENE_FIGURES
+from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs_paper.catalogue import ENTRIES, STUDIES, STUDY_FIGURES, STUDY_TABLES, is_reproducible
 from twodiscs_paper.configuration.request import GATHERED, STAGES
 from twodiscs_paper.studies.effects.study import SCENES as EFFECTS
@@ -86,7 +86,7 @@ CODE = {
         *(f"twodiscs/figures/*.{kind}" for kind in ("py", "mplstyle", "html")),
         "twodiscs_paper/drawings.py",
     ),
-    "documents": modules("twodiscs_paper/captions.py", "twodiscs_paper/pipeline/**/*.py"),
+    "documents": modules("twodiscs/figures/catalogue.py", "twodiscs_paper/pipeline/**/*.py"),
     "benchmark": modules("twodiscs_paper/benchmark.py"),
 }
 # Tables of studies have exact curves, too, which figures draw.

@@ -19,7 +19,7 @@ rule figure:
     log:
         f"{RESULTS}/logs/{{scene}}/figure-{{figure}}.log",
     wildcard_constraints:
-        figure="|".join(SCENE_FIGURES),
+        figure="|".join(FIGURES),
     localrule: True
     params:
         box=box,

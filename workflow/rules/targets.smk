@@ -8,7 +8,7 @@ rule animation:
         [CONFIGURATION.animation(scene) for scene in CONFIGURED],
 
 
-for name, entry in SCENE_FIGURES.items():
+for name, entry in FIGURES.items():
 
     rule:
         name:

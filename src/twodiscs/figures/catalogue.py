@@ -1,13 +1,16 @@
-"""Every figure of a scene: the tables that it reads, its conditions, and its curves.
+"""Every figure of a scene: its title, its caption, the tables that it reads, and its curves.
 
 The functions that draw are in ``figures.draw``. This module needs the standard library only,
 because the Snakefile imports it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import HOPS
+
+# A report lists categories in alphabetical order.
+GEOMETRY, SPACE, DYNAMICS = "1 Geometry", "2 Volume and areas", "3 Mean times and hopping"
 
 
 @dataclass(frozen=True)
@@ -31,22 +34,56 @@ class Curves:
     looks: dict | None = None
 
 
-@dataclass(frozen=True, kw_only=True)
-class Content:
-    """The content of a figure.
+@dataclass(frozen=True)
+class Caption:
+    """The text beneath a figure, and sentences that are added for some scenes.
 
-    ``tables`` are the names of the tables that it reads. ``needs`` are quantities, named as in
-    theory.csv, or ``hop_histogram`` or ``trajectory``. A figure over the radius has ``curves``. The
-    figure shows those needs that the scene computes, and is made if there is at least one. A
-    drawing needs nothing: it takes only the sides of the box, and shows equal discs between walls.
-    The figure is not made for scenes with an effect in ``without``; ``discs`` counts as an effect
-    if there are more than two.
+    These are scenes of two ``plain`` discs, all ``other`` scenes, scenes of ``many`` discs, more
+    than two, and scenes with a ``field`` or a ``periodic`` axis.
     """
 
+    text: str
+    plain: str = ""
+    other: str = ""
+    many: str = ""
+    field: str = ""
+    periodic: str = ""
+
+    def of(self, box=None):
+        """Return the text for the scenes in a ``Box``, for plain ones if it is None."""
+        called = box.calls_for if box else {}
+        parts = [self.text, self.other if called else self.plain]
+        parts += [self.many] * ("discs" in called) + [self.field] * ("field" in called)
+        parts += [self.periodic] * ("periodic" in called)
+        return " ".join(" ".join(parts).split())
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure: title and category in a report, its ``own`` ``Caption``, and its content.
+
+    ``note`` is a caption that several figures have in common. ``tables`` are the names of the
+    tables that it reads. ``needs`` are quantities, named as in theory.csv, or ``hop_histogram`` or
+    ``trajectory``. The figure shows those needs that the scene computes, and is made if there is at
+    least one. A drawing needs nothing: it takes only the sides of the box, and shows equal discs
+    between walls. A figure over the radius has ``curves``. The figure is not made for scenes with
+    an effect in ``without``; ``discs`` counts as an effect if there are more than two.
+
+    A figure of a study, of no scene, also reads the ``main_tables`` of the first scene without
+    effects, if there are any. ``kept`` are the long runs that it reads, {name: path of a table from
+    the root of the sources}.
+    """
+
+    title: str
+    category: str
+    own: Caption
+    note: Caption | None = None
     tables: tuple = ()
     needs: frozenset = frozenset()
     curves: Curves | None = None
     without: frozenset = frozenset()
+    main_tables: tuple = ()
+    kept: dict = field(default_factory=dict)
 
     def is_called(self, quantities, effects=()):
         """Return whether a scene that computes the ``quantities`` has the figure.
@@ -57,17 +94,61 @@ class Content:
             return False
         return not self.needs or not self.needs.isdisjoint(quantities)
 
+    def caption(self, box=None):
+        """Return the whole caption for the scenes in a ``Box``, for plain ones if it is None."""
+        return " ".join(text.of(box) for text in (self.own, self.note) if text)
+
+
+# The notes of figures over the radius -------------------------------------------------------------
+
+_ERRORS = """
+Error bars are one standard error; they are hidden if they are smaller than the symbols. Crosses are
+estimates from too few events for an error bar.
+"""
+_LINES = {
+    "plain": """
+    Vertical lines mark the radii at which hops become blocked, h/4 and w/4 as far as such discs
+    fit, and the largest radius.
+    """,
+    "other": """
+    Vertical lines mark the largest radius, r_max, and radii at which something changes. Vertical
+    hops end at r_v and horizontal hops at r_h; from r_x or r_y on disc 1 stays on its side of disc
+    2 along that axis; from r_t on it has the energy to reach the top wall. The radius r is that of
+    disc 1, and σ is the sum of both radii.
+    """,
+    "many": """
+    For more than three discs r_max is the largest radius of a known arrangement. If no exact value
+    is known there is no line and no residual.
+    """,
+}
+_RESIDUALS = """
+Residuals z beneath are in standard errors, with guide lines at ±2 and ±5.
+"""
+_WEIGHTED = "In a field volumes and areas are weighted with the invariant density."
+
+SAMPLED = Caption(_ERRORS + _RESIDUALS, **_LINES, field=_WEIGHTED)
+SHELLS = Caption(
+    _ERRORS
+    + _RESIDUALS
+    + """
+    They are taken from the exact expectation of the shell. Its thickness shifts the estimate
+    slightly off the line.
+    """,
+    **_LINES,
+    field=_WEIGHTED,
+)
+SIMULATED = Caption(
+    _ERRORS + "Arrows start at 95 % lower bounds if no event was counted." + _RESIDUALS, **_LINES
+)
+
+
+# The figures --------------------------------------------------------------------------------------
+
 
 def _over_radius(table, names, label, **options):
-    """Return the content of a figure over the radius, with ``options`` of its ``Curves``."""
+    """Return the fields of a figure over the radius, with ``options`` of its ``Curves``."""
     curves = Curves(names, label, **options)
-    return Content(tables=(table,), needs=frozenset(names), curves=curves)
-
-
-def _hop_area(hop):
-    label = rf"root of the {hop}-hop area, $\sqrt{{S_{{\mathrm{{{hop[0]}}}}}}}$"
-    names = {f"{hop}_hop_area": f"{hop} hops"}
-    return _over_radius("areas", names, label, single=SAMPLING, rooted=True)
+    return {"tables": (table,), "needs": frozenset(names), "curves": curves}
 
 
 #: The name of the method of a single series.
@@ -80,54 +161,314 @@ WALL_NAMES = {
     "any_wall": "any disc, any wall",
 }
 
+
+def _hop_area(hop, q):
+    """Return the figure of the area of a hop, a change of sign of the separation along ``q``."""
+    own = Caption(
+        f"""
+        Square root of the area of the surface on which two discs have the same {q}, which they
+        cross when they exchange their {hop} order: exact (line) and from a thin shell around it
+        (symbols). A symbol at zero means that no sample was in the shell of a blocked hop. If an
+        area ends quadratically, its square root ends as a straight line.
+        """,
+        many="It is the sum over all pairs of discs.",
+    )
+    label = rf"root of the {hop}-hop area, $\sqrt{{S_{{\mathrm{{{hop[0]}}}}}}}$"
+    names = {f"{hop}_hop_area": f"{hop} hops"}
+    curves = _over_radius("areas", names, label, single=SAMPLING, rooted=True)
+    return Figure(f"Area of {hop} hops", SPACE, own, SHELLS, **curves)
+
+
 FIGURES = {
-    "model": Content(),
-    "hopping_trajectory": Content(tables=("trajectory",), needs=frozenset({"trajectory"})),
-    "configuration_space": Content(),
-    "volume": _over_radius("volume", {"volume": "volume"}, "volume $V$", single=SAMPLING),
-    "vertical_hop_area": _hop_area("vertical"),
-    "horizontal_hop_area": _hop_area("horizontal"),
-    "collision_area": _over_radius(
-        "areas",
-        {"disc_collision_area": "disc collisions"},
-        r"collision area $S_{\mathrm{coll}}$",
-        single=SAMPLING,
+    "model": Figure(
+        "The billiard",
+        GEOMETRY,
+        Caption(
+            """
+            Two hard discs of radius r in a box of width w and height h. The origin of the
+            coordinates is the centre of the box. The centres of the discs stay in the dashed
+            rectangle, of half-sides a = w/2 − r and b = h/2 − r. Boxes longer than 4:1 are drawn
+            shorter.
+            """
+        ),
     ),
-    "wall_area": _over_radius(
-        "areas", {f"{event}_area": name for event, name in WALL_NAMES.items()}, "wall area $S$"
+    "hopping_trajectory": Figure(
+        "Hopping dynamics",
+        DYNAMICS,
+        Caption(
+            "(a) One trajectory from its beginning. (b) A part of it enlarged.",
+            plain="""
+            The ordinate is the separation of the discs along the longer side. Dots mark the hops,
+            at which the separation changes sign. A hop is often undone soon, before collisions have
+            scrambled the motion. (c) A hop that is not undone soon, at the same scale; this panel
+            is left out if there is none.
+            """,
+            other="""
+            With two discs the ordinate is their separation in one direction, and dots mark its
+            changes of sign, the hops. With more discs it is their positions along the longer side,
+            coloured by their order at the start.
+            """,
+            periodic="On a periodic axis positions go on beyond the box.",
+        ),
+        tables=("trajectory",),
+        needs=frozenset({"trajectory"}),
     ),
-    "all_areas": Content(
+    "configuration_space": Figure(
+        "Configuration space",
+        GEOMETRY,
+        Caption(
+            """
+            Configuration space. Let x = (x1 − x2)/√2, X = (x1 + x2)/√2 and likewise y and Y; the
+            discs overlap if x² + y² < 2r². (a) The section Y = 0, in which the centres are as far
+            above the middle as below it. It is a prism without a cylinder, whose axis is the
+            diagonal of x1 and x2. (b) The whole is a product of two squares, one for x1 and x2 and
+            one for y1 and y2, without the overlaps. The dotted band of each square is excluded by
+            the point shown in the other one; dashed lines are its widest bounds, at ±√2 r. The
+            hatched quarters, in which all four coordinates are positive, hold a sixteenth of the
+            volume. Each square is drawn to its own scale.
+            """
+        ),
+    ),
+    "volume": Figure(
+        "Volume of configuration space",
+        SPACE,
+        Caption(
+            """
+            Volume of configuration space against the radius of the discs: exact (line) and by Monte
+            Carlo sampling (symbols).
+            """
+        ),
+        SAMPLED,
+        **_over_radius("volume", {"volume": "volume"}, "volume $V$", single=SAMPLING),
+    ),
+    "vertical_hop_area": _hop_area("vertical", "y"),
+    "horizontal_hop_area": _hop_area("horizontal", "x"),
+    "collision_area": Figure(
+        "Area of disc collisions",
+        SPACE,
+        Caption(
+            """
+            Area of the surface on which the discs touch: exact (line) and from a thin shell outside
+            it (symbols).
+            """,
+            many="It is the sum over all pairs of discs.",
+        ),
+        SHELLS,
+        **_over_radius(
+            "areas",
+            {"disc_collision_area": "disc collisions"},
+            r"collision area $S_{\mathrm{coll}}$",
+            single=SAMPLING,
+        ),
+    ),
+    "wall_area": Figure(
+        "Areas of wall hits",
+        SPACE,
+        Caption(
+            """
+            Areas of the surfaces on which discs touch walls: exact (lines) and from thin shells
+            (symbols).
+            """,
+            plain="""
+            The area of any wall and any disc is four times the sum of the two others, which are the
+            same in a square box.
+            """,
+        ),
+        SHELLS,
+        **_over_radius(
+            "areas", {f"{event}_area": name for event, name in WALL_NAMES.items()}, "wall area $S$"
+        ),
+    ),
+    "all_areas": Figure(
+        "Areas of all events",
+        SPACE,
+        Caption(
+            """
+            Areas of surfaces in configuration space: exact (lines) and from thin shells (symbols).
+            (a) Collisions of the discs. (b) Hits of walls. (c), (d) Square roots of the areas of
+            hops: if an area ends quadratically, its root ends as a straight line. A symbol at zero
+            means that no sample was in the shell of a blocked hop.
+            """
+        ),
+        SHELLS,
         tables=("areas",),
         needs=frozenset(f"{e}_area" for e in (*HOPS, "disc_collision", "right_wall", "top_wall")),
         without=frozenset({*EFFECTS, "discs"}),
     ),
-    "mean_hop_time": _over_radius(
-        "mean_times",
-        {"vertical_hop_time": "vertical hops", "horizontal_hop_time": "horizontal hops"},
-        r"mean time between hops $\tau$",
-        laws=("small",),
-        approach=True,
+    "mean_hop_time": Figure(
+        "Mean times between hops",
+        DYNAMICS,
+        Caption(
+            """
+            Mean times between successive hops: exact (lines) and by event-driven molecular dynamics
+            (symbols). Full symbols come from initial states in a strip around the surface of the
+            hop, where the flux is measured and not the waiting time. In (b) the same times approach
+            the radius r_c at which the hop ends.
+            """,
+            plain="""
+            Dashed lines in (a) are the laws for small discs, to first order in r. In (b) they are
+            the limiting laws: if a hop becomes blocked before the discs jam, its time diverges as
+            (r_c − r)⁻². In a square box both hops have the same mean time.
+            """,
+            many="Hops are those of any pair of discs. There is no (b) if no exact value is known.",
+        ),
+        SIMULATED,
+        **_over_radius(
+            "mean_times",
+            {"vertical_hop_time": "vertical hops", "horizontal_hop_time": "horizontal hops"},
+            r"mean time between hops $\tau$",
+            laws=("small",),
+            approach=True,
+        ),
     ),
-    "mean_collision_time": _over_radius(
-        "mean_times",
-        {"disc_collision_time": "disc collisions"},
-        r"mean time between collisions $\tau_{\mathrm{coll}}$",
-        single="MD",
-        laws=("small", "last"),
+    "mean_collision_time": Figure(
+        "Mean time between disc collisions",
+        DYNAMICS,
+        Caption(
+            """
+            Mean time between collisions of the discs: exact (line) and by event-driven molecular
+            dynamics (symbols).
+            """,
+            plain="""
+            Dashed lines are the first two orders of the law for small discs, which starts as
+            3wh/(8√2 r), and the limiting law below the largest radius.
+            """,
+            many="Collisions are those of any pair.",
+        ),
+        SIMULATED,
+        **_over_radius(
+            "mean_times",
+            {"disc_collision_time": "disc collisions"},
+            r"mean time between collisions $\tau_{\mathrm{coll}}$",
+            single="MD",
+            laws=("small", "last"),
+        ),
     ),
-    "mean_wall_time": _over_radius(
-        "mean_times",
-        {f"{event}_time": name for event, name in WALL_NAMES.items()},
-        r"mean time between wall hits $\tau$",
-        laws=("small", "last"),
+    "mean_wall_time": Figure(
+        "Mean times between wall hits",
+        DYNAMICS,
+        Caption(
+            """
+            Mean times between hits of walls: exact (lines) and by event-driven molecular dynamics
+            (symbols).
+            """,
+            plain="""
+            Times of disc 1 are averages over trajectories that can reach the wall. The time of the
+            right wall halves at r = h/4 and that of the top wall at r = w/4: configuration space
+            becomes disconnected there, and disc 1 keeps to one side. In a square box both times are
+            the same. Dashed lines are the laws for small discs and below the largest radius.
+            """,
+            other="""
+            Times of disc 1 are averages over trajectories that can reach the wall, with more than
+            two discs over all initial conditions. A time halves if disc 1 begins to keep to its
+            side.
+            """,
+        ),
+        SIMULATED,
+        **_over_radius(
+            "mean_times",
+            {f"{event}_time": name for event, name in WALL_NAMES.items()},
+            r"mean time between wall hits $\tau$",
+            laws=("small", "last"),
+        ),
     ),
-    "pressure": Content(
+    "pressure": Figure(
+        "Pressures and virials",
+        DYNAMICS,
+        Caption(
+            """
+            Force of disc 1 on a wall, divided by the force in an ideal gas of one particle
+            (dotted): exact (lines) and from the hits that dynamics counted (symbols). Hits transfer
+            the same momentum on average at every radius. (b) If the virial theorem of the scene has
+            a closed form: the virials of the walls and of the collisions of the discs, divided by
+            twice the mean kinetic energy. The sum over the walls minus the virial of collisions is
+            one at every radius.
+            """,
+            plain="Dashed lines in (a) are the limiting laws below the largest radius.",
+        ),
+        SIMULATED,
         tables=("mean_times",),
         needs=frozenset({"right_wall_time", "top_wall_time"}),
         without=frozenset({"field"}),
     ),
-    "hop_histogram": Content(tables=("hop_histogram",), needs=frozenset({"hop_histogram"})),
-    "largest_radius": Content(),
-    "integration_regimes": Content(),
-    "surface_shell": Content(),
+    "hop_histogram": Figure(
+        "Times between hops",
+        DYNAMICS,
+        Caption(
+            """
+            Density of the time t between successive hops, both in units of the mean time τ, which
+            is exact where it is known and else measured. The dashed line is the exponential density
+            of the same mean. Bins in (a) widen with t; (b) enlarges short times in equal bins.
+            Symbols tell the radii apart; error bars are one standard error.
+            """,
+            plain="""
+            Thick dashes on the axis of (b) are the exact densities at t = 0, of hops that are
+            undone after one bounce. They are 3√2/16, divided by h − 2r for vertical hops and by
+            w − 2r for horizontal ones.
+            """,
+            many="Hops are those of any pair of discs.",
+        ),
+        tables=("hop_histogram",),
+        needs=frozenset({"hop_histogram"}),
+    ),
+    "largest_radius": Figure(
+        "The largest radius",
+        GEOMETRY,
+        Caption(
+            """
+            (a) The largest discs that fit the box. They jam along a diagonal, where w − 2r, h − 2r
+            and 2r are the sides of a right triangle. If one side of the box is at least twice the
+            other, each disc spans the shorter one instead. (b) The hops that are possible in boxes
+            of any shape; this box is marked.
+            """
+        ),
+    ),
+    "integration_regimes": Figure(
+        "Regimes of the integration",
+        GEOMETRY,
+        Caption(
+            """
+            The separations u = |x1 − x2| and v = |y1 − y2| fill a rectangle of sides A = w − 2r and
+            B = h − 2r. The discs overlap in the quarter circle of radius σ = 2r, which is left out.
+            The arc is the surface of collisions; the coloured parts of the axes are the surfaces of
+            vertical hops (below) and horizontal hops (on the left). If σ exceeds B, horizontal hops
+            are blocked; if it exceeds A, vertical hops are. The overlaps are then a sector
+            (hatched) and triangles (dotted). Boxes longer than 2.5:1 are drawn shorter.
+            """
+        ),
+    ),
+    "surface_shell": Figure(
+        "Shells around surfaces",
+        GEOMETRY,
+        Caption(
+            """
+            The area of a surface is estimated from the samples within a distance ε of it. (a) The
+            surface of vertical hops can be crossed from both sides: its shell is 2ε thick, and
+            extends √2 ε to either side along y1. (b) The surface of collisions, with
+            x = |x1 − x2|/√2 and y = |y1 − y2|/√2, has a shell on its outer side only. Boxes longer
+            than 1.5:1 are drawn shorter.
+            """
+        ),
+    ),
 }
+
+#: Not for paper: neither the manuscript nor the rule of figures uses it.
+ANIMATION = Figure(
+    "The discs, animated",
+    DYNAMICS,
+    Caption(
+        "The discs as they move. Traces are the latest paths of the centres.",
+        plain="""
+        Beneath is the separation of the discs against time. The picture stops at a hop, of the
+        rarer kind if there are two, which changes the sign of the separation.
+        """,
+        other="""
+        Beneath is the separation of two discs against time; the picture stops at a hop. With more
+        discs it is their positions along the longer side, coloured by their order at the start.
+        Balls are drawn as viewed along z, the nearer one in front; spins are not shown.
+        """,
+        periodic="Discs that leave at a dotted end come in at the opposite one.",
+    ),
+    tables=("trajectory",),
+    needs=frozenset({"trajectory"}),
+)

@@ -7,9 +7,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from hashlib import blake2b
 
-from twodiscs.figures.catalogue import FIGURES
+from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs.model.box import Box, key, stream_seed
-from twodiscs_paper.captions import ANIMATION
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.model import MOST_EVENTS
 

@@ -7,9 +7,9 @@ from pathlib import Path
 from twodiscs.comparison.tables import NUMBER, TEXT, Table
 from twodiscs.comparison.transmission import QUIET
 from twodiscs.dynamics.runs import RETURNS
+from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.box import Box
 from twodiscs.sampling.montecarlo import COST_RATIO
-from twodiscs_paper.captions import SCENE_FIGURES
 from twodiscs_paper.catalogue import STUDY_FIGURES
 from twodiscs_paper.pipeline.results.provenance import commit, versions
 
@@ -35,7 +35,7 @@ def captions(scene):
     box = Box(scene["width"], scene["height"])
     return {
         name: (entry.own.of(box), entry.note.of(box) if entry.note else "")
-        for name, entry in (SCENE_FIGURES | STUDY_FIGURES).items()
+        for name, entry in (FIGURES | STUDY_FIGURES).items()
     }
 
 

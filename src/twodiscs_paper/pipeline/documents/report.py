@@ -17,9 +17,9 @@ from PIL import Image, ImageSequence
 
 from twodiscs.comparison.measurements import measurement
 from twodiscs.comparison.tables import SCENE_TABLES, Check, Cost, Grid, MeanTimes, quantity_of
+from twodiscs.figures.catalogue import ANIMATION, GEOMETRY
 from twodiscs.model.box import Box
 from twodiscs.model.checks import format_number, format_seconds
-from twodiscs_paper.captions import ANIMATION, GEOMETRY
 from twodiscs_paper.catalogue import ENTRIES
 from twodiscs_paper.pipeline.cost import missed, taken
 from twodiscs_paper.pipeline.results.provenance import commit, versions

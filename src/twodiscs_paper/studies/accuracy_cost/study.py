@@ -11,7 +11,7 @@ from twodiscs.comparison.tables import (
     Column,
     Table,
 )
-from twodiscs_paper.captions import Caption, Entry
+from twodiscs.figures.catalogue import Caption, Figure
 from twodiscs_paper.study import Study
 
 
@@ -71,7 +71,7 @@ STUDY = Study(
     seconds=lambda configuration: 20.0 + configuration.accuracy_cost["seconds"],
     order=2,
     figures={
-        "accuracy_cost": Entry(
+        "accuracy_cost": Figure(
             "Error against processor time",
             "4 What accuracy costs",
             Caption(
@@ -91,7 +91,7 @@ STUDY = Study(
             tables=("accuracy_cost",),
             kept={"kept": "paper/long_run/accuracy_cost/accuracy_cost.csv"},
         ),
-        "accuracy_cost_by_radius": Entry(
+        "accuracy_cost_by_radius": Figure(
             "The cost of an accuracy against the radius",
             "4 What accuracy costs",
             Caption(

@@ -11,7 +11,7 @@ from twodiscs.comparison.tables import (
     WIDTH,
     Table,
 )
-from twodiscs_paper.captions import DYNAMICS, Caption, Entry
+from twodiscs.figures.catalogue import DYNAMICS, Caption, Figure
 from twodiscs_paper.study import AS_ESTIMATE, SEE_QUANTITY, Study, scaled
 
 
@@ -98,7 +98,7 @@ STUDY = Study(
     seconds=10.0,
     order=5,
     figures={
-        "distributions": Entry(
+        "distributions": Figure(
             "Rate of hops since the last one",
             DYNAMICS,
             Caption(

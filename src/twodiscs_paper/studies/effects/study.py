@@ -13,7 +13,7 @@ from twodiscs.comparison.tables import (
     Table,
     Z,
 )
-from twodiscs_paper.captions import DYNAMICS, Caption, Entry
+from twodiscs.figures.catalogue import DYNAMICS, Caption, Figure
 from twodiscs_paper.study import AS_EXACT, Study
 
 
@@ -140,7 +140,7 @@ STUDY = Study(
     seconds=40.0,
     order=7,
     figures={
-        "effects": Entry(
+        "effects": Figure(
             "Mean times with effects",
             DYNAMICS,
             Caption(

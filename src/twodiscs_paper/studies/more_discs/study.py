@@ -1,7 +1,7 @@
 """More than two discs: mean times against exact values if these are known, and the virial sum."""
 
 from twodiscs.comparison.tables import COUNT, HEIGHT, NUMBER, RADIUS, TEXT, WIDTH, Column, Table
-from twodiscs_paper.captions import DYNAMICS, Caption, Entry
+from twodiscs.figures.catalogue import DYNAMICS, Caption, Figure
 from twodiscs_paper.study import AS_EXACT, Study, scaled
 
 
@@ -71,7 +71,7 @@ STUDY = Study(
     seconds=10.0,
     order=8,
     figures={
-        "more_discs": Entry(
+        "more_discs": Figure(
             "More discs",
             DYNAMICS,
             Caption(

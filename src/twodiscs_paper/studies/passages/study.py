@@ -12,8 +12,8 @@ from twodiscs.comparison.tables import (
     Table,
     Z,
 )
+from twodiscs.figures.catalogue import DYNAMICS, Caption, Figure
 from twodiscs.model.events import HOPS
-from twodiscs_paper.captions import DYNAMICS, Caption, Entry
 from twodiscs_paper.study import AS_ESTIMATE, Study, scaled
 
 
@@ -210,7 +210,7 @@ STUDY = Study(
     seconds=50.0,
     order=6,
     figures={
-        "passages": Entry(
+        "passages": Figure(
             "Hops that are passages",
             DYNAMICS,
             Caption(
@@ -229,7 +229,7 @@ STUDY = Study(
             ),
             tables=("passages",),
         ),
-        "transmission": Entry(
+        "transmission": Figure(
             "Passages near the threshold",
             DYNAMICS,
             Caption(
@@ -250,7 +250,7 @@ STUDY = Study(
             tables=("passages",),
             kept={"kept": "paper/long_run/passages/passages.csv"},
         ),
-        "friction": Entry(
+        "friction": Figure(
             "Passages with friction",
             DYNAMICS,
             Caption(
@@ -268,7 +268,7 @@ STUDY = Study(
             tables=("passages",),
             kept={"kept": "paper/long_run/passages/passages.csv"},
         ),
-        "brownian": Entry(
+        "brownian": Figure(
             "Passages in Brownian dynamics",
             DYNAMICS,
             Caption(
@@ -289,7 +289,7 @@ STUDY = Study(
             ),
             kept={"brownian": "paper/long_run/brownian/brownian.csv"},
         ),
-        "diffusion": Entry(
+        "diffusion": Figure(
             "Diffusion by hops",
             DYNAMICS,
             Caption(
@@ -309,7 +309,7 @@ STUDY = Study(
                 name: f"paper/long_run/{name}/passages.csv" for name in ("files", "displacements")
             },
         ),
-        "files": Entry(
+        "files": Figure(
             "Displacements in files",
             DYNAMICS,
             Caption(

@@ -1,7 +1,7 @@
 """How accurate each method is in numerically hard cases."""
 
 from twodiscs.comparison.tables import COUNT, NUMBER, RADIUS, TEXT, TRUTH, Table, Z
-from twodiscs_paper.captions import Caption, Entry
+from twodiscs.figures.catalogue import Caption, Figure
 from twodiscs_paper.study import SEE_QUANTITY, Study, main_box, scaled
 
 
@@ -76,7 +76,7 @@ STUDY = Study(
     seconds=20.0,
     order=3,
     figures={
-        "stability": Entry(
+        "stability": Figure(
             "Numerically hard cases",
             "5 Numerical stability",
             Caption(
@@ -92,7 +92,7 @@ STUDY = Study(
             ),
             tables=("stability",),
         ),
-        "stability_of_runs": Entry(
+        "stability_of_runs": Figure(
             "Numerically hard cases of the dynamics",
             "5 Numerical stability",
             Caption(

@@ -1,7 +1,7 @@
 """How probable long intervals are."""
 
 from twodiscs.comparison.tables import RADIUS, TEXT, TIME, Column, Table
-from twodiscs_paper.captions import DYNAMICS, Caption, Entry
+from twodiscs.figures.catalogue import DYNAMICS, Caption, Figure
 from twodiscs_paper.study import AS_ESTIMATE, Study, main_box, scaled
 
 
@@ -66,7 +66,7 @@ STUDY = Study(
     seconds=8.0,
     order=4,
     figures={
-        "tails": Entry(
+        "tails": Figure(
             "Tails of the times between events",
             DYNAMICS,
             Caption(

@@ -10,7 +10,7 @@ from twodiscs.comparison.tables import (
     Column,
     Table,
 )
-from twodiscs_paper.captions import DYNAMICS, Caption, Entry
+from twodiscs.figures.catalogue import DYNAMICS, Caption, Figure
 from twodiscs_paper.study import AS_ESTIMATE, Study
 
 
@@ -71,7 +71,7 @@ STUDY = Study(
     seconds=4.0,
     order=6,
     figures={
-        "thresholds": Entry(
+        "thresholds": Figure(
             "Power laws where events die out",
             DYNAMICS,
             Caption(
