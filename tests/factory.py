@@ -8,7 +8,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from twodiscs.comparison import tables
+from twodiscs.analysis import tables
 from twodiscs.model.box import Box, parameters_of
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.points.base import content_of, with_arrays, write_json

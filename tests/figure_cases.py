@@ -8,7 +8,7 @@ import numpy as np
 from factory import empty
 from matplotlib.text import Text
 
-from twodiscs.comparison.tables import SCENE_TABLES
+from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.dynamics.runs import wide_edges
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.draw import draw as draw_figure

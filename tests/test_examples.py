@@ -22,7 +22,7 @@ from snakemake.cli import get_argument_parser
 
 import twodiscs
 from twodiscs import cli
-from twodiscs.comparison.tables import SCENE_TABLES
+from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.points.base import with_arrays
 from twodiscs.points.dynamics import DynamicsPoint

@@ -16,11 +16,11 @@ from effect_scenes import SCENES
 from figure_cases import unclear
 
 import twodiscs as td
-from twodiscs.comparison.measurements import Measurement, measurement
-from twodiscs.comparison.result import seed_of
-from twodiscs.comparison.tables import SCENE_TABLES
+from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.dynamics.trajectory import state_of
 from twodiscs.figures import style
+from twodiscs.measure.measurements import Measurement, measurement
+from twodiscs.measure.result import seed_of
 from twodiscs.model.box import Box
 from twodiscs.model.effects import EFFECTS
 from twodiscs.sampling.starts import components
@@ -98,13 +98,12 @@ def test_defaults_are_those_of_a_configuration():
 
 def test_results_are_those_of_the_pipeline(simulated, sampled, intervals):
     box, scene = Box.of(SCENE), load.load(CONFIGURATION).scenes[0]
-    theory = SCENE_TABLES["theory"].rows(box, [0.2])
     stages = ("dynamics", "monte_carlo", "intervals")
-    points = {stage: [cost.run_at(scene, stage, 0.2).run()] for stage in stages}
-    assert simulated.rows == SCENE_TABLES["mean_times"].rows(box, theory, points)
-    areas = SCENE_TABLES["areas"].rows(box, theory, points)
-    assert sampled.rows == SCENE_TABLES["volume"].rows(theory, points) + areas
-    assert intervals.rows == SCENE_TABLES["hop_histogram"].rows(theory, points)
+    points = [cost.run_at(scene, stage, 0.2).run() for stage in stages]
+    assert simulated.rows == SCENE_TABLES["mean_times"].rows(points)
+    areas = SCENE_TABLES["areas"].rows(points)
+    assert sampled.rows == SCENE_TABLES["volume"].rows(points) + areas
+    assert intervals.rows == SCENE_TABLES["hop_histogram"].rows(points)
     followed = SCENE_TABLES["trajectory"].rows(box, 0.2, scene.trajectory_seed)
     path = td.trajectory(SCENE, seed=7, name="one").assign(z1=None, z2=None)
     assert path[[*followed[0]]].to_dict("records") == followed

@@ -91,7 +91,7 @@ def test_the_first_half_of_the_tutorial_runs_from_a_wheel(installed):
     """And what reads tables needs no extras, which are absent indeed."""
     page = (REPOSITORY / "docs" / "python.md").read_text(encoding="utf-8")
     blocks = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
-    code = [*blocks[: len(blocks) // 2], "import twodiscs.comparison.load\n"]
+    code = [*blocks[: len(blocks) // 2], "import twodiscs.measure.load\n"]
     code += ["print(td.__file__)\ntry: import yaml\nexcept ImportError: print('absent')\n"]
     *_, place, absent = outside(installed, "-c", "".join(code)).split()
     assert Path(place).is_relative_to(installed)

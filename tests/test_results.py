@@ -12,7 +12,7 @@ import pytest
 from effect_scenes import SCENES
 
 import twodiscs as td
-from twodiscs.comparison import result as progress_module
+from twodiscs.measure import result as progress_module
 from twodiscs.model.checks import PRESETS
 from twodiscs.points.base import content_of, reached, write_json
 from twodiscs_paper.pipeline.points import KINDS, joined, pieces_of, run_of

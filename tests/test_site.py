@@ -9,7 +9,7 @@ import pytest
 from checkout import REPOSITORY
 
 import twodiscs as td
-from twodiscs_paper.catalogue import ENTRIES, TABLES
+from twodiscs_paper.catalogue import ALL_FIGURES, TABLES
 
 pytest.importorskip("sphinx", reason="Sphinx builds the site")
 
@@ -33,14 +33,14 @@ def test_the_site_is_complete(tmp_path):
     assert [n for n in td.__all__ if f'id="twodiscs.{n}"' not in pages["docs/reference.html"]] == []
     assert [n for n in TABLES if f"<h3>{n}.csv<" not in pages["results/README.html"]] == []
     gallery = pages["docs/gallery.html"]
-    assert [n for n in ENTRIES if f"--cores 2 {made.target(n)}\n" not in gallery] == []
+    assert [n for n in ALL_FIGURES if f"--cores 2 {made.target(n)}\n" not in gallery] == []
     assert "gravit" in (site / "searchindex.js").read_text(encoding="utf-8")
 
 
 @pytest.mark.slow
 def test_the_lines_of_the_gallery_draw_their_figures(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    lines = {name: line for name in ENTRIES if (line := made.in_python(name))}
+    lines = {name: line for name in ALL_FIGURES if (line := made.in_python(name))}
     assert len(lines) > 15
     results = {text: eval(text) for text in made.RESULTS.values()}
     for line in lines.values():

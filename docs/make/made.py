@@ -13,9 +13,9 @@ import nbformat
 from pictures import BOX, PANELS, SCENE, draw
 
 import twodiscs
-from twodiscs.comparison.result import Result
+from twodiscs.measure.result import Result
 from twodiscs.figures import style
-from twodiscs_paper.catalogue import ENTRIES, STUDIES, STUDY_FIGURES, TABLES
+from twodiscs_paper.catalogue import ALL_FIGURES, STUDIES, STUDY_FIGURES, TABLES
 from twodiscs_paper.configuration.schema import described_keys
 from twodiscs_paper.pipeline.documents import explorer
 from twodiscs_paper.pipeline.documents.manuscript import PaperNumbers
@@ -131,7 +131,7 @@ def in_python(name):
     """Return the line of Python that draws a figure, None for those of studies."""
     if name in STUDY_FIGURES:
         return None
-    result = RESULTS[ENTRIES[name].tables]
+    result = RESULTS[ALL_FIGURES[name].tables]
     if name == "animation":
         return f'td.animate({result}, "animation.gif")'
     return f'td.plot({result}, figure="{name}")'
@@ -145,7 +145,7 @@ def target(name):
 def picture(name, title, site):
     """Return the lines that show a figure: drawn, or one panel of it from ``docs``, or none."""
     panels = {figure: f"{panel}.png" for panel, (figure, *_) in PANELS.items()}
-    if FEW_ROWS.isdisjoint(ENTRIES[name].tables):
+    if FEW_ROWS.isdisjoint(ALL_FIGURES[name].tables):
         with style.context():
             if figure := draw(name, EXPECTED):
                 png = BytesIO()
@@ -160,7 +160,7 @@ def picture(name, title, site):
 
 def gallery(text, site):
     """Return the page of all figures, each with its caption and the lines that draw it."""
-    for name, entry in ENTRIES.items():
+    for name, entry in ALL_FIGURES.items():
         caption = _plain(entry.caption(BOX))
         text += f"\n## {entry.title}\n\n{picture(name, entry.title, site)}\n\n{caption}\n"
         text += f"\n```text\nsnakemake --cores 2 {target(name)}\n```\n"

@@ -12,7 +12,7 @@ from pathlib import Path
 from twodiscs.figures import style
 from twodiscs.figures.draw import draw as draw_figure
 from twodiscs.model.box import Box
-from twodiscs_paper.catalogue import ENTRIES, TABLES, read_table
+from twodiscs_paper.catalogue import ALL_FIGURES, TABLES, read_table
 from twodiscs_paper.drawings import DRAW
 
 #: The box of the pictures and its scene, the first of config/config.yaml.
@@ -38,7 +38,7 @@ HEIGHT, PLACE, DPI = 2.5, (0.16, 0.18, 0.76, 0.66), 200
 
 def draw(name, results):
     """Return a figure of the tables in a folder of results, None if one of them is missing."""
-    entry, tables = ENTRIES[name], {}
+    entry, tables = ALL_FIGURES[name], {}
     for table in (*entry.tables, *entry.main_tables):
         paths = [Path(results, SCENE, f"{table}.csv"), Path(results, f"{table}.csv")]
         path = next(filter(Path.exists, paths), None)

@@ -33,17 +33,17 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import Literal, TypedDict
 
-    from twodiscs.comparison.cost import Cost, Price, cost
-    from twodiscs.comparison.intervals import Intervals, intervals
-    from twodiscs.comparison.load import load, load_result
-    from twodiscs.comparison.measurements import Measurement, Measurements, sample, simulate
-    from twodiscs.comparison.observe import Observed, diffusion, observe, starts
-    from twodiscs.comparison.pressure import free_energy, pressure
-    from twodiscs.comparison.quantities import areas, exact, exact_table, mean_times
-    from twodiscs.comparison.scan import Scan, scan
-    from twodiscs.comparison.trajectory import Trajectory, trajectory
-    from twodiscs.comparison.transmission import Transmission, transmission
     from twodiscs.figures.plot import animate, plot
+    from twodiscs.measure.cost import Cost, Price, cost
+    from twodiscs.measure.exact_values import areas, exact, exact_table, mean_times
+    from twodiscs.measure.intervals import Intervals, intervals
+    from twodiscs.measure.load import load, load_result
+    from twodiscs.measure.measurements import Measurement, Measurements, sample, simulate
+    from twodiscs.measure.observe import Observed, diffusion, observe, starts
+    from twodiscs.measure.pressure import free_energy, pressure
+    from twodiscs.measure.scan import Scan, scan
+    from twodiscs.measure.trajectory import Trajectory, trajectory
+    from twodiscs.measure.transmission import Transmission, transmission
     from twodiscs.model.box import Box
     from twodiscs.model.checks import AccuracyWarning, InputError
     from twodiscs.model.effects import EFFECTS
@@ -82,16 +82,16 @@ __version__ = "1.0.0"
 
 #: {module: its names}; a module is imported at the first use of one of them (PEP 562).
 _NAMES = {
-    "comparison.cost": "Cost Price cost",
-    "comparison.intervals": "Intervals intervals",
-    "comparison.load": "load load_result",
-    "comparison.measurements": "Measurement Measurements sample simulate",
-    "comparison.observe": "Observed diffusion observe starts",
-    "comparison.pressure": "free_energy pressure",
-    "comparison.quantities": "areas exact exact_table mean_times",
-    "comparison.scan": "Scan scan",
-    "comparison.trajectory": "Trajectory trajectory",
-    "comparison.transmission": "Transmission transmission",
+    "measure.cost": "Cost Price cost",
+    "measure.intervals": "Intervals intervals",
+    "measure.load": "load load_result",
+    "measure.measurements": "Measurement Measurements sample simulate",
+    "measure.observe": "Observed diffusion observe starts",
+    "measure.pressure": "free_energy pressure",
+    "measure.exact_values": "areas exact exact_table mean_times",
+    "measure.scan": "Scan scan",
+    "measure.trajectory": "Trajectory trajectory",
+    "measure.transmission": "Transmission transmission",
     "figures.plot": "animate plot",
     "model.box": "Box",
     "model.checks": "AccuracyWarning InputError",

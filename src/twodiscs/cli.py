@@ -13,7 +13,7 @@ import argcomplete
 from argcomplete.completers import ChoicesCompleter
 
 import twodiscs
-from twodiscs.comparison.load import plugin
+from twodiscs.measure.load import plugin
 from twodiscs.model.box import Box
 from twodiscs.model.checks import PRESETS, InputError, did_you_mean, format_number
 from twodiscs.model.effects import EFFECTS
@@ -305,7 +305,7 @@ def _exact(scene, options):
 
     numbers = exact(scene)
     if options.csv:
-        from twodiscs.comparison.tables import Theory
+        from twodiscs.analysis.tables import Theory
 
         _print_csv(Theory.rows(Box.of(scene), [scene.radius]))
     elif options.json:

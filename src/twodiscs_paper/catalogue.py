@@ -8,7 +8,7 @@ library only: the Snakefile imports this module.
 from importlib import import_module
 from pathlib import Path
 
-from twodiscs.comparison.tables import SCENE_TABLES
+from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs_paper.studies.effects.study import Benchmark
 from twodiscs_paper.study import Study
@@ -28,7 +28,7 @@ STUDIES = {s.name: s for s in sorted(_declared(), key=lambda study: (study.order
 
 #: The figures of studies, and all figures with the animation, {name: ``Figure``}.
 STUDY_FIGURES = {name: e for study in STUDIES.values() for name, e in study.figures.items()}
-ENTRIES = {**FIGURES, **STUDY_FIGURES, "animation": ANIMATION}
+ALL_FIGURES = {**FIGURES, **STUDY_FIGURES, "animation": ANIMATION}
 
 #: The tables of studies, {name: table}, those of long runs that figures read, and all tables.
 STUDY_TABLES = {table.name(): table for study in STUDIES.values() for table in study.tables}

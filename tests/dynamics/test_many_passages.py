@@ -12,9 +12,9 @@ from dynamics.rates import five, same_sizes
 from marks import slow
 from scalar_bonds import clusters, orders
 
-from twodiscs.comparison.transmission import by_clusters, of_clusters, plateau
 from twodiscs.dynamics.many import passages
 from twodiscs.dynamics.two import passages as of_two
+from twodiscs.measure.transmission import by_clusters, of_clusters, plateau
 from twodiscs.model.scene import Scene
 from twodiscs.theory import n_discs
 from twodiscs_paper.studies.passages.measure import by_time

@@ -13,9 +13,9 @@ from marks import slow
 from scalar_passages import clusters, replicas
 from scipy.stats import f
 
-from twodiscs.comparison.transmission import by_clusters, of_clusters, plateau
 from twodiscs.dynamics.many import passages as of_many
 from twodiscs.dynamics.two import passages
+from twodiscs.measure.transmission import by_clusters, of_clusters, plateau
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs_paper.studies.passages.measure import by_time, of_order, passing_rate

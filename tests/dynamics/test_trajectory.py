@@ -7,7 +7,7 @@ import pytest
 from effect_scenes import ALL, SCENES
 from marks import slow
 
-from twodiscs.comparison.tables import Trajectory
+from twodiscs.analysis.tables import Trajectory
 from twodiscs.dynamics import trajectory
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene

@@ -13,7 +13,7 @@ from figure_cases import unclear
 from PIL import Image
 
 import twodiscs as td
-from twodiscs.comparison.tables import Trajectory
+from twodiscs.analysis.tables import Trajectory
 from twodiscs.figures import animation, style
 from twodiscs.figures.animation import AFTER, BEFORE, FRAME, HOP, LAST, MARKED
 from twodiscs.model.box import Box

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from figure_cases import BOXES, OTHERS, PAPER, bars, covered, draw, points, tables_of, unclear
 
-from twodiscs.comparison.tables import quantity_of
+from twodiscs.analysis.tables import quantity_of
 from twodiscs.figures import curves, panels, radius, style
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.box import Box

@@ -5,7 +5,7 @@ import pytest
 from figure_cases import tables_of, unclear
 from matplotlib.figure import Figure
 
-from twodiscs.comparison.tables import Trajectory
+from twodiscs.analysis.tables import Trajectory
 from twodiscs.figures import motion, style
 from twodiscs.model.box import Box
 

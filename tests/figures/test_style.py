@@ -31,7 +31,7 @@ def test_fonts_are_those_of_matplotlib_even_if_its_list_lacks_them(monkeypatch):
 DRAW = """
 import sys
 from figure_cases import PAPER, draw, tables_of
-from twodiscs.comparison.tables import Trajectory
+from twodiscs.analysis.tables import Trajectory
 from twodiscs.figures import animation, style
 with style.context():
     if sys.argv[1] == "animation":

@@ -14,11 +14,11 @@ from factory import empty
 from figure_cases import PAPER, bars, draw, points
 from matplotlib.patches import StepPatch
 
-from twodiscs.comparison.tables import SCENE_TABLES
-from twodiscs.comparison.transmission import box_time
+from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.figures import style
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.style import LOOKS
+from twodiscs.measure.transmission import box_time
 from twodiscs.model.events import HOPS, SHELLS
 from twodiscs.theory import exact
 from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES, read_table

@@ -7,7 +7,7 @@ from factory import empty
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from twodiscs.comparison.tables import Cost, MeanTimes
+from twodiscs.analysis.tables import Cost, MeanTimes
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.load import load
 from twodiscs_paper.pipeline import cost
@@ -103,7 +103,7 @@ def test_the_limit_of_a_study_grows_with_what_is_asked_of_it():
 @pytest.fixture
 def blocks(monkeypatch):
     """Let a pilot have 32 blocks, each of a millisecond."""
-    for module in ("twodiscs.comparison.cost", "twodiscs_paper.pipeline.forecast"):
+    for module in ("twodiscs.measure.cost", "twodiscs_paper.pipeline.forecast"):
         monkeypatch.setattr(
             f"{module}.timed", lambda work, seconds, fewest=1: (work(0, 32), 32, 1e-3)
         )

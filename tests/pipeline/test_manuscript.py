@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from typst import TypstError
 
-from twodiscs.comparison.tables import SCENE_TABLES
+from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.figures import style
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import typst
 
-from twodiscs.comparison.tables import SCENE_TABLES, MeanTimes
+from twodiscs.analysis.tables import SCENE_TABLES, MeanTimes
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.model.events import EVENTS
 from twodiscs.points.base import reached

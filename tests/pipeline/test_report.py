@@ -10,7 +10,7 @@ from checkout import REPOSITORY
 from factory import empty
 from PIL import Image
 
-from twodiscs.comparison.tables import Cost, MeanTimes
+from twodiscs.analysis.tables import Cost, MeanTimes
 from twodiscs_paper.pipeline.documents.report import (
     ERRORS,
     KEY,

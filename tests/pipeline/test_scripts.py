@@ -10,7 +10,7 @@ import pytest
 from factory import BOX, POINTS, RADII, Laws, scenes, write
 from snakemake.iocontainers import Namedlist
 
-from twodiscs.comparison.tables import SCENE_TABLES
+from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.model.checks import InputError
 from twodiscs.points.base import digest, read_json, write_json
 from twodiscs_paper.pipeline import job

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from twodiscs.comparison.tables import SCENE_TABLES
+from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs_paper.catalogue import STUDIES, STUDY_TABLES
 from twodiscs_paper.pipeline.results.verdict import verdict
 

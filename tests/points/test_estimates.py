@@ -14,8 +14,8 @@ from factory import counts_point
 from scipy.special import betainc
 from scipy.stats import sem
 
-from twodiscs.comparison import scores
-from twodiscs.comparison.check import sum_rule
+from twodiscs.analysis import scores
+from twodiscs.analysis.check import sum_rule
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates

@@ -5,7 +5,7 @@ import math
 import pytest
 from factory import empty, written
 
-from twodiscs.comparison.tables import SCENE_TABLES
+from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.model.events import HOPS
 from twodiscs_paper.studies.agreement import measure
 from twodiscs_paper.studies.agreement.study import Agreement

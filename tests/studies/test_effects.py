@@ -11,7 +11,7 @@ from factory import Laws, empty, written
 from marks import slow
 from numba.core.errors import NumbaError
 
-from twodiscs.comparison.tables import MeanTimes
+from twodiscs.analysis.tables import MeanTimes
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.trajectory import events_of
 from twodiscs.figures import curves, style

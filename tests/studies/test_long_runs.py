@@ -11,9 +11,9 @@ import pytest
 import yaml
 from factory import empty, of
 
-from twodiscs.comparison.transmission import by_clusters, of_clusters, plateau
 from twodiscs.dynamics.many.passages import cluster_sizes
 from twodiscs.dynamics.two.passages import HOPS_OF_BLOCK
+from twodiscs.measure.transmission import by_clusters, of_clusters, plateau
 from twodiscs.model.box import Box
 from twodiscs.points.base import read_json
 from twodiscs_paper.studies.passages import brownian

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from factory import empty, written
 
-from twodiscs.comparison.tables import MeanTimes
+from twodiscs.analysis.tables import MeanTimes
 from twodiscs.figures import style
 from twodiscs.model.box import Box
 from twodiscs.theory import exact

@@ -7,7 +7,7 @@ import pytest
 from checkout import fresh
 
 import twodiscs as td
-from twodiscs.comparison.tables import Trajectory
+from twodiscs.analysis.tables import Trajectory
 from twodiscs.figures.catalogue import FIGURES
 
 #: Files with wall-clock seconds, or the date.
@@ -70,7 +70,7 @@ def test_a_formula_off_by_one_percent_fails_the_check_and_is_named(built):
     right = "theory.mean_times(point.scene)[event]"
     wrong = f'{right} if event != "disc_collision" else 1.01 * {right}'
     built.replace(
-        "src/twodiscs/comparison/tables.py",
+        "src/twodiscs/analysis/tables.py",
         f"scene, exact = point.scene, {right}",
         f"scene, exact = point.scene, {wrong}",
     )

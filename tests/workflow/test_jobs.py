@@ -80,7 +80,7 @@ EDITS = [
     ("src/twodiscs_paper/pipeline/documents/report.py", {"check", "report", "provenance"}, None),
     ("workflow/scripts/point.py", COUNTED, {"exact", "trajectory"}),
     ("src/twodiscs/figures/style.py", DRAWN | DOCUMENTS, None),
-    ("src/twodiscs/comparison/tables.py", TABLES, COUNTED),
+    ("src/twodiscs/analysis/tables.py", TABLES, COUNTED),
     ("src/twodiscs/dynamics/law.py", TABLES | COUNTED | DRAWN | DOCUMENTS, {"configuration"}),
 ]
 

@@ -8,7 +8,13 @@ from pathlib import Path
 
 import twodiscs
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
-from twodiscs_paper.catalogue import ENTRIES, STUDIES, STUDY_FIGURES, STUDY_TABLES, is_reproducible
+from twodiscs_paper.catalogue import (
+    ALL_FIGURES,
+    STUDIES,
+    STUDY_FIGURES,
+    STUDY_TABLES,
+    is_reproducible,
+)
 from twodiscs_paper.configuration.request import GATHERED, STAGES
 from twodiscs_paper.studies.effects.study import SCENES as EFFECTS
 from twodiscs_paper.studies.effects.study import boxes
@@ -81,7 +87,7 @@ CODE = {
     "physics": modules(
         *(f"twodiscs/{part}/**/*.py" for part in PHYSICS), "twodiscs_paper/pipeline/points.py"
     ),
-    "tables": modules("twodiscs/comparison/**/*.py"),
+    "tables": modules("twodiscs/analysis/*.py", "twodiscs/measure/*.py"),
     "figures": modules(
         *(f"twodiscs/figures/*.{kind}" for kind in ("py", "mplstyle", "html")),
         "twodiscs_paper/drawings.py",
@@ -144,18 +150,18 @@ def shards(w):
 # The long runs that figures read: their paths are known only while this file is read.
 KEPT = {
     figure: {name: source(path) for name, path in entry.kept.items()}
-    for figure, entry in ENTRIES.items()
+    for figure, entry in ALL_FIGURES.items()
 }
 
 
 def figure_reads(w):
     """Return {name: path} of the tables that a figure reads, long runs that are kept among them."""
-    return CONFIGURATION.figure_reads(ENTRIES[w.figure], w.get("scene")) | KEPT[w.figure]
+    return CONFIGURATION.figure_reads(ALL_FIGURES[w.figure], w.get("scene")) | KEPT[w.figure]
 
 
 def radius(w):
     """Return the radius of the trajectory that a figure shows, None for other figures."""
-    shown = "trajectory" in ENTRIES[w.figure].tables
+    shown = "trajectory" in ALL_FIGURES[w.figure].tables
     return SCENES[w.scene].quantities.trajectory if shown else None
 
 

@@ -13,7 +13,7 @@ rule figure:
         pdf=f"{RESULTS}/{{scene}}/figures/{{figure}}.pdf",
         png=report(
             f"{RESULTS}/{{scene}}/figures/{{figure}}.png",
-            category=lambda w: ENTRIES[w.figure].category,
+            category=lambda w: ALL_FIGURES[w.figure].category,
             subcategory="{scene}",
         ),
     log:
@@ -36,7 +36,7 @@ use rule figure as shared_figure with:
         pdf=f"{RESULTS}/figures/{{figure}}.pdf",
         png=report(
             f"{RESULTS}/figures/{{figure}}.png",
-            category=lambda w: ENTRIES[w.figure].category,
+            category=lambda w: ALL_FIGURES[w.figure].category,
             subcategory="all scenes",
         ),
     log:

@@ -3,7 +3,7 @@
 import inspect
 from pathlib import Path
 
-from twodiscs.comparison.tables import SCENE_TABLES
+from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.model.box import Box
 from twodiscs.points.dynamics import DynamicsPoint
 from twodiscs.points.intervals import IntervalsPoint

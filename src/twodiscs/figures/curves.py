@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from twodiscs.comparison.tables import Theory
+from twodiscs.analysis.tables import Theory
 from twodiscs.model.events import AXIS, EVENTS, HOPS
 
 #: The name of the largest radius, and the names of the radii at which hops become blocked.

@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.axes import Axes
 
-from twodiscs.comparison.intervals import Intervals
-from twodiscs.comparison.measurements import Measurements
-from twodiscs.comparison.observe import Observed
-from twodiscs.comparison.scan import Scan
-from twodiscs.comparison.tables import SCENE_TABLES, quantity_of
-from twodiscs.comparison.transmission import Transmission, box_time
+from twodiscs.analysis.tables import SCENE_TABLES, quantity_of
 from twodiscs.figures import panels, style
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.draw import OF_A_BOX, draw
 from twodiscs.figures.radius import OVER_RADIUS, add
 from twodiscs.figures.style import BLACK, LOOKS, SERIES, name_of, new_figure
+from twodiscs.measure.intervals import Intervals
+from twodiscs.measure.measurements import Measurements
+from twodiscs.measure.observe import Observed
+from twodiscs.measure.scan import Scan
+from twodiscs.measure.transmission import Transmission, box_time
 from twodiscs.model.box import Box, scene_of
 from twodiscs.model.checks import InputError, answering, check_choice
 from twodiscs.model.scene import Scene
@@ -249,7 +249,7 @@ def _figures_of(rows, box):
 
 def rows_of(trajectory):
     """Return the rows of a trajectory, at least two; ``scene_or_none`` must find its scene."""
-    from twodiscs.comparison.trajectory import require_all_rows
+    from twodiscs.measure.trajectory import require_all_rows
 
     if "event" not in trajectory or len(trajectory) < 2:
         raise InputError(

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.lines import Line2D
 
-from twodiscs.comparison.tables import quantity_of
+from twodiscs.analysis.tables import quantity_of
 from twodiscs.figures import curves, panels
 from twodiscs.figures.catalogue import FIGURES, Curves
 from twodiscs.figures.curves import hop_ends, limits

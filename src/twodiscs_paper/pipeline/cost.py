@@ -11,7 +11,7 @@ from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
 
-from twodiscs.comparison.tables import Cost, MeanTimes, shortfall
+from twodiscs.analysis.tables import Cost, MeanTimes, shortfall
 from twodiscs.model.checks import format_number, format_seconds
 from twodiscs.theory import exact
 from twodiscs_paper.catalogue import STUDIES
@@ -163,7 +163,7 @@ def _per_shard(scene, part):
 
 def forecast(scene, stage, radius):
     """Return the ``Forecast`` of a job from a pilot, and its run."""
-    from twodiscs.comparison import cost
+    from twodiscs.measure import cost
     from twodiscs_paper.pipeline.forecast import Forecast, of_dynamics, of_samples
 
     run = run_at(scene, stage, radius)
@@ -239,7 +239,7 @@ def table(configuration):
     """Return the forecast of a ``Configuration`` as text: a row for each job, and their sum."""
     from tabulate import tabulate
 
-    from twodiscs.comparison.cost import machine
+    from twodiscs.measure.cost import machine
 
     rows, lines, total = [], [], 0.0
     for scene in configuration.scenes:

@@ -3,8 +3,8 @@
 import math
 from typing import NamedTuple
 
-from twodiscs.comparison.cost import blocks_wanted, timed, variances
-from twodiscs.comparison.tables import shortfall
+from twodiscs.analysis.tables import shortfall
+from twodiscs.measure.cost import blocks_wanted, timed, variances
 
 
 class Forecast(NamedTuple):

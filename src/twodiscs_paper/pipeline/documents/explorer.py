@@ -8,7 +8,7 @@ import json
 import math
 from pathlib import Path
 
-from twodiscs.comparison.tables import Areas, MeanTimes, Volume
+from twodiscs.analysis.tables import Areas, MeanTimes, Volume
 from twodiscs.figures.style import LOOKS
 from twodiscs.model.events import DECLARED
 from twodiscs.theory.virial import flux_constant

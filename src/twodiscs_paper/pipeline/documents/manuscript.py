@@ -4,10 +4,10 @@ import json
 import os
 from pathlib import Path
 
-from twodiscs.comparison.tables import NUMBER, TEXT, Table
-from twodiscs.comparison.transmission import QUIET
+from twodiscs.analysis.tables import NUMBER, TEXT, Table
 from twodiscs.dynamics.runs import RETURNS
 from twodiscs.figures.catalogue import FIGURES
+from twodiscs.measure.transmission import QUIET
 from twodiscs.model.box import Box
 from twodiscs.sampling.montecarlo import COST_RATIO
 from twodiscs_paper.catalogue import STUDY_FIGURES

@@ -15,12 +15,12 @@ from pathlib import Path, PurePosixPath
 from markupsafe import Markup, escape
 from PIL import Image, ImageSequence
 
-from twodiscs.comparison.measurements import measurement
-from twodiscs.comparison.tables import SCENE_TABLES, Check, Cost, Grid, MeanTimes, quantity_of
+from twodiscs.analysis.tables import SCENE_TABLES, Check, Cost, Grid, MeanTimes, quantity_of
 from twodiscs.figures.catalogue import ANIMATION, GEOMETRY
+from twodiscs.measure.measurements import measurement
 from twodiscs.model.box import Box
 from twodiscs.model.checks import format_number, format_seconds
-from twodiscs_paper.catalogue import ENTRIES
+from twodiscs_paper.catalogue import ALL_FIGURES
 from twodiscs_paper.pipeline.cost import missed, taken
 from twodiscs_paper.pipeline.results.provenance import commit, versions
 
@@ -124,7 +124,7 @@ def figure(folder, path, scenes):
 
     A figure without a scene is about the first scene without effects.
     """
-    entry, scene = ENTRIES[path.stem], scenes.get(path.parts[0])
+    entry, scene = ALL_FIGURES[path.stem], scenes.get(path.parts[0])
     main = next((candidate for candidate in scenes.values() if not candidate["effects"]), None)
     about = scene or main
     text = entry.caption(about and box_of(about))
@@ -178,7 +178,10 @@ def key_figures(paths, of_scene=True):
     here = {path.stem: path for path in paths}
     if not of_scene:
         return [here[name] for name in KEY_OF_ALL if name in here]
-    wanted = [*KEY, *(n for n, e in ENTRIES.items() if e.category != GEOMETRY and e != ANIMATION)]
+    wanted = [
+        *KEY,
+        *(n for n, e in ALL_FIGURES.items() if e.category != GEOMETRY and e != ANIMATION),
+    ]
     return [here[name] for name in dict.fromkeys(wanted) if name in here][:SOME]
 
 

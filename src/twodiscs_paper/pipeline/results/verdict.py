@@ -1,6 +1,6 @@
 """The verdict: do the scores z of all comparisons agree with theory?"""
 
-from twodiscs.comparison.scores import FALSE_ALARM, bonferroni_bound
+from twodiscs.analysis.scores import FALSE_ALARM, bonferroni_bound
 
 #: The columns that name a comparison, as far as its table has them.
 NAMES = (

@@ -1,6 +1,6 @@
 """The processor time that an accuracy costs, by each method."""
 
-from twodiscs.comparison.tables import (
+from twodiscs.analysis.tables import (
     COUNT,
     HEIGHT,
     NUMBER,

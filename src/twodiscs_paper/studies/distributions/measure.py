@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.comparison.scores import student_deviate, two_sided_p
+from twodiscs.analysis.scores import student_deviate, two_sided_p
 from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import law_of
 from twodiscs.model.box import Box, key, stream_seed

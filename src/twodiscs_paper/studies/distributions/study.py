@@ -1,6 +1,6 @@
 """How intervals between hops are distributed."""
 
-from twodiscs.comparison.tables import (
+from twodiscs.analysis.tables import (
     COUNT,
     HEIGHT,
     NUMBER,

@@ -1,6 +1,6 @@
 """How each effect changes the mean times, and its cost."""
 
-from twodiscs.comparison.tables import (
+from twodiscs.analysis.tables import (
     COUNT,
     HEIGHT,
     LENGTH,

@@ -19,7 +19,7 @@ from itertools import groupby, pairwise
 import numpy as np
 from scipy.integrate import quad
 
-from twodiscs.comparison.transmission import by_clusters
+from twodiscs.measure.transmission import by_clusters
 from twodiscs.model.box import stream_seed
 from twodiscs.points.estimates import Estimate
 from twodiscs_paper.studies.estimates import LinearFit

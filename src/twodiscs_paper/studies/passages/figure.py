@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from twodiscs.comparison.transmission import box_time
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import BLACK, BLUE, GREEN, PURPLE, SIZES, SKY, VERMILLION, name_of
+from twodiscs.measure.transmission import box_time
 from twodiscs.model.box import Box
 from twodiscs.theory import exact, laws
 from twodiscs_paper.studies.passages.measure import ONE_INERTIA, thresholds

@@ -14,8 +14,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from twodiscs.comparison.scores import student_deviate
-from twodiscs.comparison.transmission import (
+from twodiscs.analysis.scores import student_deviate
+from twodiscs.dynamics.ensemble import REPLICAS
+from twodiscs.dynamics.two import strip
+from twodiscs.dynamics.two.passages import HOPS_OF_BLOCK, cluster_sizes, hop_sums
+from twodiscs.measure.transmission import (
     TIMES,
     are_rare,
     box_time,
@@ -26,9 +29,6 @@ from twodiscs.comparison.transmission import (
     plateau,
     quiet_time,
 )
-from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.two import strip
-from twodiscs.dynamics.two.passages import HOPS_OF_BLOCK, cluster_sizes, hop_sums
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import Scene

@@ -1,6 +1,6 @@
 """Which hops are passages, and how fast discs diffuse by them."""
 
-from twodiscs.comparison.tables import (
+from twodiscs.analysis.tables import (
     COUNT,
     HEIGHT,
     NUMBER,

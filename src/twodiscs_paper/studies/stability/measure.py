@@ -14,9 +14,9 @@ from itertools import pairwise
 import numpy as np
 from mpmath import mp, mpf
 
-from twodiscs.comparison import scores
-from twodiscs.comparison.check import comparisons
-from twodiscs.comparison.tables import Areas, MeanTimes, Volume
+from twodiscs.analysis import scores
+from twodiscs.analysis.check import comparisons
+from twodiscs.analysis.tables import Areas, MeanTimes, Volume
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import after_event, contact_quotient, law_of, wall_quotient

@@ -1,6 +1,6 @@
 """The laws where a hop becomes blocked."""
 
-from twodiscs.comparison.tables import (
+from twodiscs.analysis.tables import (
     COUNT,
     HEIGHT,
     NUMBER,

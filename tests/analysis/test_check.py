@@ -9,8 +9,8 @@ import pytest
 from effect_scenes import SCENES
 from factory import BOX, RADII, Laws, as_theory, exact_values, scenes
 
-from twodiscs.comparison import check, scores
-from twodiscs.comparison.tables import Areas, HopHistogram, MeanTimes, Volume
+from twodiscs.analysis import check, scores
+from twodiscs.analysis.tables import Areas, HopHistogram, MeanTimes, Volume
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.theory import exact

@@ -5,11 +5,11 @@ import math
 import pytest
 
 import twodiscs as td
-from twodiscs.comparison import cost
-from twodiscs.comparison.result import seed_of
-from twodiscs.comparison.tables import shortfall
+from twodiscs.analysis.tables import shortfall
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.runs import DAY, CountingRun, engine_of
+from twodiscs.measure import cost
+from twodiscs.measure.result import seed_of
 from twodiscs.model.checks import format_seconds
 from twodiscs.sampling.many import insertions
 from twodiscs.sampling.rounds import MARGIN

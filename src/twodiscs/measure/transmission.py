@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from twodiscs.comparison.result import Result, note_of_number, progress_bar, stream_name
 from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK
 from twodiscs.dynamics.runs import chains_of, engine_of
+from twodiscs.measure.result import Result, note_of_number, progress_bar, stream_name
 from twodiscs.model.box import key, stream_seed
 from twodiscs.model.checks import answering, check_choice, check_count
 from twodiscs.model.events import AXIS, HOPS

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from twodiscs.comparison.measurements import Measurement, frame_of, table_of
-from twodiscs.comparison.result import Result, note_of_number, progress_bar, seed_of
-from twodiscs.comparison.tables import HopHistogram
+from twodiscs.analysis.tables import HopHistogram
+from twodiscs.measure.measurements import Measurement, frame_of, table_of
+from twodiscs.measure.result import Result, note_of_number, progress_bar, seed_of
 from twodiscs.model.checks import InputError, answering, check_choice, check_count
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene, check_scene

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Unpack, overload
 
-from twodiscs.comparison.measurements import Measurements, rows_by_quantity, run_simulation
-from twodiscs.comparison.quantities import box_with, scenes_of
-from twodiscs.comparison.result import Result
+from twodiscs.measure.exact_values import box_with, scenes_of
+from twodiscs.measure.measurements import Measurements, rows_by_quantity, run_simulation
+from twodiscs.measure.result import Result
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, answering, quote
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import twodiscs
-from twodiscs.comparison.tables import SCENE_TABLES
+from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.model.box import Box, scene_of
 from twodiscs.model.checks import InputError, answering, quote
 from twodiscs.points.base import digest, read_json, with_arrays
@@ -18,7 +18,7 @@ from twodiscs.points.base import digest, read_json, with_arrays
 if TYPE_CHECKING:
     import pandas as pd
 
-    from twodiscs.comparison.measurements import Measurements
+    from twodiscs.measure.measurements import Measurements
 
 
 def plugin(name):
@@ -123,15 +123,15 @@ def _configuration(path):
 def from_dict(content):
     """Return the result that ``to_dict`` describes, made again from its sums."""
     if content["kind"] == "scan":
-        from twodiscs.comparison.scan import Scan
+        from twodiscs.measure.scan import Scan
 
         return Scan(map(from_dict, content["results"]), dict(content["refused"]))
     if content["kind"] == "intervals":
-        from twodiscs.comparison.intervals import run_intervals as make
+        from twodiscs.measure.intervals import run_intervals as make
     elif content["kind"] == "transmission":
-        from twodiscs.comparison.transmission import run_transmission as make
+        from twodiscs.measure.transmission import run_transmission as make
     else:
-        from twodiscs.comparison.measurements import MAKERS
+        from twodiscs.measure.measurements import MAKERS
 
         make = MAKERS[content["kind"]]
     parts, settings = with_arrays(content["parts"]), content["settings"]

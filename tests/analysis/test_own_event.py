@@ -14,7 +14,7 @@ LAST = '        Event("any_wall", "walls"),\n'
 #: Scenes whose walls have different multiplicities, and more discs with and without exact values.
 MEASURED = """
 import sys
-from twodiscs.comparison.tables import Check, Theory
+from twodiscs.analysis.tables import Check, Theory
 from twodiscs.dynamics import runs
 from twodiscs.model.box import Box
 from twodiscs.model.events import DECLARED

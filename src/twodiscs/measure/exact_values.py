@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Unpack
 
-from twodiscs.comparison.tables import Theory
+from twodiscs.analysis.tables import Theory
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, answering, check_length, did_you_mean, quote
 from twodiscs.model.events import EVENTS

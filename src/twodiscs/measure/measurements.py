@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from twodiscs.comparison.quantities import Quantities
-from twodiscs.comparison.result import Result, note_of_number, progress_bar, seed_of
-from twodiscs.comparison.tables import Areas, MeanTimes, Volume, quantity_of, shortfall
+from twodiscs.analysis.tables import Areas, MeanTimes, Volume, quantity_of, shortfall
+from twodiscs.measure.exact_values import Quantities
+from twodiscs.measure.result import Result, note_of_number, progress_bar, seed_of
 from twodiscs.model.checks import (
     AccuracyWarning,
     InputError,

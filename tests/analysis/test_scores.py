@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.special import ndtr, ndtri, stdtr
 
-from twodiscs.comparison import scores
+from twodiscs.analysis import scores
 
 DEVIATES = (1.0, 2.0, 3.0, 4.0, 5.0)
 

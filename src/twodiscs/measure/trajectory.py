@@ -8,9 +8,9 @@ from os import PathLike
 import numpy as np
 import pandas as pd
 
-from twodiscs.comparison.result import progress_bar, seed_of
-from twodiscs.comparison.tables import trajectory_columns
+from twodiscs.analysis.tables import trajectory_columns
 from twodiscs.dynamics.trajectory import followed
+from twodiscs.measure.result import progress_bar, seed_of
 from twodiscs.model.box import parameters_of, scene_of
 from twodiscs.model.checks import InputError, answering, as_list, quote, writing_to
 from twodiscs.model.scene import Scene

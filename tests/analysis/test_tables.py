@@ -9,9 +9,8 @@ import pytest
 from commands import python
 from factory import empty
 
-from twodiscs.comparison import load, tables
-from twodiscs.comparison.load import plugin
-from twodiscs.comparison.tables import (
+from twodiscs.analysis import tables
+from twodiscs.analysis.tables import (
     SCENE_TABLES,
     Areas,
     Check,
@@ -23,6 +22,8 @@ from twodiscs.comparison.tables import (
     Theory,
     Trajectory,
 )
+from twodiscs.measure import load
+from twodiscs.measure.load import plugin
 from twodiscs.model.box import Box
 
 EVERY_TABLE = plugin("tables")
@@ -155,9 +156,9 @@ def test_a_truth_value_is_spelled_in_one_way(tmp_path):
 @pytest.mark.parametrize(
     ("code", "absent"),
     [
-        ("import twodiscs.comparison.tables", ("numpy", "scipy", "pandas")),
+        ("import twodiscs.analysis.tables", ("numpy", "scipy", "pandas")),
         ("import twodiscs as t; t.exact(t.Scene(1.5, 1, 0.2))", ("numpy", "scipy", "mpmath")),
-        ("import twodiscs.comparison.check", ("scipy.stats", "pandas", "numba", "matplotlib")),
+        ("import twodiscs.analysis.check", ("scipy.stats", "pandas", "numba", "matplotlib")),
         ("import twodiscs_paper.catalogue", ("numpy", "scipy", "mpmath", "numba", "matplotlib")),
     ],
 )

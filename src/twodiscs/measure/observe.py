@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from twodiscs.comparison.result import note_of_number, progress_bar, seed_of
 from twodiscs.dynamics.runs import engine_of
 from twodiscs.dynamics.trajectory import MOST_EVENTS, path_of
+from twodiscs.measure.result import note_of_number, progress_bar, seed_of
 from twodiscs.model.checks import InputError, answering, as_list, check_count, format_number, quote
 from twodiscs.model.many import LARGE
 from twodiscs.model.scene import Scene, check_scene

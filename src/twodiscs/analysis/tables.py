@@ -308,7 +308,7 @@ class Areas(Table):
 
 def _area_row(point, event):
     """Return the row of an ``event``, None if the point does not have its area."""
-    from twodiscs.comparison import scores  # which needs numpy and scipy
+    from twodiscs.analysis import scores  # which needs numpy and scipy
 
     scene, quantity = point.scene, f"{event}_area"
     sampled = point.sampled(quantity)
@@ -335,7 +335,7 @@ def _area_row(point, event):
 
 def _sampled_score(point, quantity, sampled, expectation):
     """Return (z, test) of a quantity of a point against its exact ``expectation``."""
-    from twodiscs.comparison import scores
+    from twodiscs.analysis import scores
 
     estimate = sampled.estimate
     if expectation is None:
@@ -458,7 +458,7 @@ class MeanTimes(Table):
 
 def _mean_time_row(point, event, count):
     """Return the row of an event of a ``point`` from a ``Count`` of it."""
-    from twodiscs.comparison import scores  # which needs numpy and scipy
+    from twodiscs.analysis import scores  # which needs numpy and scipy
     from twodiscs.points.estimates import has_error_bar
     from twodiscs.theory.exact import replicas_needed
 
@@ -590,7 +590,7 @@ class HopHistogram(Table):
 
 def _mean_interval(point):
     """Return the columns about the mean of a point; its exact mean may be None."""
-    from twodiscs.comparison import scores  # which needs numpy and scipy
+    from twodiscs.analysis import scores  # which needs numpy and scipy
     from twodiscs.points.estimates import MIN_EVENTS
 
     z, mean, exact = None, point.estimate("mean"), theory.mean_times(point.scene)[point.event]
@@ -694,7 +694,7 @@ class Check(Table):
 
         Areas are those of the ``events``.
         """
-        from twodiscs.comparison import check  # which needs numpy and scipy
+        from twodiscs.analysis import check  # which needs numpy and scipy
 
         compared = check.comparisons(
             Volume.rows(points),

@@ -9,7 +9,7 @@ from factory import BOX, RADII, Laws, as_theory, counts_point, hits_point, scene
 from scipy.special import ndtri, stdtr
 
 import twodiscs as td
-from twodiscs.comparison.tables import (
+from twodiscs.analysis.tables import (
     Areas,
     HopHistogram,
     MeanTimes,

@@ -28,7 +28,7 @@ trajectories, so their scores are correlated.
 import math
 from itertools import groupby
 
-from twodiscs.comparison import scores
+from twodiscs.analysis import scores
 from twodiscs.model.events import DECLARED
 from twodiscs.points.estimates import MIN_EVENTS, Estimate
 from twodiscs.points.monte_carlo import wall_weights

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import twodiscs as td
-from twodiscs.comparison import transmission
 from twodiscs.dynamics.two.passages import (
     HOPS_OF_BLOCK,
     LARGEST_CLUSTER,
@@ -15,6 +14,7 @@ from twodiscs.dynamics.two.passages import (
     cluster_sizes,
     hop_sums,
 )
+from twodiscs.measure import transmission
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling import rounds
 from twodiscs_paper.studies.passages.measure import by_time, of_order

@@ -16,7 +16,7 @@ import math
 from collections.abc import Mapping
 from typing import Any, overload
 
-from twodiscs.comparison.measurements import Measurement, Measurements, derived, table_of
+from twodiscs.measure.measurements import Measurement, Measurements, derived, table_of
 from twodiscs.model.checks import InputError, quote
 from twodiscs.model.events import AXIS, WALLS
 from twodiscs.model.scene import Scene

@@ -10,8 +10,8 @@ import scalar_many
 from factory import POINTS
 
 import twodiscs as td
-from twodiscs.comparison import check
-from twodiscs.comparison.tables import Check
+from twodiscs.analysis import check
+from twodiscs.analysis.tables import Check
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import engine

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from twodiscs.comparison.result import Printed
+from twodiscs.measure.result import Printed
 from twodiscs.model.checks import (
     MOST_WITH_VOLUME,
     answering,

@@ -1,0 +1,1 @@
+"""The calls of the face, one module each, and the results that they return."""
