@@ -7,7 +7,7 @@ from itertools import islice
 import mpmath
 from mpmath import mpf
 
-from twodiscs.dynamics.trajectory import events_of
+from twodiscs.dynamics.paths import events_of
 from twodiscs.theory.exact import event_rate
 
 WALLS = ("wall_x1", "wall_y1", "wall_x2", "wall_y2")

@@ -11,10 +11,10 @@ import numpy as np
 from twodiscs.analysis import tables
 from twodiscs.model.box import Box, parameters_of
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
-from twodiscs.points.base import content_of, with_arrays, write_json
-from twodiscs.points.dynamics import DynamicsPoint
-from twodiscs.points.intervals import Bins, IntervalsPoint
-from twodiscs.points.monte_carlo import Hits, MonteCarloPoint
+from twodiscs.points.base import content_of, restore_arrays, write_json
+from twodiscs.points.dynamics_point import DynamicsPoint
+from twodiscs.points.intervals_point import Bins, IntervalsPoint
+from twodiscs.points.monte_carlo_point import Hits, MonteCarloPoint
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
 
@@ -114,7 +114,7 @@ def all_reached(point):
 def through_json(pieces):
     """Return ``pieces`` of a run as they come back from a file."""
     content = content_of("simulate", {}, {}, {"all": {"sums": pieces}})
-    return with_arrays(json.loads(json.dumps(content))["parts"])["all"]["sums"]
+    return restore_arrays(json.loads(json.dumps(content))["parts"])["all"]["sums"]
 
 
 def write(point, path):
@@ -180,7 +180,7 @@ class Laws:
         for event in events:
             mean = 0.0
             if event in self.times:
-                mean = self.scene.copies(event) * duration / self.times[event]
+                mean = self.scene.multiplicity(event) * duration / self.times[event]
             counts[event] = rng.poisson(mean, replicas)
         if not self.scene.has_effects:  # as symmetry has it
             first = {}

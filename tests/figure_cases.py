@@ -10,8 +10,8 @@ from matplotlib.text import Text
 
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.dynamics.runs import wide_edges
-from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.draw import draw as draw_figure
+from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
 from twodiscs.theory import exact

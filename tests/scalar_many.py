@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from twodiscs.model.many import arrangement
+from twodiscs.model.many_geometry import arrangement
 from twodiscs.sampling.jit import compiled
 
 #: Vertical hops, horizontal hops, collisions, hits of the walls of x and of y.

@@ -24,12 +24,12 @@ from twodiscs.model.checks import InputError
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.base import read_json
+from twodiscs.sampling.initial_states import components
 from twodiscs.sampling.many import insertions  # noqa: F401 - for a line of CALLS
-from twodiscs.sampling.starts import components
 from twodiscs_paper.configuration import schema
-from twodiscs_paper.configuration.load import ConfigError, load, read
 from twodiscs_paper.configuration.model import Model
 from twodiscs_paper.configuration.radii import even_radii, radii
+from twodiscs_paper.configuration.yaml_files import ConfigError, load, read
 
 BOX = Box(1.5, 1.0)
 PAPER = BOX.scene(0.2)
@@ -120,7 +120,7 @@ td.load_result('\\0') → path must be the path of a file, not '\\x00'
 td.load_result('absent.json') → path must be a file to read
 td.load('nothere') → tables of results, but 'nothere' does not exist
 td.load('src') → folder must hold tables of results, but 'src' has none
-td.scan(1.5, 1, [0.1], gravity=1) → gravity is no effect; effects must be some of
+td.scan(1.5, 1, [0.1], field=1) → field is no effect; effects must be some of
 td.scan(1.5, 1, [0.2, 0.2]) → radii must differ, because one radius has the same
 td.sample(PAPER, 1).more(budget=1e7) → to go on, give samples=
 td.simulate(PAPER, 0.5, budget=1).more(duration=10) → duration must be left out for a result of …
@@ -382,7 +382,7 @@ COUNT = [0, 1.5, 2**64, "1", True]
 PART = [0.0, 1.0, -0.1, "0.1", True]
 EVENT = ["", "hop", b"any_wall", PAPER]
 EFFECTS = [
-    "field", {"gravity": 1}, {1: 2}, {"field": -1.0}, {"periodic": "xx"}, {"radius_ratio": 1e9},
+    "field", {"field": 1}, {1: 2}, {"field": -1.0}, {"periodic": "xx"}, {"radius_ratio": 1e9},
 ]  # fmt: skip
 TARGET = [{}, "any_wall", {"hop": 0.1}, {None: 0.1}, {"any_wall": 0.0}, {"any_wall": True}]
 WRONG = (
@@ -573,7 +573,7 @@ def test_what_the_workflow_cannot_run_with_is_one_sentence(tmp_path, wrong):
         mine.write_text("raise SystemExit('imported by mistake')\n")
         environment = os.environ | {"PYTHONPATH": os.pathsep.join((str(tmp_path), sources))}
         said = f"{mine} hides the package twodiscs: give this file another name\n"
-    run = python("-c", "import twodiscs_paper.pipeline.cost", env=environment, cwd=tmp_path)
+    run = python("-c", "import twodiscs_paper.pipeline.job_cost", env=environment, cwd=tmp_path)
     assert (run.returncode, run.stdout, run.stderr) == (1, "", said)
 
 

@@ -27,7 +27,7 @@ from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.theory.exact import exact as exact_numbers
-from twodiscs_paper.configuration.load import load, read
+from twodiscs_paper.configuration.yaml_files import load, read
 from twodiscs_paper.pipeline import build
 
 BOX = ["--width", "1.5", "--height", "1"]

@@ -59,7 +59,7 @@ CALLS = {
 CODE = """
 import atexit, sys
 import twodiscs as td
-from twodiscs.dynamics.trajectory import path_of
+from twodiscs.dynamics.paths import path_of
 
 @atexit.register
 def print_peak():

@@ -23,12 +23,12 @@ from snakemake.cli import get_argument_parser
 import twodiscs
 from twodiscs import cli
 from twodiscs.analysis.tables import SCENE_TABLES
-from twodiscs.figures.catalogue import FIGURES
-from twodiscs.points.base import with_arrays
-from twodiscs.points.dynamics import DynamicsPoint
-from twodiscs_paper.configuration import load
-from twodiscs_paper.configuration.load import read
-from twodiscs_paper.pipeline import cost
+from twodiscs.figures.scene_figures import FIGURES
+from twodiscs.points.base import restore_arrays
+from twodiscs.points.dynamics_point import DynamicsPoint
+from twodiscs_paper.configuration import yaml_files
+from twodiscs_paper.configuration.yaml_files import read
+from twodiscs_paper.pipeline import job_cost
 
 PAGES = [
     *(REPOSITORY / name for name in ("README.md", "CONTRIBUTING.md")),
@@ -246,7 +246,7 @@ def agreement(folder, scene):
     rows = SCENE_TABLES["check"].read(folder / scene.name / "check.csv")
     compared = [abs(row["z"]) for row in rows if row["passed"] is not None]
     points = json.loads((folder / scene.name / "points" / "dynamics.json").read_text())
-    parts = [with_arrays(point["parts"]) for point in points.values()]
+    parts = [restore_arrays(point["parts"]) for point in points.values()]
     events = sum(DynamicsPoint.of(None, part).events for part in parts)
     independent = sum(row["independent"] for row in rows)
     largest = Context(prec=2, rounding=ROUND_CEILING).create_decimal(max(compared))
@@ -258,11 +258,11 @@ def agreement(folder, scene):
 def test_table_of_agreement_is_that_of_the_expected_results():
     if not (EXPECTED / "configuration.json").exists():
         pytest.skip("paper/expected holds no results")
-    found = [agreement(EXPECTED, scene) for scene in load.load(read(DEFAULT)).scenes]
+    found = [agreement(EXPECTED, scene) for scene in yaml_files.load(read(DEFAULT)).scenes]
     (shown,) = re.findall(r"^\| box \|.*\n\|[-|]+\n((?:\|.*\n)+)", page("README.md"), re.MULTILINE)
     assert shown.splitlines() == found
     events = found[0].split("|")[-2].strip()
-    assert f"| `paper` | 3e-4 | {events} |" in page("docs/accuracy-and-cost.md")
+    assert f"| `paper` | 3e-4 | {events} |" in page("docs/accuracy-and-job_cost.md")
 
 
 # Configurations -----------------------------------------------------------------------------------
@@ -271,7 +271,9 @@ def test_table_of_agreement_is_that_of_the_expected_results():
 def test_scenes_are_understood():
     names = [scene["name"] for name in NAMES for scene in scenes(name)]
     assert {"square", "double", "corridor", "look"} <= set(names)
-    assert [scene.name for scene in load.load(with_examples()).scenes][-len(names) :] == (names)
+    assert [scene.name for scene in yaml_files.load(with_examples()).scenes][-len(names) :] == (
+        names
+    )
 
 
 def test_a_new_box_runs_the_jobs_that_the_page_says(dry):
@@ -283,7 +285,7 @@ def test_a_new_box_runs_the_jobs_that_the_page_says(dry):
     (rows,) = re.findall(
         r"\| jobs in `corridor` \|.*\n\|---.*\n((?:\|.*\n)+)", page("docs/add-a-box.md")
     )
-    watched = load.load(with_examples()).folders["corridor"].quantities.names
+    watched = yaml_files.load(with_examples()).folders["corridor"].quantities.names
     called = sum(entry.is_called(watched) for entry in FIGURES.values())
     for row in rows.splitlines():
         names, number, _ = row.strip("|").split("|")
@@ -298,9 +300,9 @@ def test_a_new_box_runs_the_jobs_that_the_page_says(dry):
 @pytest.fixture(scope="module")
 def checked(tmp_path_factory):
     """Do the work of the scene ``look``; return the path of its check.csv."""
-    scene, path = load.load(with_examples()).folders["look"], tmp_path_factory.mktemp("look")
+    scene, path = yaml_files.load(with_examples()).folders["look"], tmp_path_factory.mktemp("look")
     points = [
-        cost.run_at(scene, stage, radius).run()
+        job_cost.run_at(scene, stage, radius).run()
         for stage, keys in scene.keys.items()
         for radius in keys.values()
     ]

@@ -17,15 +17,15 @@ from figure_cases import unclear
 
 import twodiscs as td
 from twodiscs.analysis.tables import SCENE_TABLES
-from twodiscs.dynamics.trajectory import state_of
+from twodiscs.dynamics.paths import state_of
 from twodiscs.figures import style
 from twodiscs.measure.measurements import Measurement, measurement
 from twodiscs.measure.result import seed_of
 from twodiscs.model.box import Box
 from twodiscs.model.effects import EFFECTS
-from twodiscs.sampling.starts import components
-from twodiscs_paper.configuration import load, schema
-from twodiscs_paper.pipeline import cost
+from twodiscs.sampling.initial_states import components
+from twodiscs_paper.configuration import schema, yaml_files
+from twodiscs_paper.pipeline import job_cost
 from twodiscs_paper.pipeline.build import TARGETS
 
 SCENE = td.Scene(1.5, 1.0, 0.2)
@@ -87,7 +87,9 @@ def test_every_name_is_there_with_its_types_where_an_editor_looks_for_it():
 
 
 def test_defaults_are_those_of_a_configuration():
-    scene = load.load({"scenes": [{"name": "a", "box": {"width": 1.5, "height": 1.0}}]}).scenes[0]
+    scene = yaml_files.load(
+        {"scenes": [{"name": "a", "box": {"width": 1.5, "height": 1.0}}]}
+    ).scenes[0]
     sample, simulate = (inspect.signature(f).parameters for f in (td.sample, td.simulate))
     found = (sample["shell"].default, simulate["budget"].default)
     assert found == (scene.monte_carlo["shell"], scene.event_budget)
@@ -97,9 +99,9 @@ def test_defaults_are_those_of_a_configuration():
 
 
 def test_results_are_those_of_the_pipeline(simulated, sampled, intervals):
-    box, scene = Box.of(SCENE), load.load(CONFIGURATION).scenes[0]
+    box, scene = Box.of(SCENE), yaml_files.load(CONFIGURATION).scenes[0]
     stages = ("dynamics", "monte_carlo", "intervals")
-    points = [cost.run_at(scene, stage, 0.2).run() for stage in stages]
+    points = [job_cost.run_at(scene, stage, 0.2).run() for stage in stages]
     assert simulated.rows == SCENE_TABLES["mean_times"].rows(points)
     areas = SCENE_TABLES["areas"].rows(points)
     assert sampled.rows == SCENE_TABLES["volume"].rows(points) + areas
@@ -390,7 +392,7 @@ def test_numbers_of_one_run_are_correlated_as_its_counts_are(scene):
     """All hits are those of the right and the top wall, in every replica: no error is left."""
     md = td.simulate(scene, duration=1e4, seed=3)
     walls = ("right_wall", "top_wall", "any_wall")
-    hits = [scene.accessible_fraction(w) * scene.copies(w) / md[f"{w}_time"].u for w in walls]
+    hits = [scene.accessible_fraction(w) * scene.multiplicity(w) / md[f"{w}_time"].u for w in walls]
     left = hits[0] + hits[1] - hits[2]
     assert abs(left.nominal_value) < 1e-12
     assert left.std_dev < 1e-6 * hits[2].std_dev

@@ -45,7 +45,7 @@ def draw(name, results):
         if path is None:
             return None
         tables[table] = TABLES[table].read(path)
-    tables |= {table: read_table(path) for table, path in entry.kept.items()}
+    tables |= {table: read_table(path) for table, path in entry.long_runs.items()}
     return DRAW[name](BOX, tables) if name in DRAW else draw_figure(name, BOX, *tables.values())
 
 

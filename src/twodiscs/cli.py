@@ -305,9 +305,9 @@ def _exact(scene, options):
 
     numbers = exact(scene)
     if options.csv:
-        from twodiscs.analysis.tables import Theory
+        from twodiscs.analysis.tables import TheoryTable
 
-        _print_csv(Theory.rows(Box.of(scene), [scene.radius]))
+        _print_csv(TheoryTable.rows(Box.of(scene), [scene.radius]))
     elif options.json:
         _print_json(numbers)
     else:

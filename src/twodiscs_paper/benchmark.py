@@ -18,11 +18,11 @@ from twodiscs.dynamics.many import engine
 from twodiscs.model.events import EVENTS, SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
-from twodiscs.sampling.separations import separation_sampler
-from twodiscs.sampling.starts import states
+from twodiscs.sampling.conditioned import conditioned_sampler
+from twodiscs.sampling.initial_states import states
 from twodiscs.theory.exact import event_rate
 from twodiscs_paper.studies.accuracy_cost import scalar
-from twodiscs_paper.studies.effects.cost import (
+from twodiscs_paper.studies.effects.price import (
     BLOCKS,
     SCENE,
     compared,
@@ -30,7 +30,7 @@ from twodiscs_paper.studies.effects.cost import (
     lockstep,
     timed,
 )
-from twodiscs_paper.studies.effects.cost import rows as cost_rows
+from twodiscs_paper.studies.effects.price import rows as cost_rows
 
 
 def in_long_box(discs, hops, events=1_000_000):
@@ -48,14 +48,14 @@ def in_long_box(discs, hops, events=1_000_000):
 
 def lockstep_intervals(intervals=5_000_000):
     """Record exact intervals between vertical hops; events are their time times the event rate."""
-    summary, seconds = timed(lambda: runs.IntervalRun(SCENE, "vertical_hop", intervals, 1).run())
+    summary, seconds = timed(lambda: runs.IntervalsRun(SCENE, "vertical_hop", intervals, 1).run())
     return summary.intervals * summary.mean * event_rate(SCENE), seconds
 
 
 def scalar_engine(blocks=BLOCKS // 8):
     """Do the same as ``lockstep``, one trajectory after the other."""
     duration = runs.engine_of(SCENE).replica_duration(SCENE)
-    draw = separation_sampler(SCENE)
+    draw = conditioned_sampler(SCENE)
     arguments = (REPLICAS, duration, SCENE.contact_distance, draw, (0, 0))
     counted, seconds = timed(lambda: scalar.count_blocks(np.uint64(1), 0, blocks, *arguments))
     return scalar.simulated_events(counted[0]), seconds

@@ -9,7 +9,7 @@ from importlib import import_module
 from pathlib import Path
 
 from twodiscs.analysis.tables import SCENE_TABLES
-from twodiscs.figures.catalogue import ANIMATION, FIGURES
+from twodiscs.figures.scene_figures import ANIMATION, FIGURES
 from twodiscs_paper.studies.effects.study import Benchmark
 from twodiscs_paper.study import Study
 
@@ -32,8 +32,8 @@ ALL_FIGURES = {**FIGURES, **STUDY_FIGURES, "animation": ANIMATION}
 
 #: The tables of studies, {name: table}, those of long runs that figures read, and all tables.
 STUDY_TABLES = {table.name(): table for study in STUDIES.values() for table in study.tables}
-KEPT_TABLES = {table.name(): table for study in STUDIES.values() for table in study.kept}
-TABLES = {**SCENE_TABLES, **STUDY_TABLES, **KEPT_TABLES, "benchmark": Benchmark}
+LONG_RUN_TABLES = {table.name(): table for study in STUDIES.values() for table in study.long_runs}
+TABLES = {**SCENE_TABLES, **STUDY_TABLES, **LONG_RUN_TABLES, "benchmark": Benchmark}
 
 #: The tables with seconds that belong to no study, and the documents that show them.
 TIMED = {"cost", "benchmark", "paper", "paper_numbers", "report"}

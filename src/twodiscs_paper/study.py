@@ -23,7 +23,7 @@ class Study:
 
     ``figures`` are {name: ``Figure``}. ``about_plain`` studies are about scenes without effects.
     ``seconds`` is about how long the table takes: a number, or a function of a ``Configuration``.
-    ``kept`` tables are those of long runs, in ``paper/long_run``, which figures read.
+    ``long_runs`` tables are those of long runs, in ``paper/long_run``, which figures read.
     ``timed`` tables hold seconds, which differ from run to run. Pages list studies by their
     ``order``. The scores z in the first table of a ``checked`` study are part of the check.
     """
@@ -33,7 +33,7 @@ class Study:
     tables: tuple[type[Table], ...]
     seconds: Callable | float
     order: int
-    kept: tuple[type[Table], ...] = ()
+    long_runs: tuple[type[Table], ...] = ()
     figures: dict = field(default_factory=dict)
     parameters: Callable = lambda configuration: {}
     reads: Callable = lambda configuration: {}

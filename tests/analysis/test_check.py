@@ -10,7 +10,7 @@ from effect_scenes import SCENES
 from factory import BOX, RADII, Laws, as_theory, exact_values, scenes
 
 from twodiscs.analysis import check, scores
-from twodiscs.analysis.tables import Areas, HopHistogram, MeanTimes, Volume
+from twodiscs.analysis.tables import AreasTable, HopHistogramTable, MeanTimesTable, VolumeTable
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.theory import exact
@@ -49,10 +49,10 @@ def table_of(points, theory, alarm=scores.FALSE_ALARM, scene=SCENE):
     points = [point for some in points.values() for point in some]
     with as_theory(theory):
         compared = check.comparisons(
-            Volume.rows(points),
-            Areas.rows(points),
-            MeanTimes.rows(points),
-            HopHistogram.rows(points),
+            VolumeTable.rows(points),
+            AreasTable.rows(points),
+            MeanTimesTable.rows(points),
+            HopHistogramTable.rows(points),
             [point for point in points if point.stage == "dynamics"],
         )
     return check.check_rows(compared, alarm)

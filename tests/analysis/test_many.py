@@ -11,14 +11,14 @@ from factory import POINTS
 
 import twodiscs as td
 from twodiscs.analysis import check
-from twodiscs.analysis.tables import Check
+from twodiscs.analysis.tables import CheckTable
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import engine
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
-from twodiscs.points.base import content_of, with_arrays
-from twodiscs.sampling import montecarlo, starts
+from twodiscs.points.base import content_of, restore_arrays
+from twodiscs.sampling import initial_states, montecarlo
 from twodiscs.theory import exact
 
 #: With an exact value, and without; between walls, and on a ring.
@@ -59,16 +59,21 @@ def measured(request):
     target = dict.fromkeys(scene.events, 5e-3)
     quantities = ["volume", *(f"{event}_area" for event in scene.events)]
     points = {
-        "dynamics": [runs.CountingRun(scene, target, 5 * 10**6, 3).run()],
-        "monte_carlo": [montecarlo.SamplingRun(scene, quantities, 100_000, 0.02, 4).run()],
+        "dynamics": [runs.DynamicsRun(scene, target, 5 * 10**6, 3).run()],
+        "monte_carlo": [montecarlo.MonteCarloRun(scene, quantities, 100_000, 0.02, 4).run()],
     }
     for stage, some in points.items():
         contents = [content_of(stage, {}, {}, point.parts) for point in some]
         points[stage] = [
-            POINTS[stage].of(scene, with_arrays(content["parts"]))
+            POINTS[stage].of(scene, restore_arrays(content["parts"]))
             for content in json.loads(json.dumps(contents))
         ]
-    return request.param, scene, points, Check.rows([p for some in points.values() for p in some])
+    return (
+        request.param,
+        scene,
+        points,
+        CheckTable.rows([p for some in points.values() for p in some]),
+    )
 
 
 def test_nothing_fails(measured):
@@ -99,7 +104,7 @@ def test_a_wrong_rate_is_found_without_an_exact_value(measured):
         pytest.skip("of scenes between walls without an exact value")
     point = points["dynamics"][0]
     point = replace(point, duration=1.1 * point.duration)
-    rows = Check.rows([point, *points["monte_carlo"]])
+    rows = CheckTable.rows([point, *points["monte_carlo"]])
     failed = {row["comparison"] for row in rows if row["passed"] is False}
     assert {"sum_rule", "flux"} <= failed
 
@@ -124,7 +129,7 @@ def test_a_trajectory_is_that_of_another_program(name):
     n, ring = scene.discs, scene.width if scene.periodic else 0.0
     box = scene.range_x / 2, scene.range_y / 2, scene.contact_distance, ring
     duration = engine.duration_of(scene, 16)
-    for state in starts.states(scene, 20, 11).T:
+    for state in initial_states.states(scene, 20, 11).T:
         frame = td.trajectory(scene, start=state, duration=1.1 * duration)
         parts = [np.array(part) for part in state.reshape(4, n)]
         scalar_many.run(*parts, *box, 1, duration, np.zeros(n), 0.0)
@@ -151,8 +156,8 @@ def test_the_mean_interval_is_compared_where_it_is_known(name):
     first, second = found.density[:2]
     assert found.at_zero.value == pytest.approx((3 * first - second) / 2, rel=1e-12)
     assert found.more(3e5).rows == td.intervals(scene, hop, 3e5, seed=2, name=name).rows
-    point = runs.IntervalRun(scene, hop, 10**5, 6).run()
-    (row,) = (row for row in Check.rows([point]) if row["comparison"] == "hop_interval")
+    point = runs.IntervalsRun(scene, hop, 10**5, 6).run()
+    (row,) = (row for row in CheckTable.rows([point]) if row["comparison"] == "hop_interval")
     if name in KNOWN:
         assert row["passed"] is row["independent"] is True
     else:

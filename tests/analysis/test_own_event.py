@@ -14,7 +14,7 @@ LAST = '        Event("any_wall", "walls"),\n'
 #: Scenes whose walls have different multiplicities, and more discs with and without exact values.
 MEASURED = """
 import sys
-from twodiscs.analysis.tables import Check, Theory
+from twodiscs.analysis.tables import CheckTable, TheoryTable
 from twodiscs.dynamics import runs
 from twodiscs.model.box import Box
 from twodiscs.model.events import DECLARED
@@ -34,10 +34,10 @@ for scene in (
     assert (own in scene.events) == (DECLARED[own].axis in scene.walled)
     quantities = ["volume", *(f"{event}_area" for event in scene.events)]
     points = {
-        "dynamics": [runs.CountingRun(scene, dict.fromkeys(scene.events, 5e-3), 10**7, 3).run()],
-        "monte_carlo": [montecarlo.SamplingRun(scene, quantities, 400_000, 0.1, 4).run()],
+        "dynamics": [runs.DynamicsRun(scene, dict.fromkeys(scene.events, 5e-3), 10**7, 3).run()],
+        "monte_carlo": [montecarlo.MonteCarloRun(scene, quantities, 400_000, 0.1, 4).run()],
     }
-    rows = Check.rows([p for some in points.values() for p in some])
+    rows = CheckTable.rows([p for some in points.values() for p in some])
     assert [row for row in rows if row["passed"] is False] == []
     compared = {row["quantity"] for row in rows if row["z"] is not None}
     if own in scene.events:

@@ -10,10 +10,10 @@ from scipy.special import ndtri, stdtr
 
 import twodiscs as td
 from twodiscs.analysis.tables import (
-    Areas,
-    HopHistogram,
-    MeanTimes,
-    Volume,
+    AreasTable,
+    HopHistogramTable,
+    MeanTimesTable,
+    VolumeTable,
     _sampled_row,
 )
 from twodiscs.dynamics import runs
@@ -22,9 +22,9 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
-from twodiscs.points.dynamics import StripCount
-from twodiscs.points.intervals import Bins
-from twodiscs.sampling.montecarlo import SamplingRun
+from twodiscs.points.dynamics_point import StripCount
+from twodiscs.points.intervals_point import Bins
+from twodiscs.sampling.montecarlo import MonteCarloRun
 from twodiscs.theory.exact import rate, replicas_needed
 
 
@@ -38,7 +38,7 @@ def laws():
 
 def test_the_whole_wall_area_is_four_times_right_and_top(laws):
     point = laws[1].monte_carlo(np.random.default_rng(2), 10**7)
-    found = {row["quantity"]: row for row in Areas.rows([point])}
+    found = {row["quantity"]: row for row in AreasTable.rows([point])}
     right, top, whole = (found[f"{e}_area"] for e in ("right_wall", "top_wall", "any_wall"))
     assert whole["estimate"] == pytest.approx(4 * (right["estimate"] + top["estimate"]), rel=1e-14)
     assert whole["expectation"] == 4 * (right["expectation"] + top["expectation"])
@@ -47,15 +47,15 @@ def test_the_whole_wall_area_is_four_times_right_and_top(laws):
         4 * math.hypot(right["stderr"], top["stderr"]), rel=1e-2
     )
     correlated = replace(point, right_and_top=min(right["hits"], top["hits"]))
-    found = {row["quantity"]: row for row in Areas.rows([correlated])}
+    found = {row["quantity"]: row for row in AreasTable.rows([correlated])}
     assert found["any_wall_area"]["stderr"] > 1.1 * whole["stderr"]
 
 
 def test_only_watched_areas_have_rows(laws):
     point = laws[1].monte_carlo(np.random.default_rng(2), 10**6)
-    found = Areas.rows([point], ("any_wall", "vertical_hop"))
+    found = AreasTable.rows([point], ("any_wall", "vertical_hop"))
     assert [row["quantity"] for row in found] == ["vertical_hop_area", "any_wall_area"]
-    assert Volume.rows([replace(point, quantities={})]) == []
+    assert VolumeTable.rows([replace(point, quantities={})]) == []
 
 
 def part_row(hits, samples, expectation=0.5, exact=0.5):
@@ -92,7 +92,7 @@ def test_the_shell_of_a_blocked_hop_must_be_as_empty_as_it_is():
 def time_row(total=0, squares=0, exact=50.0, radius=0.37, **given):
     point = counts_point(radius, total=total, squares=squares, **given)
     with as_theory({(radius, "vertical_hop_time"): exact}):
-        (row,) = MeanTimes.rows([point])
+        (row,) = MeanTimesTable.rows([point])
     return row
 
 
@@ -101,7 +101,7 @@ def test_walls_that_symmetry_makes_equal_have_one_row(laws):
     for radius, copies in ((0.2, 4), (0.3, 2)):
         law = laws[RADII.index(radius)]
         point = law.dynamics(np.random.default_rng(4))
-        found = {row["event"]: row for row in MeanTimes.rows([point])}
+        found = {row["event"]: row for row in MeanTimesTable.rows([point])}
         row = found["right_wall"]
         assert row["copies"] == copies
         assert abs(row["z"]) < 5
@@ -123,7 +123,7 @@ def test_a_rare_hop_has_the_row_of_its_strip(laws):
         strata=([[0.499, 0.501]], [[n, n]], [[slow, fast]], [[slow, fast]]),
     )  # fmt: skip
     point = replace(point, strips={"horizontal_hop": strip})
-    found = {row["event"]: row for row in MeanTimes.rows([point])}
+    found = {row["event"]: row for row in MeanTimesTable.rows([point])}
     assert [row["starts"] for row in found.values()].count("strip") == 1
     row = found["horizontal_hop"]
     assert (row["starts"], row["share"], row["count"]) == ("strip", 0.004, count)
@@ -134,7 +134,7 @@ def test_a_rare_hop_has_the_row_of_its_strip(laws):
     mean = [0.499, 0.501] @ rates
     assert row["relative_stderr"] == pytest.approx(error / mean, rel=1e-9)
     assert row["z"] == pytest.approx((mean / 1.001 - mean) / error, abs=1e-3)
-    (other,) = MeanTimes.rows([point], without_strips=True)
+    (other,) = MeanTimesTable.rows([point], without_strips=True)
     assert (other["starts"], other["event"]) == ("invariant", "horizontal_hop")
     assert other["count"] == point.counts["horizontal_hop"]
     assert other["replicas"] == point.replicas
@@ -185,7 +185,7 @@ def test_where_no_exact_value_is_known_what_is_seen_stands():
 def test_rows_of_the_histogram(laws):
     rng = np.random.default_rng(5)
     points = [laws[i].intervals(rng) for i in (2, 1)]
-    found = HopHistogram.rows(points)
+    found = HopHistogramTable.rows(points)
     assert [row["radius"] for row in found] == [0.1] * 17 + [0.2] * 17
     for row in found:
         tau = row["exact_mean"]
@@ -195,10 +195,10 @@ def test_rows_of_the_histogram(laws):
         assert abs(row["z"]) < 5
         assert row["z"] == pytest.approx((row["mean"] - tau) / row["mean_stderr"], rel=0.02)
     empty = replace(points[0], equal=Bins([0, 1, 2], [0, 5], [0, 5]))
-    first, second = [row for row in HopHistogram.rows([empty]) if row["bins"] == "equal"]
+    first, second = [row for row in HopHistogramTable.rows([empty]) if row["bins"] == "equal"]
     assert (first["density"], first["stderr"]) == (0.0, None)
     assert second["stderr"] > 0
-    few = HopHistogram.rows([laws[2].intervals(rng, chains=99)])
+    few = HopHistogramTable.rows([laws[2].intervals(rng, chains=99)])
     assert few[0]["z"] is few[0]["mean_stderr"] is None
 
 
@@ -217,11 +217,11 @@ def test_columns_scale_as_their_units_say():
         scene = box.scene(radius)
         sampled = ["volume", "vertical_hop_area", "disc_collision_area"]
         points = [
-            runs.CountingRun(scene, dict.fromkeys(EVENTS, 1.0), 1, 7).run(),
-            runs.IntervalRun(scene, "vertical_hop", 1, 7).run(),
-            SamplingRun(scene, sampled, 1, 0.02, 7).run(),
+            runs.DynamicsRun(scene, dict.fromkeys(EVENTS, 1.0), 1, 7).run(),
+            runs.IntervalsRun(scene, "vertical_hop", 1, 7).run(),
+            MonteCarloRun(scene, sampled, 1, 0.02, 7).run(),
         ]
-        tables = Volume, Areas, MeanTimes, HopHistogram
+        tables = VolumeTable, AreasTable, MeanTimesTable, HopHistogramTable
         rows = [(table, row) for table in tables for row in table.rows(points)]
         found.append([(name, c, row[name]) for t, row in rows for name, c in t.columns.items()])
     for (name, column, one), (*_, other) in zip(*found, strict=True):
@@ -242,7 +242,7 @@ def test_the_bound_of_a_wall_never_hit_counts_no_copy_twice():
     point = Laws(scene).dynamics(np.random.default_rng(1))
     none = {name: dict.fromkeys(getattr(point, name), 0) for name in ("counts", "products")}
     point = replace(point, **none)
-    rows = MeanTimes.rows([point])
+    rows = MeanTimesTable.rows([point])
     possible = [row for row in rows if row["status"] != "impossible"]
     assert {row["copies"] for row in possible} == {1, 2, 4}
     due = point.replicas * point.duration / (4 * math.log(20))
@@ -262,7 +262,7 @@ def test_an_error_smaller_than_asked_needs_its_own_initial_states(replicas, stat
         scene=scene, replicas=replicas, target={event: 0.5},
     )  # fmt: skip
     with as_theory({(scene.radius, f"{event}_time"): 1.0}):
-        (row,) = MeanTimes.rows([point])
+        (row,) = MeanTimesTable.rows([point])
     assert row["status"] == status
     assert (row["stderr"] is None) == (status == "too-few")
 
@@ -274,7 +274,7 @@ def test_the_mean_of_a_histogram_is_tested_over_chains(chains):
     point = laws.intervals(np.random.default_rng(2), chains)
     exact = laws.times["vertical_hop"]
     point = replace(point, mean=exact - 5 * point.stderr)
-    (z,) = {row["z"] for row in HopHistogram.rows([point])}
+    (z,) = {row["z"] for row in HopHistogramTable.rows([point])}
     assert z == pytest.approx(ndtri(stdtr(chains - 1, -5.0)), abs=2e-3)
     assert abs(z - ndtri(stdtr(point.intervals - 1, -5.0))) > 0.1
 

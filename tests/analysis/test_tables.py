@@ -12,15 +12,15 @@ from factory import empty
 from twodiscs.analysis import tables
 from twodiscs.analysis.tables import (
     SCENE_TABLES,
-    Areas,
-    Check,
-    Cost,
-    Grid,
-    HopHistogram,
-    MeanTimes,
+    AreasTable,
+    CheckTable,
+    CostTable,
+    GridTable,
+    HopHistogramTable,
+    MeanTimesTable,
     Table,
-    Theory,
-    Trajectory,
+    TheoryTable,
+    TrajectoryTable,
 )
 from twodiscs.measure import load
 from twodiscs.measure.load import plugin
@@ -47,7 +47,7 @@ def test_every_table_of_a_scene_is_known_and_makes_its_rows():
 
 # Files ----------------------------------------------------------------------------------------
 
-CHECK_ROW = empty(Check, 
+CHECK_ROW = empty(CheckTable, 
     comparison="area", quantity="right_wall_area", radius=0.1, method="monte_carlo", exact=1 / 3,
     z=-math.inf, p=0.0, bound=5, passed=False, independent=True, status="none-seen",
     test="exact-tail",
@@ -60,15 +60,15 @@ COST_ROW = {"stage": "dynamics", "radius": 1e-05, "events": 2**53 + 1, "seconds"
 @pytest.mark.parametrize(
     ("table", "rows"),
     [
-        (Cost, lambda: []),
-        (Cost, lambda: [COST_ROW, COST_ROW]),
-        (Check, lambda: [CHECK_ROW]),
-        (Theory, lambda: Theory.rows(BOX, [0.3, 0.1])),
-        (Grid, lambda: Grid.rows(Box(40.0, 0.6, discs=64), [0.1, 0.2])),
-        (Trajectory, lambda: Trajectory.rows(Box(1.5, 1.0, discs=4), 0.1, 1)),
-        (MeanTimes, lambda: MeanTimes.rows([LAWS.dynamics(RNG)])),
-        (Areas, lambda: Areas.rows([LAWS.monte_carlo(RNG, 10**7)])),
-        (HopHistogram, lambda: HopHistogram.rows([LAWS.intervals(RNG)])),
+        (CostTable, lambda: []),
+        (CostTable, lambda: [COST_ROW, COST_ROW]),
+        (CheckTable, lambda: [CHECK_ROW]),
+        (TheoryTable, lambda: TheoryTable.rows(BOX, [0.3, 0.1])),
+        (GridTable, lambda: GridTable.rows(Box(40.0, 0.6, discs=64), [0.1, 0.2])),
+        (TrajectoryTable, lambda: TrajectoryTable.rows(Box(1.5, 1.0, discs=4), 0.1, 1)),
+        (MeanTimesTable, lambda: MeanTimesTable.rows([LAWS.dynamics(RNG)])),
+        (AreasTable, lambda: AreasTable.rows([LAWS.monte_carlo(RNG, 10**7)])),
+        (HopHistogramTable, lambda: HopHistogramTable.rows([LAWS.intervals(RNG)])),
     ],
 )
 def test_a_table_is_read_as_it_was_written(tmp_path, table, rows):
@@ -83,14 +83,14 @@ def test_a_table_is_read_as_it_was_written(tmp_path, table, rows):
 
 
 def test_cells_have_all_digits_and_lines_end_alike(tmp_path):
-    Cost.write(tmp_path / "x.csv", [COST_ROW])
+    CostTable.write(tmp_path / "x.csv", [COST_ROW])
     assert (tmp_path / "x.csv").read_bytes() == (
         b"stage,radius,events,seconds\ndynamics,1e-05,9007199254740993,0.30000000000000004\n"
     )
     row = {"stage": "dynamics", "events": np.int64(7), "radius": np.float64(0.1)}
-    Cost.write(tmp_path / "x.csv", [row])
+    CostTable.write(tmp_path / "x.csv", [row])
     assert (tmp_path / "x.csv").read_text().endswith("dynamics,0.1,7,\n")
-    Check.write(tmp_path / "x.csv", [CHECK_ROW])
+    CheckTable.write(tmp_path / "x.csv", [CHECK_ROW])
     assert (tmp_path / "x.csv").read_text().splitlines()[1] == (
         "area,right_wall_area,0.1,monte_carlo,0.3333333333333333,,,-inf,0.0,5.0,false,"
         "true,none-seen,exact-tail"
@@ -111,9 +111,9 @@ def test_cells_have_all_digits_and_lines_end_alike(tmp_path):
 )
 def test_a_wrong_cell_writes_nothing(tmp_path, change, message):
     with pytest.raises(ValueError, match=message):
-        Cost.write(tmp_path / "x.csv", [COST_ROW, {**COST_ROW, **change}])
+        CostTable.write(tmp_path / "x.csv", [COST_ROW, {**COST_ROW, **change}])
     with pytest.raises(ValueError, match="passed must be a bool"):
-        Check.write(tmp_path / "x.csv", [{**CHECK_ROW, "passed": 1}])
+        CheckTable.write(tmp_path / "x.csv", [{**CHECK_ROW, "passed": 1}])
     assert not (tmp_path / "x.csv").exists()
 
 
@@ -132,25 +132,25 @@ def test_a_wrong_cell_writes_nothing(tmp_path, change, message):
 def test_a_wrong_file_is_named(tmp_path, text, message):
     (tmp_path / "theory.csv").write_bytes(text.encode("latin-1"))
     with pytest.raises(ValueError, match=rf"theory\.csv must be a table theory, but .*{message}"):
-        Theory.read(tmp_path / "theory.csv")
+        TheoryTable.read(tmp_path / "theory.csv")
 
 
 def test_columns_that_the_table_does_not_know_are_left_out(tmp_path):
     """A later version may have one more, at any place."""
     text = "radius,colour,quantity,exact,more\n0.1,red,volume,1.0,\n"
     (tmp_path / "theory.csv").write_text(text)
-    assert Theory.read(tmp_path / "theory.csv") == [
+    assert TheoryTable.read(tmp_path / "theory.csv") == [
         {"radius": 0.1, "quantity": "volume", "exact": 1.0}
     ]
-    assert list(load.read(tmp_path / "theory.csv", Theory)) == ["radius", "quantity", "exact"]
+    assert list(load.read(tmp_path / "theory.csv", TheoryTable)) == ["radius", "quantity", "exact"]
 
 
 def test_a_truth_value_is_spelled_in_one_way(tmp_path):
-    Check.write(tmp_path / "x.csv", [CHECK_ROW])
+    CheckTable.write(tmp_path / "x.csv", [CHECK_ROW])
     text = (tmp_path / "x.csv").read_text()
     (tmp_path / "x.csv").write_text(text.replace(",false,", ",False,"))
     with pytest.raises(ValueError, match="passed has 'False', which is no bool"):
-        Check.read(tmp_path / "x.csv")
+        CheckTable.read(tmp_path / "x.csv")
 
 
 @pytest.mark.parametrize(

@@ -15,9 +15,9 @@ from twodiscs.model.box import Box, stream_seed
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import AXIS, EVENTS, HOPS
 from twodiscs.model.scene import Scene
-from twodiscs_paper.configuration import load, scene, schema
-from twodiscs_paper.configuration.load import read
+from twodiscs_paper.configuration import scene_block, schema, yaml_files
 from twodiscs_paper.configuration.request import STAGES, Quantities
+from twodiscs_paper.configuration.yaml_files import read
 
 ROOT = Path(__file__).resolve().parents[2]
 PLAIN = {"scenes": [{"name": "one", "box": {"width": 1.5, "height": 1}}]}
@@ -25,7 +25,7 @@ PLAIN = {"scenes": [{"name": "one", "box": {"width": 1.5, "height": 1}}]}
 
 def one(**keys):
     """The only scene of a configuration: a 1.5 × 1 box with these keys."""
-    (request,) = load.load({"scenes": [PLAIN["scenes"][0] | keys]}).scenes
+    (request,) = yaml_files.load({"scenes": [PLAIN["scenes"][0] | keys]}).scenes
     return request
 
 
@@ -34,10 +34,10 @@ def one(**keys):
 
 def test_the_draft_is_a_quick_look_at_the_scenes_of_the_default_configuration():
     mapping = read(ROOT / "config/config.yaml")
-    full = load.load(mapping)
+    full = yaml_files.load(mapping)
     # As --configfile does: the draft's lists replace, its blocks are merged.
     update_config(mapping, read(ROOT / "config/draft.yaml"))
-    draft = load.load(mapping)
+    draft = yaml_files.load(mapping)
     assert (full.results, draft.results) == ("results", "results/draft")
     for quick, slow in zip(draft.scenes, full.scenes, strict=True):
         assert (quick.name, quick.box) == (slow.name, slow.box)
@@ -132,7 +132,7 @@ def test_accuracy_has_three_forms():
 
 def test_numbers_have_one_form():
     mapping = deepcopy(PLAIN)
-    load.load(mapping)
+    yaml_files.load(mapping)
     assert mapping == PLAIN  # which stays as it was
     forms = [
         {"radii": [0.2, 0.1], "event_budget": "2e6", "accuracy": "1e-3"},
@@ -200,7 +200,7 @@ def test_seeds_differ_between_scenes_methods_and_radii_and_follow_the_root():
     every = []
     for seed in (1, 2):
         mapping = {"seed": seed, "scenes": [PLAIN["scenes"][0] | BASE | {"name": n} for n in "ab"]}
-        for request in load.load(mapping).scenes:
+        for request in yaml_files.load(mapping).scenes:
             every.append(request.trajectory_seed)
             every += [request.seed_of(*job) for job in jobs(request) if len(job) == 2]
     assert len(set(every)) == len(every) == 2 * 2 * (2 + 2 + 4 + 1)
@@ -282,26 +282,30 @@ def test_effects_that_are_absent_leave_no_trace(effects):
 def test_what_is_about_a_plain_scene_needs_one():
     plain = PLAIN["scenes"][0] | {"name": "plain"}
     field = PLAIN["scenes"][0] | {"name": "field", "effects": {"field": 1}}
-    assert load.load({"scenes": [field, plain]}).main.name == "plain"
-    alone = load.load({"scenes": [field]})
+    assert yaml_files.load({"scenes": [field, plain]}).main.name == "plain"
+    alone = yaml_files.load({"scenes": [field]})
     assert alone.main is None
     assert alone.shared == ("report",)
-    with pytest.raises(load.ConfigError, match="shared must leave out 'tails' if every scene"):
-        load.load({"scenes": [field], "shared": ["report", "tails"]})
+    with pytest.raises(
+        yaml_files.ConfigError, match="shared must leave out 'tails' if every scene"
+    ):
+        yaml_files.load({"scenes": [field], "shared": ["report", "tails"]})
     tiny = plain | {"box": {"width": 1e-50, "height": 1e-50}, "watch": {"volume": True}}
-    with pytest.raises(load.ConfigError, match="shared must leave out 'stability' unless"):
-        load.load({"scenes": [tiny], "shared": ["stability"]})
-    assert load.load({"scenes": [tiny], "shared": ["errata"]}).main.name == "plain"
+    with pytest.raises(yaml_files.ConfigError, match="shared must leave out 'stability' unless"):
+        yaml_files.load({"scenes": [tiny], "shared": ["stability"]})
+    assert yaml_files.load({"scenes": [tiny], "shared": ["errata"]}).main.name == "plain"
 
 
 def test_the_fewest_intervals_are_a_block():
-    assert scene.LEAST_INTERVALS == runs.CHAINS * runs.RETURNS
+    assert scene_block.LEAST_INTERVALS == runs.CHAINS * runs.RETURNS
 
 
 def test_radii_too_close_to_the_largest_are_refused_for_dynamics_alone():
     largest = Box(1.5, 1.0).largest_radius
     close, far = largest * (1 - 3e-14), largest * (1 - 1.01e-12)
-    with pytest.raises(load.ConfigError, match=rf"{close!r} must not exceed 0\.3839745962\d+ for"):
+    with pytest.raises(
+        yaml_files.ConfigError, match=rf"{close!r} must not exceed 0\.3839745962\d+ for"
+    ):
         one(radii=[close])
     assert one(radii=[far]).radii == (far,)
     assert one(radii=[close], watch={"volume": True}).radii == (close,)
@@ -319,7 +323,7 @@ def test_more_discs_are_a_scene_of_their_own():
     assert ring.quantities.trajectory == 0.143  # half of the largest radius
     histogram = one(discs=3, radii=[0.1], watch={"hop_histogram": {"event": "horizontal_hop"}})
     assert histogram.quantities.hop_histogram == (0.025, 0.075, 0.125, 0.175)
-    configuration = load.load({"scenes": [PLAIN["scenes"][0] | {"discs": 3, "radii": [0.1]}]})
+    configuration = yaml_files.load({"scenes": [PLAIN["scenes"][0] | {"discs": 3, "radii": [0.1]}]})
     assert configuration.plain == ()
 
 
@@ -329,10 +333,10 @@ def test_results_are_a_folder_that_holds_no_sources(tmp_path, monkeypatch):
         (tmp_path / name).mkdir()
     (tmp_path / "README.md").write_text("text")
     for good in ("out", "out/new", "results", f"{tmp_path}/out"):
-        load.check_results(good, tmp_path)
+        yaml_files.check_results(good, tmp_path)
     for bad in ("README.md", "README.md/new", f"{tmp_path}/docs", f"{tmp_path}/docs/new"):
-        with pytest.raises(load.ConfigError, match=f"results must be .*, not '{bad}'"):
-            load.check_results(bad, tmp_path)
+        with pytest.raises(yaml_files.ConfigError, match=f"results must be .*, not '{bad}'"):
+            yaml_files.check_results(bad, tmp_path)
 
 
 def test_monte_carlo_samples_at_most_64_discs():
@@ -347,5 +351,5 @@ def test_described_scenes_name_the_events_that_dynamics_detects():
     box = {"width": 1.5, "height": 1.0}
     some = {"name": "some", "box": box, "watch": {"mean_times": ["top_wall", "disc_collision"]}}
     none = {"name": "none", "box": box, "watch": {"volume": True, "mean_times": False}}
-    described = load.load({"scenes": [some, none]}).described()
+    described = yaml_files.load({"scenes": [some, none]}).described()
     assert [scene["detected"] for scene in described] == [["disc_collision", "top_wall"], []]

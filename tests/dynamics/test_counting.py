@@ -12,7 +12,7 @@ from marks import slow
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import WALL_Y1, WALL_Y2
-from twodiscs.dynamics.two import lockstep
+from twodiscs.dynamics.two import event_counts
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS, WALLS
 from twodiscs.model.scene import Scene
@@ -42,12 +42,12 @@ def test_in_a_field_a_disc_at_the_floor_does_not_hit_the_top():
         for height in (-0.3, 0.3):
             after = [0.0, -height, 0.0, -height]
             after[y] = height
-            assert lockstep.SEEN["top_wall"](code, None, after, True, 0.4) == (height > 0)
+            assert event_counts.SEEN["top_wall"](code, None, after, True, 0.4) == (height > 0)
 
 
 def test_packed_counts_do_not_run_over():
     """A lane sees an event once in a pass at most, and a field has eight bits."""
-    assert lockstep.UNPACKED < 2**8
+    assert event_counts.UNPACKED < 2**8
 
 
 def test_any_duration_is_unbiased():
@@ -68,18 +68,18 @@ def test_what_is_not_watched_is_not_detected():
 
 
 def test_accuracy_is_reached_or_the_budget_is_spent():
-    point = runs.CountingRun(PAPER, {"vertical_hop": 2e-3, "any_wall": 0.01}, 10**9, 1).run()
+    point = runs.DynamicsRun(PAPER, {"vertical_hop": 2e-3, "any_wall": 0.01}, 10**9, 1).run()
     assert all_reached(point)
     assert point.products.keys() == {
         "vertical_hop*vertical_hop", "vertical_hop*any_wall", "any_wall*any_wall"
     }  # fmt: skip
     mean = point.duration * point.replicas / point.counts["vertical_hop"]
     assert abs(mean / mean_times(PAPER)["vertical_hop"] - 1) <= 5 * 2e-3
-    spent = runs.CountingRun(PAPER, {"horizontal_hop": 1e-6}, 2 * 10**7, 1).run()
+    spent = runs.DynamicsRun(PAPER, {"horizontal_hop": 1e-6}, 2 * 10**7, 1).run()
     assert not all_reached(spent)
     # The last round may run over the budget by the scatter of the events in it, not by more.
     assert 1.8e7 < spent.events < 2.02e7
-    assert spent == runs.CountingRun(PAPER, {"horizontal_hop": 1e-6}, 2 * 10**7, 1).run()
+    assert spent == runs.DynamicsRun(PAPER, {"horizontal_hop": 1e-6}, 2 * 10**7, 1).run()
 
 
 def test_relative_errors_are_those_of_the_replicas():
@@ -93,7 +93,7 @@ def test_relative_errors_are_those_of_the_replicas():
 
 def test_a_blocked_hop_is_not_waited_for():
     scene = PAPER.with_radius(0.3)
-    point = runs.CountingRun(scene, {"horizontal_hop": 1e-9}, 10**9, 1).run()
+    point = runs.DynamicsRun(scene, {"horizontal_hop": 1e-9}, 10**9, 1).run()
     assert point.counts == {"horizontal_hop": 0}
     assert [*point.parts["all"]["sums"]] == [(0, 32)]
 

@@ -15,12 +15,12 @@ from marks import slow
 from sampling.uniformity import assert_uniform_on_sphere, parts, scaled_components
 
 import twodiscs as td
-from twodiscs.dynamics import trajectory
+from twodiscs.dynamics import paths
 from twodiscs.dynamics.ensemble import open_kicks
 from twodiscs.dynamics.law import redrawn
 from twodiscs.dynamics.two.follow import new_kicks
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.starts import components, states
+from twodiscs.sampling.initial_states import components, states
 from twodiscs.sampling.streams import exponential, open_stream
 from twodiscs.theory import exact
 
@@ -100,8 +100,8 @@ def test_kicks_have_other_random_numbers_than_initial_states():
 @pytest.mark.parametrize("discs", [2, 3])
 def test_states_of_two_blocks_are_kicked_as_those_of_one_that_is_twice_as_large(discs):
     scene = Scene(1.5, 1.0, 0.1, discs=discs, friction=2.0)
-    whole = trajectory.path_of(scene).kicks_of(scene, 8, 3).waits
-    assert np.array_equal(trajectory.path_of(scene).kicks_of(scene, 4, 3, block=1).waits, whole[4:])
+    whole = paths.path_of(scene).kicks_of(scene, 8, 3).waits
+    assert np.array_equal(paths.path_of(scene).kicks_of(scene, 4, 3, block=1).waits, whole[4:])
     assert len({*whole}) == 8
 
 
@@ -110,7 +110,7 @@ def test_a_trajectory_is_kicked_at_random_times(scene):
     """Its other events are compared with the ensemble beside those of scenes without friction."""
     scene, time = replace(scene, friction=4.0), 256.0
     start = tuple(map(float, states(scene, 1, 3)[: len(components(scene)), 0]))
-    rows = list(trajectory.events_of(scene, start, time, seed=3))
+    rows = list(paths.events_of(scene, start, time, seed=3))
     kicks = sum(row[1] == "kick" for row in rows)
     assert abs(kicks - 4 * time) <= 5 * math.sqrt(4 * time)
     velocities = [i for i, name in enumerate(components(scene)) if name[0] in "uvs"]
@@ -119,7 +119,7 @@ def test_a_trajectory_is_kicked_at_random_times(scene):
             assert all(old[i] != new[i] for i in velocities)
             assert at > before
     # Another seed has the same start and other kicks.
-    other = list(trajectory.events_of(scene, start, time, seed=4))
+    other = list(paths.events_of(scene, start, time, seed=4))
     assert other[0] == rows[0]
     assert other[-1][-1] != rows[-1][-1]
 

@@ -8,10 +8,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from twodiscs.dynamics.law import law_of
-from twodiscs.dynamics.trajectory import events_of
+from twodiscs.dynamics.paths import events_of
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.starts import states
+from twodiscs.sampling.initial_states import states
 from twodiscs_paper.studies.single import advance
 
 PAPER = Scene(1.5, 1.0, 0.2)

@@ -7,12 +7,12 @@ import pytest
 from effect_scenes import SCENES
 from marks import slow
 
-from twodiscs.dynamics import runs, trajectory
+from twodiscs.dynamics import paths, runs
 from twodiscs.dynamics.many import engine
 from twodiscs.dynamics.two import returns
 from twodiscs.model.scene import Scene
-from twodiscs.points.intervals import BINS, GROWTH, wide_edges
-from twodiscs.sampling.many import initial
+from twodiscs.points.intervals_point import BINS, GROWTH, wide_edges
+from twodiscs.sampling.many import many_initial_states
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import density_at_zero
 
@@ -23,7 +23,7 @@ PAPER = Scene(1.5, 1.0, 0.2)
 @pytest.mark.parametrize("scene", [PAPER.with_radius(0.1), PAPER, slow(SCENES["field"])], ids=repr)
 def test_hop_intervals_have_their_exact_mean_and_density_at_zero(event, side, scene):
     """p(0⁺) = 3√2 / (16 (side − 2r)). In a field horizontal hops have separate starts."""
-    found = runs.IntervalRun(scene, event, 1_000_000, 10).run()
+    found = runs.IntervalsRun(scene, event, 1_000_000, 10).run()
     assert abs(found.mean - mean_times(scene)[event]) <= 5 * found.stderr
     assert sum(found.equal.counts) + found.overflow == found.intervals >= 1_000_000
     width, n = found.bin_width, found.intervals
@@ -88,8 +88,8 @@ def test_intervals_of_many_are_those_of_trajectories(scene, event):
         window, scene, event, 7, 3, 4, replicas, (width, wide), sums, going
     )
     due = np.zeros((3, 66), np.int64)
-    for k, state in enumerate(initial.states(scene, replicas, 7, 3).T):
-        rows = trajectory.events_of(scene, state, 4 * window)
+    for k, state in enumerate(many_initial_states.states(scene, replicas, 7, 3).T):
+        rows = paths.events_of(scene, state, 4 * window)
         at = np.array([time for time, name, *_ in rows if name == event])
         own = np.diff(at)[at[:-1] < window]
         assert (numbers[k], times[k]) == (own.size, pytest.approx(own.sum(), rel=1e-12))

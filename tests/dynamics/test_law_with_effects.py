@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from marks import slow
 from mpmath import mp, mpf
 
-from twodiscs.dynamics import runs, trajectory
+from twodiscs.dynamics import paths, runs
 from twodiscs.dynamics.law import (
     DISC,
     END_OF_TIME,
@@ -27,8 +27,8 @@ from twodiscs.dynamics.law import (
 from twodiscs.dynamics.two import follow
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, WALLS
 from twodiscs.model.scene import Scene
+from twodiscs.sampling.initial_states import COMPONENTS, components, states
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.starts import COMPONENTS, components, states
 
 EPS = 2.0**-52
 SCENES = effect_scenes.SCENES | {
@@ -39,8 +39,8 @@ SCENES = effect_scenes.SCENES | {
 
 
 @compiled
-def fall(position, velocity, limit, gravity):
-    return fall_quotient(position, velocity, limit, gravity)
+def fall(position, velocity, limit, field):
+    return fall_quotient(position, velocity, limit, field)
 
 
 #: Friction is no part of the law; one scene takes seconds to compile.
@@ -136,7 +136,7 @@ COUNTED = [SCENES["combination"], SCENES["friction"], slow(replace(SCENES["all"]
 
 @pytest.mark.parametrize("scene", COUNTED, ids=repr)
 def test_a_trajectory_tells_the_same_events_as_the_ensemble(scene):
-    rows = list(trajectory.events_of(scene, start(scene, 3), 64.0, seed=3))
+    rows = list(paths.events_of(scene, start(scene, 3), 64.0, seed=3))
     names = Counter(row[1] for row in rows)
     seen = {event: names[event] for event in (*HOPS, "disc_collision")}
     discs = (1, 2) if scene.identical else (1,)
@@ -162,13 +162,13 @@ def test_a_trajectory_tells_the_same_events_as_the_ensemble(scene):
 
 
 @settings(max_examples=300, deadline=None)
-@given(position=st.floats(-0.5, 0.5), velocity=st.floats(-2, 2), gravity=st.floats(1e-6, 1e3))
-def test_time_of_fall(position, velocity, gravity):
+@given(position=st.floats(-0.5, 0.5), velocity=st.floats(-2, 2), field=st.floats(1e-6, 1e3))
+def test_time_of_fall(position, velocity, field):
     """Against 50 digits; the error is the condition of the root times a few roundings."""
     assume(abs(velocity) > 1e-12)
     # The first wall ahead is a question of the sign of v² − 2 g (1/2 − y).
     with mp.workdps(50):
-        y, v, g = mpf(position), mpf(velocity), mpf(gravity)
+        y, v, g = mpf(position), mpf(velocity), mpf(field)
         left = v * v - 2 * g * (mpf(0.5) - y)
         assume(abs(left) > 1e-12 * v * v)
         if v > 0 and left > 0:
@@ -179,7 +179,7 @@ def test_time_of_fall(position, velocity, gravity):
         slope = abs(v - g * true)
         terms = abs(y) + mpf(0.5) + abs(v * true) + g * true**2
         bound = 8 * EPS * (true + terms / slope)
-        gap_, speed = fall(position, velocity, 0.5, gravity)
+        gap_, speed = fall(position, velocity, 0.5, field)
         assert abs(mpf(gap_) / mpf(speed) - true) <= bound
 
 

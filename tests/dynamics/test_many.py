@@ -10,12 +10,12 @@ from dynamics.rates import five
 from marks import slow
 
 from twodiscs.dynamics.ensemble import REPLICAS
+from twodiscs.dynamics.many import all_pairs as many
 from twodiscs.dynamics.many import engine
-from twodiscs.dynamics.many import lockstep as many
 from twodiscs.dynamics.runs import relative_errors
 from twodiscs.model.events import AXIS, EVENTS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.many import initial, insertions
+from twodiscs.sampling.many import insertions, many_initial_states
 from twodiscs.theory.virial import rates
 from twodiscs_paper.studies.more_discs.measure import known_derivatives
 
@@ -40,9 +40,9 @@ ROUGH, UPRIGHT = replace(THREE, moment_of_inertia=0.5), CHANNEL.turned()
 EXACT = [THREE, replace(THREE, radius=0.26), ROUGH, CHANNEL, UPRIGHT]
 #: In a low channel no hops in x are counted, by a kernel of its own. All such kernels are slow.
 EXACT += [
-    Scene(0.6, 7.0, 0.18, discs=initial.LARGE),
-    slow(Scene(7.0, 0.6, 0.18, discs=initial.LARGE)),
-    slow(Scene(7.0, 0.6, 0.18, discs=initial.LARGE, moment_of_inertia=0.5)),
+    Scene(0.6, 7.0, 0.18, discs=many_initial_states.LARGE),
+    slow(Scene(7.0, 0.6, 0.18, discs=many_initial_states.LARGE)),
+    slow(Scene(7.0, 0.6, 0.18, discs=many_initial_states.LARGE, moment_of_inertia=0.5)),
     slow(Scene(3.5, 0.6, 0.18, discs=8, moment_of_inertia=0.2)),
     slow(replace(THREE, friction=4.0)),
     slow(Scene(8.75, 0.6, 0.18, discs=20, friction=4.0)),
@@ -51,7 +51,7 @@ EXACT += [
 
 @pytest.mark.parametrize("scene", EXACT, ids=repr)
 def test_rates_are_exact(scene):
-    large = initial.large_grid(scene) is not None
+    large = many_initial_states.large_grid(scene) is not None
     found, errors = counted(scene, 2 if large else 4, events=256 if large else None)
     assert max(errors.values()) < 0.05 * max(found.values())
     check(found, errors, rates(scene, known_derivatives(scene)))
@@ -111,7 +111,7 @@ def test_counts_of_events_are_those_of_their_classes():
 def test_orders_are_those_of_the_ergodic_components(scene):
     """From one of them, of labels along the longer side, all are reached that are in one part."""
     n, start = scene.discs, 0 if scene.width > scene.height else scene.discs
-    states = initial.states(scene, 2000, 3)
+    states = many_initial_states.states(scene, 2000, 3)
     order = np.argsort(states[start : start + n], axis=0)
     for k in range(2):
         part = states[k * n : (k + 1) * n]

@@ -7,28 +7,28 @@ import numpy as np
 import pytest
 from marks import slow
 
-from twodiscs.dynamics.many import cells as many_cells
+from twodiscs.dynamics.many import all_pairs as many
+from twodiscs.dynamics.many import cell_list as many_cells
 from twodiscs.dynamics.many import engine
-from twodiscs.dynamics.many import lockstep as many
 from twodiscs.dynamics.many.engine import mean_interval
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.many import initial
-from twodiscs.sampling.many.cells import grid_of
+from twodiscs.sampling.many import many_initial_states
+from twodiscs.sampling.many.cell_grid import grid_of
 
 #: At the border: where one kernel ends and the other one begins, and on rings.
 BORDER = [
-    Scene(15.0, 1.0, 0.1, discs=initial.LARGE),
-    Scene(4.0, 2.0, 0.2, discs=initial.LARGE),
-    Scene(8.0, 0.9, 0.2, discs=initial.LARGE),
-    Scene(4.0, 2.0, 0.15, discs=initial.LARGE, periodic="x"),
-    Scene(4.0, 2.0, 0.15, discs=initial.LARGE, periodic="x", moment_of_inertia=0.4),
+    Scene(15.0, 1.0, 0.1, discs=many_initial_states.LARGE),
+    Scene(4.0, 2.0, 0.2, discs=many_initial_states.LARGE),
+    Scene(8.0, 0.9, 0.2, discs=many_initial_states.LARGE),
+    Scene(4.0, 2.0, 0.15, discs=many_initial_states.LARGE, periodic="x"),
+    Scene(4.0, 2.0, 0.15, discs=many_initial_states.LARGE, periodic="x", moment_of_inertia=0.4),
 ]
 
 
 #: Rings of three columns of cells, and of two, where both images of a disc are in reach.
 SHORT = [
     Scene(0.7, 4.0, 0.1, discs=24, periodic="x"),
-    Scene(0.6, 4.0, 0.13, discs=initial.LARGE, periodic="x"),
+    Scene(0.6, 4.0, 0.13, discs=many_initial_states.LARGE, periodic="x"),
 ]
 
 
@@ -48,7 +48,10 @@ def test_a_few_events_are_the_same_ones(scene):
     """From the same states, before roundings have grown: the same counts, every one of them."""
     replicas, duration = 256, engine.duration_of(scene, 2 * scene.discs)
     hops_x = None if scene.periodic else True
-    given, law = (initial.states(scene, replicas, 4), np.uint64(4), 0), many.law_of(scene)
+    given, law = (
+        (many_initial_states.states(scene, replicas, 4), np.uint64(4), 0),
+        many.law_of(scene),
+    )
     one = many_cells.count_events(
         *given, duration, duration / 3, law, grid_of(scene), True, hops_x, None
     )
@@ -60,9 +63,12 @@ def test_a_few_events_are_the_same_ones(scene):
 
 def test_which_kernel_runs():
     """By the number of discs."""
-    small, large = (Scene(15.0, 1.0, 0.1, discs=n) for n in (initial.LARGE - 1, initial.LARGE))
-    assert initial.large_grid(small) is None
-    assert initial.large_grid(large) is not None
+    small, large = (
+        Scene(15.0, 1.0, 0.1, discs=n)
+        for n in (many_initial_states.LARGE - 1, many_initial_states.LARGE)
+    )
+    assert many_initial_states.large_grid(small) is None
+    assert many_initial_states.large_grid(large) is not None
     assert [grid_of(scene).x.size for scene in SHORT] == [4, 3]
 
 
@@ -73,7 +79,7 @@ def test_which_kernel_runs():
 )
 def test_advanced_states_are_those_of_the_other_kernel(scene):
     """After some events of each disc, and there and back again; rounds of a ring as well."""
-    start = initial.states(scene, 20, 9)
+    start = many_initial_states.states(scene, 20, 9)
     duration = engine.duration_of(scene, 4 * scene.discs)
     states, laps = start.copy(), np.zeros((scene.discs, 20))
     counts = scene.periodic and scene.moment_of_inertia is None
@@ -95,7 +101,7 @@ def test_advanced_states_are_those_of_the_other_kernel(scene):
 )
 def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
     """In the same order, hops as well, before roundings have grown; also past a full log."""
-    state = initial.states(scene, 1, 1)[:, 0]
+    state = many_initial_states.states(scene, 1, 1)[:, 0]
     if scene.periodic:
         state[3] += 2 * scene.width
     # The rate that is guessed for short rings is far too high.
@@ -168,7 +174,7 @@ STAYING = {
     [*((name, 4e4) for name in [*STAYING][:4]), *(slow(name, 2e7) for name in [*STAYING][4:])],
 )
 def test_nothing_overlaps_or_drifts(name, events):
-    scene, states = STAYING[name], initial.states(STAYING[name], 1, 1)
+    scene, states = STAYING[name], many_initial_states.states(STAYING[name], 1, 1)
     laps, part = np.zeros((scene.discs, 1)), engine.duration_of(scene, events)
     hops = np.zeros(1) if scene.periodic else None  # as the kernels that are compiled above
     for _ in range(5):

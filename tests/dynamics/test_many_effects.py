@@ -14,15 +14,15 @@ from marks import slow
 from sampling.uniformity import assert_uniform_on_sphere
 
 import twodiscs as td
-from twodiscs.dynamics import trajectory
+from twodiscs.dynamics import paths
 from twodiscs.dynamics.many import engine
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.many import initial
+from twodiscs.sampling.many import many_initial_states
 from twodiscs.theory.exact import replicas_needed
 
 BOX = Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.3)
 FIVE = replace(BOX, discs=5, radius=0.1)
-RING = Scene(4.0, 2.0, 0.15, discs=initial.LARGE, periodic="x", moment_of_inertia=0.5)
+RING = Scene(4.0, 2.0, 0.15, discs=many_initial_states.LARGE, periodic="x", moment_of_inertia=0.5)
 
 
 @pytest.mark.parametrize(
@@ -31,11 +31,11 @@ RING = Scene(4.0, 2.0, 0.15, discs=initial.LARGE, periodic="x", moment_of_inerti
 def test_two_discs_are_those_of_the_engine_of_two(periodic, inertia):
     """One by one: the same events at the same times with the same velocities and spins."""
     scene = Scene(1.5, 1.0, 0.2, moment_of_inertia=inertia, periodic=periodic)
-    start = initial.states(scene, 1, 5)[:, 0]
+    start = many_initial_states.states(scene, 1, 5)[:, 0]
     # x1, x2, y1, y2, u1, u2, v1, v2, s1, s2 and x1, y1, x2, y2, u1, v1, u2, v2, s1, s2.
     order = [0, 2, 1, 3, 4, 6, 5, 7, 8, 9][: start.size]
     found = [*engine.events_of(scene, start, 12.0)]
-    other = [*trajectory.events_of(scene, tuple(start[order]), 12.0)]
+    other = [*paths.events_of(scene, tuple(start[order]), 12.0)]
     assert len(found) > 30
     for (time, *event, state), (due, *same, known) in zip(found, other, strict=True):
         assert event[0] == same[0]
@@ -50,7 +50,7 @@ def test_two_discs_are_those_of_the_engine_of_two(periodic, inertia):
 def test_velocities_and_spins_are_on_a_sphere(scene, friction, time):
     """At the start and later, also after kicks."""
     scene, replicas, n = replace(scene, friction=friction), 4096, scene.discs
-    states, laps = initial.states(scene, replicas, 7), np.zeros((n, replicas))
+    states, laps = many_initial_states.states(scene, replicas, 7), np.zeros((n, replicas))
     if time:
         kicks = engine.kicks_of(scene, replicas, 7)
         engine.advance_all(scene, states, laps, time, kicks)
@@ -92,7 +92,7 @@ KICKED = Scene(3.0, 1.0, 0.15, discs=3, periodic="x", friction=4.0)
 def test_a_kick_keeps_places_energy_and_momentum(scene):
     """Kicks are rows of a trajectory, and their number is that of a Poisson process."""
     time = 32.0
-    start = initial.states(scene, 1, 3)[:, 0]
+    start = many_initial_states.states(scene, 1, 3)[:, 0]
     if scene.periodic:
         # Another momentum along the ring, which has to stay.
         start[2 * scene.discs : 3 * scene.discs] += 0.1
@@ -124,7 +124,7 @@ def test_kicks_belong_to_replicas_not_to_blocks(monkeypatch):
     scene = replace(RING, moment_of_inertia=None, friction=4.0)
     duration, found = engine.duration_of(scene, 160), []
     assert duration * scene.friction > 3
-    state = initial.states(scene, 1, 1)
+    state = many_initial_states.states(scene, 1, 1)
     monkeypatch.setattr(engine, "states_of", lambda _, number, *__: np.repeat(state, number, 1))
     for _ in range(2):
         first, _ = engine.run_classes(scene, 5, 0, 1, duration, replicas=4)
@@ -143,7 +143,7 @@ def test_kicks_belong_to_replicas_not_to_blocks(monkeypatch):
 def test_chains_of_different_blocks_have_different_kicks(monkeypatch):
     """From one and the same state, chains differ by their kicks alone, in all blocks."""
     chains, mean = 4, engine.mean_interval(FEW, "vertical_hop")
-    states = initial.states_of(initial.initial_of(FEW), 1, 3, 0)
+    states = many_initial_states.states_of(many_initial_states.initial_of(FEW), 1, 3, 0)
     monkeypatch.setattr(engine, "states_of", lambda *given: np.repeat(states, chains, axis=1))
     bins = mean / 16, np.arange(65) // 8 + 65
     sums = np.zeros((3, 74), np.int64)

@@ -12,9 +12,9 @@ from dynamics.rates import five, same_sizes
 from marks import slow
 from scalar_bonds import clusters, orders
 
-from twodiscs.dynamics.many import passages
-from twodiscs.dynamics.two import passages as of_two
-from twodiscs.measure.transmission import by_clusters, of_clusters, plateau
+from twodiscs.dynamics.many import many_hop_clusters
+from twodiscs.dynamics.two import hop_clusters as of_two
+from twodiscs.measure.transmission import cluster_coefficient, odd_clusters_per_passage, plateau
 from twodiscs.model.scene import Scene
 from twodiscs.theory import n_discs
 from twodiscs_paper.studies.passages.measure import by_time
@@ -35,13 +35,13 @@ HOP = "horizontal_hop"
 def test_two_discs_among_no_others_are_two_discs(hop, effects):
     sides = (1.5, 1.0) if hop == HOP else (1.0, 1.5)
     scene = Scene(*sides, 0.246, **effects)
-    counts, events = passages.cluster_sizes(scene, hop, 6.0, 128, 11)
+    counts, events = many_hop_clusters.cluster_sizes(scene, hop, 6.0, 128, 11)
     other, due = of_two.cluster_sizes(scene, hop, 6.0, 128, 12)
     same_sizes(counts, np.repeat(np.arange(other.size), other))
     assert events == pytest.approx(due, rel=0.05)
     found, reference = (
         by_time(module.hop_sums(scene, hop, [0.2, 1.0, 5.0], 256, 3)[0])
-        for module in (passages, of_two)
+        for module in (many_hop_clusters, of_two)
     )
     for mine, known in zip(found, reference, strict=True):
         five(mine.value, known.value, math.hypot(mine.stderr, known.stderr))
@@ -55,14 +55,14 @@ def test_two_discs_among_no_others_are_two_discs(hop, effects):
 def test_clusters_are_those_of_another_program(periodic, discs, radius, gap):
     """In a narrow channel, among small discs and on a ring."""
     scene = Scene(0.75 * discs, 1.0, radius, discs=discs, periodic=periodic)
-    counts, _ = passages.cluster_sizes(scene, HOP, gap, 256, 5)
+    counts, _ = many_hop_clusters.cluster_sizes(scene, HOP, gap, 256, 5)
     box = discs, scene.width, scene.height, radius, bool(periodic)
     same_sizes(counts, clusters(6, 6000, *box, gap))
 
 
 def test_correlations_are_those_of_another_program():
     scene, time = Scene(2.25, 1.0, 0.23, discs=3), 3.0
-    (found,) = by_time(passages.hop_sums(scene, HOP, [time], 256, 7)[0])
+    (found,) = by_time(many_hop_clusters.hop_sums(scene, HOP, [time], 256, 7)[0])
     other = orders(8, 6000, 3, 2.25, 1.0, 0.23, False, time)
     five(found.value, other.mean(), math.hypot(found.stderr, other.std() / math.sqrt(other.size)))
     assert 5 * found.stderr < min(found.value, 1 - found.value)
@@ -73,8 +73,8 @@ def test_relative_speeds_on_the_surface_have_the_law_of_the_flux(periodic, compo
     """For s, the relative speed over its largest, (1 − s²)^((D − 1)/2) is uniform."""
     scene = Scene(1.5, 1.0, 0.2, discs=2, periodic=periodic)
     states = np.zeros((8, 2**14))
-    stream = passages.open_stream(np.uint64(1), 0)
-    passages.draw_on_surface(stream, passages.pair_of(scene, HOP), states, -1)
+    stream = many_hop_clusters.open_stream(np.uint64(1), 0)
+    many_hop_clusters.draw_on_surface(stream, many_hop_clusters.pair_of(scene, HOP), states, -1)
     law = (1 - (states[4] - states[5]) ** 2 / 2) ** ((components - 1) / 2)
     five(law.mean(), 0.5, 1 / math.sqrt(12 * law.size))
 
@@ -84,11 +84,11 @@ def test_the_sampled_rate_of_hops_is_the_exact_one(monkeypatch):
     scene = Scene(2.25, 1.0, 0.2499, discs=3)
     due = n_discs.event_rates(scene)[HOP]
     monkeypatch.setattr(n_discs, "event_rates", lambda scene: {HOP: None})
-    passages.hop_rate.cache_clear()
-    found = passages.hop_rate(scene, HOP)
-    passages.hop_rate.cache_clear()
-    _, volume_error = passages.insertions.sample(scene, passages.SAMPLES, 0)
-    five(found / due, 1.0, math.hypot(1 / math.sqrt(passages.STATES), volume_error[0]))
+    many_hop_clusters.hop_rate.cache_clear()
+    found = many_hop_clusters.hop_rate(scene, HOP)
+    many_hop_clusters.hop_rate.cache_clear()
+    _, volume_error = many_hop_clusters.insertions.sample(scene, many_hop_clusters.SAMPLES, 0)
+    five(found / due, 1.0, math.hypot(1 / math.sqrt(many_hop_clusters.STATES), volume_error[0]))
 
 
 @pytest.mark.parametrize(("discs", "blocks"), [(3, 256), slow(6, 4096)])
@@ -98,12 +98,12 @@ def test_the_coefficient_does_not_depend_on_the_gap(discs, blocks):
     The slow one sees both.
     """
     scene = Scene(0.75 * discs, 1.0, 0.246, discs=discs)
-    mean, others = passages.neighbours(scene, HOP)
+    mean, others = many_hop_clusters.neighbours(scene, HOP)
     assert others == pytest.approx(2 * (discs - 2) / (discs - 1), rel=1e-14)
     found = []
     for gap in (8.0, 80.0):
-        kappa = by_clusters(passages.cluster_sizes(scene, HOP, gap, blocks, 9)[0])
-        found.append(plateau(kappa, gap, mean, lambda x: of_clusters(x, others)))
+        kappa = cluster_coefficient(many_hop_clusters.cluster_sizes(scene, HOP, gap, blocks, 9)[0])
+        found.append(plateau(kappa, gap, mean, lambda x: odd_clusters_per_passage(x, others)))
     short, long = found
     five(short.value, long.value, math.hypot(short.stderr, long.stderr))
 
@@ -119,15 +119,15 @@ def test_the_coefficient_does_not_depend_on_the_gap(discs, blocks):
     ],
 )
 def test_what_cannot_be_followed_is_refused_in_a_sentence(scene, hop, said, monkeypatch):
-    monkeypatch.setattr(passages, "PROPOSALS", 2**16)
-    with pytest.raises(passages.InputError, match=said):
-        passages.require_coefficient(scene, hop)
+    monkeypatch.setattr(many_hop_clusters, "PROPOSALS", 2**16)
+    with pytest.raises(many_hop_clusters.InputError, match=said):
+        many_hop_clusters.require_coefficient(scene, hop)
 
 
 @pytest.mark.parametrize("periodic", ["", "x"])
 def test_neighbours_share_as_many_hops_as_pairs_have_a_disc_in_common(periodic, monkeypatch):
-    monkeypatch.setattr(passages, "hop_rate", lambda scene, hop: 2.0)
+    monkeypatch.setattr(many_hop_clusters, "hop_rate", lambda scene, hop: 2.0)
     scene = Scene(4.0, 1.0, 0.2, discs=5, periodic=periodic)
     pairs = [{n, (n + 1) % 5} for n in range(5 if periodic else 4)]
     shared = [sum(len(one & other) == 1 for other in pairs) for one in pairs]
-    assert passages.neighbours(scene, HOP) == (len(pairs) / 2.0, np.mean(shared))
+    assert many_hop_clusters.neighbours(scene, HOP) == (len(pairs) / 2.0, np.mean(shared))

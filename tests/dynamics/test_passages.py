@@ -13,9 +13,9 @@ from marks import slow
 from scalar_passages import clusters, replicas
 from scipy.stats import f
 
-from twodiscs.dynamics.many import passages as of_many
-from twodiscs.dynamics.two import passages
-from twodiscs.measure.transmission import by_clusters, of_clusters, plateau
+from twodiscs.dynamics.many import many_hop_clusters as of_many
+from twodiscs.dynamics.two import hop_clusters
+from twodiscs.measure.transmission import cluster_coefficient, odd_clusters_per_passage, plateau
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs_paper.studies.passages.measure import by_time, of_order, passing_rate
@@ -31,7 +31,7 @@ NARROW = 0.246  # 0.016 of the height is left to discs side by side along y
 def test_correlations_are_those_of_another_program(inertia, periodic):
     for radius in (0.218, NARROW):
         scene = Scene(1.5, 1.0, radius, periodic=periodic, moment_of_inertia=inertia)
-        sums, events = passages.hop_sums(scene, HOP, TIMES, 512, 3)
+        sums, events = hop_clusters.hop_sums(scene, HOP, TIMES, 512, 3)
         assert events > 0
         other = replicas(
             4, 20_000, 1.5, 1.0, radius, inertia or 0.0, bool(periodic), np.array(TIMES)
@@ -58,8 +58,8 @@ def test_clusters_to_both_sides_are_those_of_another_program(effects, radius, ga
     The gap is counted from each hop, not from the bounce after it: of small discs that is as late.
     """
     scene = Scene(1.5, 1.0, radius, **effects)
-    counts, _ = passages.cluster_sizes(scene, HOP, gap, 192, 11)
-    assert (counts[0], counts.sum()) == (0, 192 * passages.HOPS_OF_BLOCK)
+    counts, _ = hop_clusters.cluster_sizes(scene, HOP, gap, 192, 11)
+    assert (counts[0], counts.sum()) == (0, 192 * hop_clusters.HOPS_OF_BLOCK)
     inertia, kicks = scene.moment_of_inertia or 0.0, scene.friction and 1 / scene.friction
     same_sizes(counts, clusters(12, 8000, 1.5, 1.0, radius, inertia, gap, kicks or math.inf, False))
 
@@ -79,9 +79,12 @@ def test_both_estimates_of_effects_agree(name):
     """By clusters and by κ(t), where passages are rare; corrected for those in the gap."""
     (hop, scene), gap = EFFECTS[name], 6.0
     mean = 1 / passing_rate(scene, hop)
-    early = by_clusters(passages.cluster_sizes(scene, hop, gap, 128, 6)[0])
-    (late,) = by_time(passages.hop_sums(scene, hop, [gap], 256, 7)[0])
-    kappa, other = plateau(early, gap, mean, of_clusters), plateau(late, gap, mean, of_order)
+    early = cluster_coefficient(hop_clusters.cluster_sizes(scene, hop, gap, 128, 6)[0])
+    (late,) = by_time(hop_clusters.hop_sums(scene, hop, [gap], 256, 7)[0])
+    kappa, other = (
+        plateau(early, gap, mean, odd_clusters_per_passage),
+        plateau(late, gap, mean, of_order),
+    )
     five(kappa.value, other.value, math.hypot(kappa.stderr, other.stderr))
     assert 0 < kappa.value < 1
 
@@ -90,32 +93,34 @@ def test_both_estimates_of_effects_agree(name):
 def test_hops_on_a_ring_have_their_exact_rate(effects):
     """In a field the flux has another power of the energy than the volume."""
     scene = Scene(1.5, 1.0, 0.2, periodic="x", **effects)
-    sums, _ = passages.hop_sums(scene, HOP, [20.0], 256, 8, on_surface=False)
-    counts = sums[:, 2, 0] / (20.0 * passages.HOPS_OF_BLOCK)
+    sums, _ = hop_clusters.hop_sums(scene, HOP, [20.0], 256, 8, on_surface=False)
+    counts = sums[:, 2, 0] / (20.0 * hop_clusters.HOPS_OF_BLOCK)
     five(counts.mean(), passing_rate(scene, HOP), counts.std(ddof=1) / 16)
 
 
 def test_displacements_grow_as_the_correlations_say():
     """d⟨n²⟩/dt = Γ C(t), between t = 20 and 40 where C has its limit."""
     scene = Scene(1.5, 1.0, 0.22, periodic="x")
-    sums, _ = passages.hop_sums(scene, HOP, [20.0, 40.0], 512, 9, on_surface=False)
+    sums, _ = hop_clusters.hop_sums(scene, HOP, [20.0, 40.0], 512, 9, on_surface=False)
     rate = passing_rate(scene, HOP)
-    grown = (sums[:, 1, 1] - sums[:, 1, 0]) / (20.0 * passages.HOPS_OF_BLOCK * rate)
-    (due,) = by_time(passages.hop_sums(scene, HOP, [30.0], 512, 10)[0])
+    grown = (sums[:, 1, 1] - sums[:, 1, 0]) / (20.0 * hop_clusters.HOPS_OF_BLOCK * rate)
+    (due,) = by_time(hop_clusters.hop_sums(scene, HOP, [30.0], 512, 10)[0])
     error = grown.std(ddof=1) / math.sqrt(len(grown))
     five(grown.mean(), due.value, math.hypot(error, due.stderr))
 
 
 def test_blocks_are_what_results_depend_on():
     scene = Scene(1.5, 1.0, 0.24)
-    whole, events = passages.hop_sums(scene, HOP, TIMES, 6, 11)
-    parts = [passages.hop_sums(scene, HOP, TIMES, 3, 11, first) for first in (0, 3)]
+    whole, events = hop_clusters.hop_sums(scene, HOP, TIMES, 6, 11)
+    parts = [hop_clusters.hop_sums(scene, HOP, TIMES, 3, 11, first) for first in (0, 3)]
     np.testing.assert_array_equal(whole, np.concatenate([sums for sums, _ in parts]))
     # Hops between walls alternate: C = 1 + 2 n is +1 or −1 in every replica.
     np.testing.assert_array_equal(whole[:, 1], -whole[:, 0])
     assert events == sum(events for _, events in parts)
     turned = Box.of(scene).turned().scene(0.24)
-    np.testing.assert_array_equal(whole, passages.hop_sums(turned, "vertical_hop", TIMES, 6, 11)[0])
+    np.testing.assert_array_equal(
+        whole, hop_clusters.hop_sums(turned, "vertical_hop", TIMES, 6, 11)[0]
+    )
 
 
 def test_blocks_of_a_pair_among_others_have_separate_kicks(monkeypatch):
@@ -124,13 +129,15 @@ def test_blocks_of_a_pair_among_others_have_separate_kicks(monkeypatch):
     monkeypatch.setattr(of_many, "follow_pair", lambda *given: 0)
     monkeypatch.setattr(of_many, "follow_blocks", of_many.follow_blocks.py_func)
     of_many.hop_sums(Scene(1.5, 1.0, 0.1, friction=20.0), HOP, [2.0], 2, 1, first=3)
-    assert opened == [*range(3 * passages.HOPS_OF_BLOCK, 5 * passages.HOPS_OF_BLOCK)]
+    assert opened == [*range(3 * hop_clusters.HOPS_OF_BLOCK, 5 * hop_clusters.HOPS_OF_BLOCK)]
 
 
 def test_blocks_have_separate_kicks():
     """The means of 20 seeds vary as those of 16 independent blocks: F test, five errors."""
     scene, blocks = Scene(1.5, 1.0, 0.1, friction=20.0), 16
-    sums = [passages.hop_sums(scene, HOP, [2.0], blocks, seed)[0][:, 2, 0] for seed in range(20)]
+    sums = [
+        hop_clusters.hop_sums(scene, HOP, [2.0], blocks, seed)[0][:, 2, 0] for seed in range(20)
+    ]
     within = np.var(sums, axis=1, ddof=1).mean()
     ratio = blocks * np.mean(sums, axis=1).var(ddof=1) / within
     assert f.sf(ratio, 19, 20 * (blocks - 1)) > 5.7e-7

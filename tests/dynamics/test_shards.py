@@ -15,7 +15,7 @@ from twodiscs.dynamics.many import engine
 from twodiscs.dynamics.two import strip
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.many import initial, insertions
+from twodiscs.sampling.many import insertions, many_initial_states
 
 PAPER = Scene(1.5, 1.0, 0.2)
 TWO = {
@@ -29,7 +29,7 @@ MANY = {
     "rough": Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.5),
     "channel": Scene(1.6, 0.6, 0.18, discs=4),
     "dense": Scene(1.5, 1.0, 0.19, discs=5),
-    "cells": Scene(15.0, 1.0, 0.1, discs=initial.LARGE),
+    "cells": Scene(15.0, 1.0, 0.1, discs=many_initial_states.LARGE),
 }
 
 
@@ -41,7 +41,13 @@ def of_two(scene):
 
 def of_many(scene):
     return lambda first, stop, **lanes: engine.run_classes(
-        scene, 7, first, stop, 8.0, replicas=100 if scene.discs < initial.LARGE else 20, **lanes
+        scene,
+        7,
+        first,
+        stop,
+        8.0,
+        replicas=100 if scene.discs < many_initial_states.LARGE else 20,
+        **lanes,
     )
 
 
@@ -83,23 +89,24 @@ from twodiscs.dynamics.many import engine
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.points.base import content_of
-from twodiscs.sampling.many import initial, insertions
+from twodiscs.sampling.many import many_initial_states, insertions
 scene = Scene(1.5, 1.0, 0.24)
 effects = {"periodic": "x", "field": 0.3, "radius_ratio": 1.2, "mass_ratio": 2.0}
 bent = Scene(1.5, 1.0, 0.2, moment_of_inertia=0.4, **effects)
 areas = ["volume", *(event + "_area" for event in EVENTS)]
 for point in (
-    runs.CountingRun(scene, {event: 0.02 for event in EVENTS}, 10**6, 11).run(),
-    runs.IntervalRun(scene, "vertical_hop", 1, 11).run(),
+    runs.DynamicsRun(scene, {event: 0.02 for event in EVENTS}, 10**6, 11).run(),
+    runs.IntervalsRun(scene, "vertical_hop", 1, 11).run(),
     sample_point(scene, areas, 1, 0.02, 11),
-    runs.CountingRun(bent, {"vertical_hop": 0.02, "any_wall": 0.02}, 10**6, 11).run(),
+    runs.DynamicsRun(bent, {"vertical_hop": 0.02, "any_wall": 0.02}, 10**6, 11).run(),
 ):
     print(content_of("", {}, {}, point.parts))
 scenes = [Scene(1.5, 1.0, 0.15, discs=3), Scene(2.3, 0.6, 0.18, discs=8)]
 scenes += [Scene(1.5, 1.0, 0.2, discs=6), Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.3)]
 for scene in [*scenes, Scene(1.5, 1.0, 0.15, discs=4, periodic="x")]:
     counts = engine.run_classes(scene, 5, 0, 1, 16.0, replicas=64)
-    for part in (*counts, *insertions.run_blocks(scene, 5, 0, 1), initial.states(scene, 50, 3)):
+    states = many_initial_states.states(scene, 50, 3)
+    for part in (*counts, *insertions.run_blocks(scene, 5, 0, 1), states):
         print(hashlib.sha256(part.tobytes()).hexdigest())
 """
 

@@ -15,7 +15,7 @@ from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.estimates import stratified_mean
-from twodiscs.sampling.starts import COMPONENTS, draw_states, start_sampler, states
+from twodiscs.sampling.initial_states import COMPONENTS, draw_states, start_sampler, states
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 from twodiscs_paper.studies.estimates import chi2_p, covers
@@ -186,7 +186,7 @@ def test_only_rare_hops_of_a_neck_have_strips():
 @pytest.mark.parametrize(("hop", "distance"), [("vertical_hop", 1e-4), ("horizontal_hop", 1e-9)])
 def test_the_target_is_reached_at_any_distance_from_a_threshold(hop, distance):
     scene = PAPER.with_radius((0.375 if hop == "vertical_hop" else 0.25) * (1 - distance))
-    point = runs.CountingRun(scene, {hop: 0.01}, 10**8, 1).run()
+    point = runs.DynamicsRun(scene, {hop: 0.01}, 10**8, 1).run()
     assert all_reached(point)
     assert point.strips[hop].events < 100 * point.strips[hop].replicas
     time = point.estimate(hop)
@@ -201,7 +201,7 @@ def test_planned_blocks_are_enough_and_not_far_too_many(effects):
     """Shards do these and no more: fewer would miss the error that was asked for."""
     scene, hop = Scene(1.5, 1.0, 0.2475, **effects), "horizontal_hop"
     run = strip.run_of(scene, hop, 0.01, 10**9, 1)
-    (excess,) = run.excess_of(run.work(0, run.planned), run.planned)
+    (excess,) = run.error_over_target(run.work(0, run.planned), run.planned)
     assert 0.5 < excess <= 1
 
 
@@ -216,7 +216,7 @@ def test_every_rare_hop_has_random_numbers_of_its_own(monkeypatch):
     monkeypatch.setattr(strip, "run_blocks", recorded)
     for radius, root in product((0.2499, 0.24999), (1, 2)):
         target = dict.fromkeys(HOPS, 0.1)
-        run = runs.CountingRun(Scene(1.0, 1.0, radius), target, 10**6, root)
+        run = runs.DynamicsRun(Scene(1.0, 1.0, radius), target, 10**6, root)
         assert {*HOPS} < {*run.parts}
         for hop in HOPS:
             run.parts[hop].work(0, 1)

@@ -7,11 +7,11 @@ import pytest
 from effect_scenes import ALL, SCENES
 from marks import slow
 
-from twodiscs.analysis.tables import Trajectory
-from twodiscs.dynamics import trajectory
+from twodiscs.analysis.tables import TrajectoryTable
+from twodiscs.dynamics import paths
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.starts import components
+from twodiscs.sampling.initial_states import components
 from twodiscs.theory.exact import event_rate, mean_times
 
 PAPER = Scene(1.5, 1.0, 0.2)
@@ -21,9 +21,9 @@ PAPER = Scene(1.5, 1.0, 0.2)
 def test_a_trajectory_shows_some_hops_and_is_not_too_long(radius):
     """Eight mean times of the rarest hop that is open, or 6000 events, to a factor of √2."""
     scene = PAPER.with_radius(radius)
-    rows = Trajectory.rows(Box(1.5, 1.0), radius, seed=3)
-    assert rows == Trajectory.rows(Box(1.5, 1.0), radius, seed=3)
-    assert rows != Trajectory.rows(Box(1.5, 1.0), radius, seed=4)
+    rows = TrajectoryTable.rows(Box(1.5, 1.0), radius, seed=3)
+    assert rows == TrajectoryTable.rows(Box(1.5, 1.0), radius, seed=3)
+    assert rows != TrajectoryTable.rows(Box(1.5, 1.0), radius, seed=4)
     hops = [mean_times(scene)[hop] for hop in ("vertical_hop", "horizontal_hop")]
     eight = 8 * max((time for time in hops if time), default=math.inf)
     expected = min(eight, 6000 / event_rate(scene))
@@ -34,7 +34,7 @@ def test_a_trajectory_shows_some_hops_and_is_not_too_long(radius):
 
 def test_centres_go_on_beyond_the_box_along_a_periodic_axis():
     scene = Scene(1.5, 1.0, 0.1, periodic="x")
-    x1 = np.array([row[4][0] for row in trajectory.followed(scene, 3, duration=40.0)])
+    x1 = np.array([row[4][0] for row in paths.followed(scene, 3, duration=40.0)])
     assert len({*np.round(x1 / scene.width)}) > 1
 
 
@@ -53,10 +53,10 @@ def test_a_trajectory_goes_on_from_its_end(scene):
 
     Between images of the discs only roundings differ; they grow by far less than 1e6 in 1.
     """
-    path = trajectory.followed(scene, 5, None, 40.0)
+    path = paths.followed(scene, 5, None, 40.0)
     start = tuple(map(float, path[-1][4]))
-    whole = trajectory.followed(scene, 5, path[0][4], 41.0)
-    rows = trajectory.followed(scene, 5, start, 1.0)
+    whole = paths.followed(scene, 5, path[0][4], 41.0)
+    rows = paths.followed(scene, 5, start, 1.0)
     assert tuple(map(float, rows[0][4])) == start
     np.testing.assert_allclose(rows[-1][4], whole[-1][4], rtol=0, atol=1e-9)
 
@@ -64,11 +64,11 @@ def test_a_trajectory_goes_on_from_its_end(scene):
 @pytest.mark.parametrize("scene", [GIVEN["ring"], GIVEN["torus"], GIVEN["combination"]], ids=repr)
 def test_an_image_of_disc_2_moves_as_disc_2_does(scene):
     """Three periods away along each periodic axis, all rows are three periods away."""
-    start = trajectory.followed(scene, 7, None, 1.0)[0][4]
+    start = paths.followed(scene, 7, None, 1.0)[0][4]
     moved, column = list(start), dict(zip(components(scene), range(12), strict=False))
     for axis in scene.periodic:
         moved[column[f"{axis}2"]] += 3 * scene.side(axis)
-    near, far = (trajectory.followed(scene, 7, one, 2.0) for one in (start, moved))
+    near, far = (paths.followed(scene, 7, one, 2.0) for one in (start, moved))
     assert [row[1:4] for row in near] == [row[1:4] for row in far]
     shift = np.array(moved) - start
     assert np.abs(shift).max() >= 3.0

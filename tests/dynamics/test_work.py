@@ -6,13 +6,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from twodiscs.dynamics import runs, trajectory
+from twodiscs.dynamics import paths, runs
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.two import lockstep, strip
+from twodiscs.dynamics.two import event_counts, strip
 from twodiscs.model.box import Box
 from twodiscs.model.checks import LONGEST, SHORTEST, InputError
-from twodiscs.model.two import LEAST_DISTANCE
-from twodiscs.sampling.starts import require_room
+from twodiscs.model.two_geometry import LEAST_DISTANCE
+from twodiscs.sampling.initial_states import require_initial_states
 from twodiscs.theory import exact
 from twodiscs.theory.exact import CROSSINGS_PER_EVENT
 
@@ -48,17 +48,17 @@ def passes(scene, duration):
 @pytest.mark.parametrize("width", [1.0, 1.5])
 def test_too_close_to_the_largest_radius_dynamics_is_refused(width):
     box = Box(width, 1.0)
-    for run in (lambda scene: runs.CountingRun(scene, {"any_wall": 0.5}, 1, 1).run(),
-                lambda scene: trajectory.followed(scene, 1)):  # fmt: skip
+    for run in (lambda scene: runs.DynamicsRun(scene, {"any_wall": 0.5}, 1, 1).run(),
+                lambda scene: paths.followed(scene, 1)):  # fmt: skip
         with pytest.raises(InputError, match=r"must not exceed .* for molecular dynamics"):
             run(box.scene(box.largest_radius * (1 - 1e-13)))
     # It holds at the closest radius: five standard errors.
     scene = box.scene(box.largest_radius * (1 - LEAST_DISTANCE))
-    found = runs.CountingRun(scene, {"disc_collision": 3e-4}, 10**8, 1).run()
+    found = runs.DynamicsRun(scene, {"disc_collision": 3e-4}, 10**8, 1).run()
     mean = found.counts["disc_collision"] / found.replicas / found.duration
     assert mean == pytest.approx(exact.rate(scene, "disc_collision"), rel=5 * 3e-4)
     # If each disc spans the short side, no digit is lost.
-    require_room(Box(3.0, 1.0).scene(0.5 * (1 - 1e-15)))
+    require_initial_states(Box(3.0, 1.0).scene(0.5 * (1 - 1e-15)))
 
 
 @settings(max_examples=60, deadline=None, derandomize=True)
@@ -66,13 +66,13 @@ def test_too_close_to_the_largest_radius_dynamics_is_refused(width):
 def test_the_work_of_a_replica_is_bounded(width, height, effects, share):
     try:
         scene = scene_of(width, height, effects, share)
-        require_room(scene)
+        require_initial_states(scene)
     except InputError:
         return
     events, leaves = passes(scene, runs.engine_of(scene).replica_duration(scene))
     # A duration is rounded to a power of two.
-    assert events <= 2**0.5 * lockstep.EVENTS_PER_REPLICA
-    assert leaves <= 2**0.5 * lockstep.EVENTS_PER_REPLICA * CROSSINGS_PER_EVENT
+    assert events <= 2**0.5 * event_counts.EVENTS_PER_REPLICA
+    assert leaves <= 2**0.5 * event_counts.EVENTS_PER_REPLICA * CROSSINGS_PER_EVENT
     assert exact.work_per_event(scene) >= 1.0
 
 
@@ -80,8 +80,8 @@ def test_the_work_of_a_replica_is_bounded(width, height, effects, share):
 def test_starts_that_are_too_rare_are_refused(effects):
     box = Box(1.5, 1.0, effects)
     scene = box.scene(box.last_radius * 0.999)
-    for start in (lambda: runs.CountingRun(scene, {"any_wall": 0.1}, 1000, 1).run(),
-                  lambda: require_room(scene)):  # fmt: skip
+    for start in (lambda: runs.DynamicsRun(scene, {"any_wall": 0.1}, 1000, 1).run(),
+                  lambda: require_initial_states(scene)):  # fmt: skip
         with pytest.raises(InputError, match="a scene with effects needs"):
             start()
 
@@ -103,8 +103,8 @@ def test_draws_are_within_the_price_of_a_budget(drawn):
     width, effects, share = drawn
     try:
         scene = scene_of(width, 1.0, effects, share)
-        require_room(scene)
-        parts = runs.CountingRun(scene, dict.fromkeys(scene.events, 1e-3), 10**9, 1).parts
+        require_initial_states(scene)
+        parts = runs.DynamicsRun(scene, dict.fromkeys(scene.events, 1e-3), 10**9, 1).parts
     except InputError:
         return
     proposals = 0

@@ -16,7 +16,7 @@ from mpmath import mp, mpf
 from twodiscs_paper import reference
 from twodiscs_paper.errata import measure as errata
 from twodiscs_paper.errata.statements import LIMITS, NUMERATOR, REGIMES, STATEMENTS
-from twodiscs_paper.errata.study import Errata
+from twodiscs_paper.errata.study import ErrataTable
 from twodiscs_paper.reference import MpScene, mean_time
 
 WRONG = {
@@ -82,7 +82,7 @@ RATIOS = {
 def test_ratios_are_those_found_by_hand_and_with_their_radii_those_of_the_expected_table():
     for label, ratio in RATIOS.items():
         assert verdicts()[label]["ratio"] == pytest.approx(float(ratio), rel=1e-15), label
-    rows = Errata.read(Path(__file__).parents[2] / "paper" / "expected" / "errata.csv")
+    rows = ErrataTable.read(Path(__file__).parents[2] / "paper" / "expected" / "errata.csv")
     assert [row["label"] for row in rows] == [*verdicts()]
     for row in rows:
         found, due = verdicts()[row["label"]], row["ratio"] and pytest.approx(row["ratio"], 1e-12)
@@ -167,4 +167,4 @@ def test_the_time_left_in_long_boxes():
 
 def test_the_table_is_written(tmp_path, monkeypatch):
     monkeypatch.setattr(errata, "STATEMENTS", STATEMENTS[:6])
-    assert written(tmp_path, Errata) == errata.rows()
+    assert written(tmp_path, ErrataTable) == errata.rows()

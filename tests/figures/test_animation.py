@@ -13,7 +13,7 @@ from figure_cases import unclear
 from PIL import Image
 
 import twodiscs as td
-from twodiscs.analysis.tables import Trajectory
+from twodiscs.analysis.tables import TrajectoryTable
 from twodiscs.figures import animation, style
 from twodiscs.figures.animation import AFTER, BEFORE, FRAME, HOP, LAST, MARKED
 from twodiscs.model.box import Box
@@ -27,7 +27,7 @@ FEW = MARKED + 4
 @pytest.fixture(scope="module")
 def rows():
     """Rows of trajectory.csv with hops of both kinds."""
-    return Trajectory.rows(BOX, RADIUS, 1908)
+    return TrajectoryTable.rows(BOX, RADIUS, 1908)
 
 
 def unpacked(path):
@@ -161,7 +161,7 @@ def test_discs_are_where_the_trajectory_has_them(scene):
 )
 def test_headings_numbers_and_the_sign_of_a_hop_stand_clear(box, radius):
     """Discs are where they are: beside each other their numbers may meet."""
-    rows = Trajectory.rows(box, radius, 1908)
+    rows = TrajectoryTable.rows(box, radius, 1908)
     with style.context():
         stage = animation.Stage(box, radius, rows)
         for time in [*stage.times[::80], stage.centre]:
@@ -175,7 +175,7 @@ def test_headings_numbers_and_the_sign_of_a_hop_stand_clear(box, radius):
 def test_what_leaves_a_ring_comes_in_at_the_other_end():
     """Four discs: all in the box, an image of each a period away, no trace across the box."""
     box = Box(1.5, 1.0, {"periodic": "x"}, discs=4)
-    rows = Trajectory.rows(box, 0.15, 1)
+    rows = TrajectoryTable.rows(box, 0.15, 1)
     with style.context():
         stage = animation.StageOfMany(box, 0.15, rows)
     beyond = 0

@@ -13,7 +13,7 @@ from figure_cases import BOXES, OTHERS, PAPER, bars, covered, draw, points, tabl
 
 from twodiscs.analysis.tables import quantity_of
 from twodiscs.figures import curves, panels, radius, style
-from twodiscs.figures.catalogue import FIGURES
+from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.theory import exact, virial

@@ -5,7 +5,7 @@ import pytest
 from figure_cases import tables_of, unclear
 from matplotlib.figure import Figure
 
-from twodiscs.analysis.tables import Trajectory
+from twodiscs.analysis.tables import TrajectoryTable
 from twodiscs.figures import motion, style
 from twodiscs.model.box import Box
 
@@ -57,7 +57,7 @@ def test_the_longer_side_that_ends_at_walls_is_shown_with_its_hops(box, axis):
 @pytest.mark.parametrize(("discs", "radius"), [(3, 0.2), (9, 0.1)])
 def test_lines_of_many_discs_are_those_of_the_trajectory(discs, radius):
     """Few enough bends to follow. Hops are no bends: without them the lines are the same."""
-    rows = Trajectory.rows(Box(1.5, 1.0, discs=discs), radius, 1908)
+    rows = TrajectoryTable.rows(Box(1.5, 1.0, discs=discs), radius, 1908)
     with style.context():
         figure = motion.draw_trajectory(Box(1.5, 1.0, discs=discs), rows, radius=radius)
         assert unclear(figure) == []

@@ -31,11 +31,11 @@ def test_fonts_are_those_of_matplotlib_even_if_its_list_lacks_them(monkeypatch):
 DRAW = """
 import sys
 from figure_cases import PAPER, draw, tables_of
-from twodiscs.analysis.tables import Trajectory
+from twodiscs.analysis.tables import TrajectoryTable
 from twodiscs.figures import animation, style
 with style.context():
     if sys.argv[1] == "animation":
-        animation.animate(PAPER, 0.24, Trajectory.rows(PAPER, 0.24, 1908), sys.argv[2:])
+        animation.animate(PAPER, 0.24, TrajectoryTable.rows(PAPER, 0.24, 1908), sys.argv[2:])
     else:
         figure = draw(sys.argv[1], PAPER, tables_of("paper"))
         for path in sys.argv[2:]:

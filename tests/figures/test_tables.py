@@ -16,7 +16,7 @@ from matplotlib.patches import StepPatch
 
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.figures import style
-from twodiscs.figures.catalogue import FIGURES
+from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.figures.style import LOOKS
 from twodiscs.measure.transmission import box_time
 from twodiscs.model.events import HOPS, SHELLS
@@ -55,7 +55,9 @@ def drawn(name):
     """Return {label of the panel, or its place: axes} of a figure of the committed tables."""
     entry = (FIGURES | STUDY_FIGURES)[name]
     tables = {name: table(name) for name in (*entry.tables, *entry.main_tables)}
-    tables |= {name: read_table(EXPECTED.parents[1] / path) for name, path in entry.kept.items()}
+    tables |= {
+        name: read_table(EXPECTED.parents[1] / path) for name, path in entry.long_runs.items()
+    }
     with style.context():
         figure = DRAW[name](PAPER, tables) if name in DRAW else draw(name, PAPER, tables)
     return {axes.get_label() or i: axes for i, axes in enumerate(figure.axes)}
@@ -114,7 +116,7 @@ def cases():
         due = [(radii.index(row["radius"]) + beside, row["value"], row["stderr"]) for row in own]
         yield "stability_of_runs", "d", look, due
     # Open and full symbols of one look are of crossings and of first passages.
-    (path,) = STUDY_FIGURES["brownian"].kept.values()
+    (path,) = STUDY_FIGURES["brownian"].long_runs.values()
     rows = [row for row in read_table(EXPECTED.parents[1] / path) if row["stderr"] is not None]
     for program, (colour, _) in brownian.LOOKS.items():
         for step, marker in brownian.MARKERS.items():

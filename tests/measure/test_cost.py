@@ -7,7 +7,7 @@ import pytest
 import twodiscs as td
 from twodiscs.analysis.tables import shortfall
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.runs import DAY, CountingRun, engine_of
+from twodiscs.dynamics.runs import DAY, DynamicsRun, engine_of
 from twodiscs.measure import cost
 from twodiscs.measure.result import seed_of
 from twodiscs.model.checks import format_seconds
@@ -35,7 +35,7 @@ def blocks(monkeypatch):
 def run_of(scene, error, budget=None):
     """Return the run of ``simulate(scene, error, budget=budget)``."""
     target = dict.fromkeys(scene.events, error)
-    return CountingRun(scene, target, budget, seed_of(scene, "dynamics", 1, None))
+    return DynamicsRun(scene, target, budget, seed_of(scene, "dynamics", 1, None))
 
 
 @pytest.mark.parametrize("scene", [SCENE, NEAR])
@@ -230,7 +230,7 @@ def test_an_event_that_no_pilot_counted_has_no_price_and_no_forecast():
     pilot = cost.Pilot(1e-3, 1e5, 1024, errors, 32)
     (price,) = cost._prices_of_times(SCENE, {"all": pilot})
     assert price.quantity == "disc_collision_time"
-    run = CountingRun(SCENE, dict.fromkeys(errors, 1e-3), 10**7, 1)
+    run = DynamicsRun(SCENE, dict.fromkeys(errors, 1e-3), 10**7, 1)
     found = of_dynamics(run, {"all": pilot})
     assert found.events == pytest.approx(run.parts["all"].budget)
     assert found.shortfall(run).endswith(

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import twodiscs as td
-from twodiscs.dynamics.two.passages import (
+from twodiscs.dynamics.two.hop_clusters import (
     HOPS_OF_BLOCK,
     LARGEST_CLUSTER,
     SUMS,
@@ -24,12 +24,12 @@ def test_clusters_are_weighed_by_their_sizes():
     """Hops in clusters of 1, 2 and 3 are 1, 0 and 1/3 passages each."""
     sizes = np.zeros(LARGEST_CLUSTER + 1, np.int64)
     sizes[1:4] = 600, 200, 300
-    kappa = transmission.by_clusters(sizes)
+    kappa = transmission.cluster_coefficient(sizes)
     values = np.repeat([1, 0, 1 / 3], [600, 200, 300])
     assert kappa.value == pytest.approx(values.mean(), rel=1e-14)
     assert kappa.stderr == pytest.approx(values.std() / math.sqrt(1100), rel=1e-12)
     sizes[-1] = 100  # more than are counted: no passages
-    assert transmission.by_clusters(sizes).value == pytest.approx(700 / 1200, rel=1e-14)
+    assert transmission.cluster_coefficient(sizes).value == pytest.approx(700 / 1200, rel=1e-14)
 
 
 def test_errors_of_a_correlation_between_walls_are_binomial():
@@ -43,8 +43,8 @@ def test_errors_of_a_correlation_between_walls_are_binomial():
 
 LAWS = {
     "order": of_order,
-    "clusters": transmission.of_clusters,
-    "clusters of a pair of many": partial(transmission.of_clusters, others=4 / 3),
+    "clusters": transmission.odd_clusters_per_passage,
+    "clusters of a pair of many": partial(transmission.odd_clusters_per_passage, others=4 / 3),
 }
 
 
@@ -75,7 +75,7 @@ def test_a_pair_that_parts_has_fewer_passages(x, others):
     sizes = np.diff(ends)
     odd = (sizes % 2).sum() / sizes.sum()
     five_errors = 5 / math.sqrt(sizes.size)
-    assert abs(odd - transmission.of_clusters(x, others)[0]) <= five_errors < 0.02
+    assert abs(odd - transmission.odd_clusters_per_passage(x, others)[0]) <= five_errors < 0.02
 
 
 def test_the_face_has_the_coefficient_and_the_curve():
@@ -105,7 +105,7 @@ def test_calls_add_up_to_separate_blocks(monkeypatch):
     sizes, _ = cluster_sizes(*given, found.gap, blocks, seeds[0])
     assert found.clusters == {n: hops for n, hops in enumerate(sizes.tolist()) if hops}
     sums, _ = hop_sums(*given, found.times, blocks, seeds[1])
-    assert found.curve == transmission.times_with_errors(sums.sum(axis=0), hops)
+    assert found.curve == transmission.time_estimates(sums.sum(axis=0), hops)
 
 
 def test_more_discs_have_a_coefficient_too():
@@ -115,7 +115,10 @@ def test_more_discs_have_a_coefficient_too():
     assert found.neighbour_mean == pytest.approx(2 * found.exact_mean, rel=1e-14)
     sizes = np.zeros(LARGEST_CLUSTER + 1, np.int64)
     sizes[[*found.clusters]] = [*found.clusters.values()]
-    raw, law = transmission.by_clusters(sizes), partial(transmission.of_clusters, others=1.0)
+    raw, law = (
+        transmission.cluster_coefficient(sizes),
+        partial(transmission.odd_clusters_per_passage, others=1.0),
+    )
     assert found.coefficient == transmission.plateau(raw, found.gap, found.neighbour_mean, law)
     # By 2¹⁸ hops, which do not depend on the gap.
     assert abs(found.coefficient.value - 0.838) <= 5 * found.coefficient.stderr < 0.05
@@ -140,15 +143,15 @@ def test_more_discs_have_a_coefficient_too():
     ],
 )
 def test_which_clusters_have_an_error(sizes, has_error):
-    found = transmission.clusters_with_error(np.array(sizes))
+    found = transmission.cluster_estimate(np.array(sizes))
     assert (found.stderr is not None) == has_error
-    assert found.value == transmission.by_clusters(np.array(sizes)).value
+    assert found.value == transmission.cluster_coefficient(np.array(sizes)).value
 
 
 def test_which_times_have_an_error():
     """Of 1000 replicas 100 have a hop back, 99, 901, 900, and on a ring as many as go on."""
     sums = np.array([[-100, -99, -901, -900, 0], [100, 99, 901, 900, 5000]])
-    found = transmission.times_with_errors(sums, 1000)
+    found = transmission.time_estimates(sums, 1000)
     assert [one.stderr is not None for one in found] == [True, False, False, True, True]
 
 

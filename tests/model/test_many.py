@@ -11,8 +11,8 @@ from scipy.sparse import csgraph
 
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, EVENTS
-from twodiscs.model.many import arrangement, can_be_level, ergodic_components, is_ordered
-from twodiscs.model.many import largest_known_radius as largest_radius
+from twodiscs.model.many_geometry import arrangement, can_be_level, ergodic_components, is_ordered
+from twodiscs.model.many_geometry import largest_known_radius as largest_radius
 from twodiscs.model.scene import Scene
 
 
@@ -61,8 +61,8 @@ def test_a_scene_of_more_discs():
     assert scene.calls_for == {"discs": 3}
     assert scene.events == EVENTS
     assert scene.velocity_components == 6
-    assert scene.copies("top_wall") == 6
-    assert scene.copies("disc_collision") == 1
+    assert scene.multiplicity("top_wall") == 6
+    assert scene.multiplicity("disc_collision") == 1
     assert scene.largest_radius == box.largest_radius
     assert scene.turned() == Scene(1.0, 1.5, 0.15, discs=3)
     assert (scene.unit("volume"), scene.unit("any_wall_area")) == ("length⁶", "length⁵")

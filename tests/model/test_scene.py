@@ -23,7 +23,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, WALLS
 from twodiscs.model.scene import REGIMES, Scene
-from twodiscs.model.two import ENERGY
+from twodiscs.model.two_geometry import ENERGY
 
 
 def test_discs_that_jam_do_not_fit():
@@ -232,7 +232,7 @@ def test_walls_of_one_rate_that_a_trajectory_reaches_are_counted_together(effect
     scene = Scene(1.5, 1.0, **{"radius": 0.2} | effects)
     by_axis = {"x": right, "y": top}
     for event in EVENTS:
-        assert scene.copies(event) == (by_axis[AXIS[event]] if event in WALLS else 1)
+        assert scene.multiplicity(event) == (by_axis[AXIS[event]] if event in WALLS else 1)
 
 
 def test_energy_to_pass_one_above_the_other_is_that_of_the_cheaper_order():

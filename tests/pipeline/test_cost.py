@@ -7,10 +7,10 @@ from factory import empty
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from twodiscs.analysis.tables import Cost, MeanTimes
+from twodiscs.analysis.tables import CostTable, MeanTimesTable
 from twodiscs_paper.catalogue import STUDIES
-from twodiscs_paper.configuration.load import load
-from twodiscs_paper.pipeline import cost
+from twodiscs_paper.configuration.yaml_files import load
+from twodiscs_paper.pipeline import job_cost
 
 BLOCK = {"name": "a", "box": {"width": 1.5, "height": 1.0}}
 
@@ -27,33 +27,35 @@ def test_a_limit_is_above_the_price():
     whole = scene(accuracy=1e-5, event_budget=1e12)
     for stage in ("monte_carlo", "dynamics"):
         for radius in whole.keys[stage].values():
-            jobs = max(1, len(cost.shards(whole, stage, radius)))
-            assert 60 * cost.minutes(whole, stage) > cost.seconds(whole, stage, radius) / jobs
+            jobs = max(1, len(job_cost.shards(whole, stage, radius)))
+            assert (
+                60 * job_cost.minutes(whole, stage) > job_cost.seconds(whole, stage, radius) / jobs
+            )
     for budget in (1e8, 1e9, 5e9, 2e10, 9e10):
         for watched in (["horizontal_hop"], ["horizontal_hop", "top_wall"]):
             request = scene(accuracy=1e-8, event_budget=budget, watch={"mean_times": watched})
-            limit = 60 * cost.minutes(request, "dynamics")
+            limit = 60 * job_cost.minutes(request, "dynamics")
             for radius in (0.24, 0.24999975, 0.3):
-                if not cost.shards(request, "dynamics", radius):
-                    assert limit > 2 * cost.seconds(request, "dynamics", radius)
+                if not job_cost.shards(request, "dynamics", radius):
+                    assert limit > 2 * job_cost.seconds(request, "dynamics", radius)
 
 
 def test_ten_times_the_accuracy_takes_a_hundred_times_the_work():
     coarse, fine = (scene(accuracy=error, event_budget=1e15) for error in (1e-3, 1e-4))
-    ratio = cost.seconds(fine, "dynamics", 0.3) / cost.seconds(coarse, "dynamics", 0.3)
+    ratio = job_cost.seconds(fine, "dynamics", 0.3) / job_cost.seconds(coarse, "dynamics", 0.3)
     assert ratio == pytest.approx(100, rel=0.1)
-    budget = cost.seconds(scene(accuracy=1e-5, event_budget=1e9), "dynamics", 0.3)
+    budget = job_cost.seconds(scene(accuracy=1e-5, event_budget=1e9), "dynamics", 0.3)
     assert budget == pytest.approx(10, rel=0.1)
 
 
 def test_days_are_those_of_the_jobs_of_all_radii_or_of_some_times_their_number(monkeypatch):
     radii = [round(0.1 + 0.001 * i, 3) for i in range(21)]
     request = scene(accuracy=1e-7, event_budget=1e15, radii=radii, watch={"mean_times": True})
-    whole = sum(cost.seconds(request, "dynamics", radius) for radius in radii) / 86400
+    whole = sum(job_cost.seconds(request, "dynamics", radius) for radius in radii) / 86400
     for some, worst in ((21, 1e-6), (7, 0.1)):
-        monkeypatch.setattr(cost, "SOME", some)
-        assert cost.days([request]) == pytest.approx(whole, rel=worst)
-    assert cost.days([scene()]) < 0.1
+        monkeypatch.setattr(job_cost, "SOME", some)
+        assert job_cost.days([request]) == pytest.approx(whole, rel=worst)
+    assert job_cost.days([scene()]) < 0.1
 
 
 @pytest.mark.parametrize("stage", ["monte_carlo", "dynamics", "intervals"])
@@ -63,8 +65,8 @@ def test_shards_cover_all_blocks_once(stage):
         watch={"volume": True, "mean_times": True,
                "hop_histogram": {"radii": [0.24], "intervals": 1e7}},
     )  # fmt: skip
-    parts = cost.run_at(request, stage, 0.24).parts
-    shards = cost.shards(request, stage, 0.24)
+    parts = job_cost.run_at(request, stage, 0.24).parts
+    shards = job_cost.shards(request, stage, 0.24)
     assert {part for part, *_ in shards} == {*parts}
     for part, run in parts.items():
         pieces = sorted((first, stop) for name, first, stop in shards if name == part)
@@ -80,7 +82,7 @@ def test_shards_cover_all_blocks_once(stage):
 def test_a_tighter_accuracy_keeps_the_shards_but_the_last(error, times):
     """They are pieces of one grid: of each part all but the last one stay."""
     found = [
-        cost.shards(scene(shard_events=1e8, accuracy=e, event_budget=1e15), "dynamics", 0.24)
+        job_cost.shards(scene(shard_events=1e8, accuracy=e, event_budget=1e15), "dynamics", 0.24)
         for e in (error, error / times)
     ]
     for part in ("all", "horizontal_hop"):
@@ -91,7 +93,7 @@ def test_a_tighter_accuracy_keeps_the_shards_but_the_last(error, times):
 def test_the_limit_of_a_study_grows_with_what_is_asked_of_it():
     def limit(seconds):
         configuration = load({"accuracy_cost": {"seconds": seconds}, "scenes": [BLOCK]})
-        return cost.study_minutes(STUDIES["accuracy_cost"], configuration)
+        return job_cost.study_minutes(STUDIES["accuracy_cost"], configuration)
 
     assert 60 * limit(1e6) > 1e6
     assert limit(1) < 60
@@ -113,21 +115,21 @@ def blocks(monkeypatch):
 def test_the_bound_on_the_events_of_an_accuracy_is_not_below_the_plan(radius):
     for accuracy in (1e-2, 1e-4):
         request = scene(radii=[radius], accuracy=accuracy, event_budget=1e15)
-        parts = cost.run_at(request, "dynamics", radius).parts
+        parts = job_cost.run_at(request, "dynamics", radius).parts
         events = parts["all"].planned * parts["all"].block_events
-        assert cost._events(request, radius) * 1.07 + parts["all"].block_events >= events
-    assert cost._events(scene(discs=3, radii=[0.1]), 0.1) == float("inf")
+        assert job_cost._events(request, radius) * 1.07 + parts["all"].block_events >= events
+    assert job_cost._events(scene(discs=3, radii=[0.1]), 0.1) == float("inf")
 
 
 def test_a_dry_run_says_which_accuracies_are_not_reached(blocks, monkeypatch):
     short = scene(accuracy=1e-5, event_budget=2e9, radii=[0.2, 0.3])
     others = [scene(accuracy=1e-2), scene(event_budget=1e12)]
-    lines = cost.shortfalls([short, *others])
+    lines = job_cost.shortfalls([short, *others])
     assert [line.partition(":")[0] for line in lines] == ["a, radius 0.2", "a, radius 0.3"]
     assert all("1e-5 asked for; the budget of 2e9 events ends it at" in line for line in lines)
     assert "(horizontal_hop_time); without a budget" in lines[0]
-    monkeypatch.setattr(cost, "SENTENCES", 1)
-    lines = cost.shortfalls([short, *others])
+    monkeypatch.setattr(job_cost, "SENTENCES", 1)
+    lines = job_cost.shortfalls([short, *others])
     assert lines[1:] == ["1 more radii may stop early: see the target forecast"]
 
 
@@ -135,7 +137,7 @@ def test_a_forecast_has_a_row_for_each_job_and_their_sum(blocks):
     keys = {"volume": True, "mean_times": True, "hop_histogram": [0.2]}
     block = BLOCK | {"radii": [0.2, 0.3], "watch": keys, "monte_carlo": {"samples": 1e7}}
     block |= {"accuracy": 1e-5, "event_budget": 2e9}
-    lines = cost.table(load({"shared": ["stability"], "scenes": [block]})).splitlines()
+    lines = job_cost.table(load({"shared": ["stability"], "scenes": [block]})).splitlines()
     rows = [line.split() for line in lines[2:7]]
     assert [row[:3] for row in rows] == [
         ["a", "monte_carlo", "0.2"], ["a", "monte_carlo", "0.3"], ["a", "dynamics", "0.2"],
@@ -155,24 +157,24 @@ DESCRIBED = {"name": "a", "event_budget": 2 * 10**9}
 def test_a_build_says_which_accuracies_it_did_not_reach(tmp_path):
     folder = tmp_path / "a"
     folder.mkdir()
-    assert cost.missed(tmp_path, DESCRIBED) == []
+    assert job_cost.missed(tmp_path, DESCRIBED) == []
     rows = [
-        empty(MeanTimes, radius=r, event=e, target=1e-5, relative_stderr=error, status=s)
+        empty(MeanTimesTable, radius=r, event=e, target=1e-5, relative_stderr=error, status=s)
         for r, e, error, s in [
             (0.2, "any_wall", 0.9e-5, "reached"), (0.2, "top_wall", 1e-5, "reached"),
             (0.3, "any_wall", 2e-5, "budget"), (0.3, "top_wall", 3e-5, "budget"),
         ]
     ]  # fmt: skip
-    MeanTimes.write(folder / "mean_times.csv", rows)
-    (line,) = cost.missed(tmp_path, DESCRIBED)
+    MeanTimesTable.write(folder / "mean_times.csv", rows)
+    (line,) = job_cost.missed(tmp_path, DESCRIBED)
     assert line == (
         "a, radius 0.3: 1e-5 asked for; the budget of 2e9 events ended it at 3e-5 (top_wall_time)"
     )
     # The speed is that of the fastest job: the first ones compile.
     jobs = [
-        empty(Cost, stage="dynamics", radius=radius, events=events, seconds=seconds)
+        empty(CostTable, stage="dynamics", radius=radius, events=events, seconds=seconds)
         for radius, events, seconds in ((0.2, 10**9, 10.0), (0.3, 2 * 10**9, 99.0))
     ]
-    Cost.write(folder / "cost.csv", jobs)
-    (line,) = cost.missed(tmp_path, DESCRIBED)
+    CostTable.write(folder / "cost.csv", jobs)
+    (line,) = job_cost.missed(tmp_path, DESCRIBED)
     assert line.endswith("at 3e-5 (top_wall_time); without a budget 2e10 events, 3 min")

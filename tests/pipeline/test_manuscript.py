@@ -9,7 +9,7 @@ from typst import TypstError
 
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.figures import style
-from twodiscs.figures.catalogue import FIGURES
+from twodiscs.figures.scene_figures import FIGURES
 from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES
 from twodiscs_paper.pipeline.documents import manuscript
 

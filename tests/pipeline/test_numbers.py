@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 import typst
 
-from twodiscs.analysis.tables import SCENE_TABLES, MeanTimes
+from twodiscs.analysis.tables import SCENE_TABLES, MeanTimesTable
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.model.events import EVENTS
 from twodiscs.points.base import reached
-from twodiscs.points.dynamics import DynamicsPoint
+from twodiscs.points.dynamics_point import DynamicsPoint
 from twodiscs_paper.catalogue import STUDY_TABLES, TABLES
-from twodiscs_paper.configuration.load import load, read
+from twodiscs_paper.configuration.yaml_files import load, read
 from twodiscs_paper.pipeline.documents.manuscript import CONSTANTS
 from twodiscs_paper.pipeline.points import pieces_of, read_point
 
@@ -227,7 +227,7 @@ def expected(results):
     kept = PAPER / "long_run"
     for name in ("files", "displacements"):
         tables[name] = TABLES["passages"].read(kept / name / "passages.csv")
-    return tables | {"long_run": MeanTimes.read(kept / "far" / "mean_times.csv")}
+    return tables | {"long_run": MeanTimesTable.read(kept / "far" / "mean_times.csv")}
 
 
 def of(rows, **where):
@@ -316,8 +316,8 @@ def test_the_long_run_is_what_its_shards_counted_and_agrees():
     scene = load(read(folder / "config.yaml")).scenes[0]
     point = read_point(DynamicsPoint, folder / "dynamics.json")
     assert point.radius == scene.radii[0]
-    made = MeanTimes.rows([point])
-    kept = MeanTimes.read(folder / "mean_times.csv")
+    made = MeanTimesTable.rows([point])
+    kept = MeanTimesTable.read(folder / "mean_times.csv")
     assert [row["event"] for row in made] == [row["event"] for row in kept]
     for ours, theirs in zip(made, kept, strict=True):
         assert ours["count"] == theirs["count"]

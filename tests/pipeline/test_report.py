@@ -10,7 +10,7 @@ from checkout import REPOSITORY
 from factory import empty
 from PIL import Image
 
-from twodiscs.analysis.tables import Cost, MeanTimes
+from twodiscs.analysis.tables import CostTable, MeanTimesTable
 from twodiscs_paper.pipeline.documents.report import (
     ERRORS,
     KEY,
@@ -51,8 +51,8 @@ def test_the_events_of_the_agreement_are_those_of_dynamics(tmp_path):
     for name in ("check", "grid"):
         shutil.copy(REPOSITORY / "paper" / "expected" / "paper" / f"{name}.csv", tmp_path / "paper")
     counts = {"dynamics": 7, "monte_carlo": 100}
-    rows = [empty(Cost, stage=stage, radius=0.1, events=n) for stage, n in counts.items()]
-    Cost.write(tmp_path / "paper" / "cost.csv", rows)
+    rows = [empty(CostTable, stage=stage, radius=0.1, events=n) for stage, n in counts.items()]
+    CostTable.write(tmp_path / "paper" / "cost.csv", rows)
     assert agreement(tmp_path, {"name": "paper"})["events"] == 7
 
 
@@ -60,7 +60,7 @@ def test_mean_times_are_those_of_their_table():
     folder = REPOSITORY / "paper" / "expected"
     scene = {"name": "paper", "width": 1.5, "height": 1.0, "effects": {}}
     shown = [(radius, *row) for radius, rows in mean_times(folder, scene).items() for row in rows]
-    rows = MeanTimes.read(folder / "paper" / "mean_times.csv")
+    rows = MeanTimesTable.read(folder / "paper" / "mean_times.csv")
     for (radius, event, value, error, exact, z), row in zip(shown, rows, strict=True):
         assert (radius, event.replace(" ", "_")) == (row["radius"], row["event"])
         if row["stderr"] is None:
@@ -112,17 +112,17 @@ def test_the_section_on_accuracy_has_the_worst_error_and_the_time_of_others(tmp_
     assert accuracies(tmp_path, scene) == []
     (tmp_path / "a").mkdir()
     rows = [
-        empty(MeanTimes, radius=0.2, event=event, estimate=2.0, stderr=error, target=1e-2)
+        empty(MeanTimesTable, radius=0.2, event=event, estimate=2.0, stderr=error, target=1e-2)
         for event, error in (("any_wall", 0.001), ("top_wall", 0.02), ("right_wall", None))
     ]
-    MeanTimes.write(tmp_path / "a" / "mean_times.csv", rows)
+    MeanTimesTable.write(tmp_path / "a" / "mean_times.csv", rows)
     assert accuracies(tmp_path, scene) == []
     # The job took three seconds, most of them to compile; at the speed of the other it takes one.
     jobs = [
-        empty(Cost, stage="dynamics", radius=radius, events=events, seconds=seconds)
+        empty(CostTable, stage="dynamics", radius=radius, events=events, seconds=seconds)
         for radius, events, seconds in ((0.2, 10**7, 3.0), (0.3, 10**8, 10.0))
     ]
-    Cost.write(tmp_path / "a" / "cost.csv", jobs)
+    CostTable.write(tmp_path / "a" / "cost.csv", jobs)
     (row,) = accuracies(tmp_path, scene)
     assert (row["radius"], row["quantity"], row["asked"]) == (0.2, "top_wall_time", 1e-2)
     assert row["reached"] == pytest.approx(1e-2)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from twodiscs_paper.configuration.load import load, read
+from twodiscs_paper.configuration.yaml_files import load, read
 from twodiscs_paper.pipeline.results import verify
 
 REPOSITORY = Path(__file__).resolve().parents[2]

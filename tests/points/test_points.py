@@ -12,9 +12,9 @@ from factory import BOX, POINTS, Laws, bins_point, counts_point, hits_point
 import twodiscs as td
 from twodiscs.model.checks import InputError
 from twodiscs.points.base import KEY, read_json, write_json
-from twodiscs.points.dynamics import StripCount
-from twodiscs.points.intervals import Bins
-from twodiscs.points.monte_carlo import Hits, InsertionPoint, MonteCarloPoint, Weights
+from twodiscs.points.dynamics_point import StripCount
+from twodiscs.points.intervals_point import Bins
+from twodiscs.points.monte_carlo_point import Hits, InsertionPoint, MonteCarloPoint, Weights
 from twodiscs_paper.pipeline.points import read_point
 
 LAW = Laws(BOX.scene(0.1))

@@ -15,7 +15,7 @@ from twodiscs.sampling import jit
 
 SCRIPT = """
 import numpy as np
-from twodiscs.sampling.separations import draw_velocity
+from twodiscs.sampling.conditioned import draw_velocity
 from twodiscs.sampling.streams import open_stream
 print(draw_velocity(open_stream(np.uint64(1), 0)))
 """
@@ -100,7 +100,7 @@ def test_the_process_of_a_user_stays_as_it_was(tmp_path):
     script = f"""
 import gc, os, sys
 before = dict(os.environ), gc.isenabled(), gc.get_freeze_count(), gc.get_threshold()
-from twodiscs.dynamics.two import lockstep
+from twodiscs.dynamics.two import event_counts
 assert before == (dict(os.environ), gc.isenabled(), gc.get_freeze_count(), gc.get_threshold())
 sys.path.insert(0, {str(tmp_path)!r})
 import own
@@ -144,7 +144,7 @@ print(np.allclose(numba.njit(product)(a), product(a), rtol=1e-9, atol=0))
 INSTRUCTIONS = """
 import collections, json, re, sys
 from twodiscs.dynamics.two.follow import loop_of
-from twodiscs.dynamics.two.lockstep import Counts, run_blocks
+from twodiscs.dynamics.two.event_counts import Counts, run_blocks
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 scene = Scene(1.5, 1.0, 0.2, **json.loads(sys.argv[1]))

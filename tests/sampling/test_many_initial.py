@@ -8,9 +8,9 @@ import pytest
 from marks import slow
 from scipy.stats import f
 
-from twodiscs.model.many import arrangement, is_ordered
+from twodiscs.model.many_geometry import arrangement, is_ordered
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.many import initial
+from twodiscs.sampling.many import many_initial_states
 from twodiscs.sampling.streams import open_stream
 
 
@@ -49,7 +49,9 @@ def apart(scene, found):
 
 @pytest.mark.parametrize("scene", [*GASES.values(), *LARGE], ids=repr)
 def test_states_are_allowed(scene):
-    x, y, u, v, dx, dy = apart(scene, initial.states(scene, 10 if scene in LARGE else 200, 1))
+    x, y, u, v, dx, dy = apart(
+        scene, many_initial_states.states(scene, 10 if scene in LARGE else 200, 1)
+    )
     assert np.min(np.hypot(dx, dy)) >= scene.contact_distance * (1 - 1e-14)
     assert np.max(np.abs(x)) <= scene.range_x / 2
     assert np.max(np.abs(y)) <= scene.range_y / 2
@@ -63,7 +65,7 @@ def test_states_are_allowed(scene):
 
 @pytest.mark.parametrize("name", GASES)
 def test_the_way_to_draw_is_chosen(name):
-    assert initial.method(GASES[name]) == name.split(",")[0]
+    assert many_initial_states.method(GASES[name]) == name.split(",")[0]
 
 
 EDGES = (1.0, 1.05, 1.2, 1.5, 2.0, 2.5, 3.5)
@@ -93,9 +95,9 @@ def difference(scene, one, other):
 
 def drawn(scene, number, seed, **changes):
     """Return ``number`` states of a ``Scene``, with some ``changes`` of how they are drawn."""
-    how = initial.initial_of(scene)._replace(**changes)
+    how = many_initial_states.initial_of(scene)._replace(**changes)
     found = np.zeros((4 * scene.discs, number))
-    initial.draw_states(open_stream(np.uint64(seed), 0), how, found)
+    many_initial_states.draw_states(open_stream(np.uint64(seed), 0), how, found)
     return found
 
 
@@ -112,7 +114,7 @@ def drawn(scene, number, seed, **changes):
 def test_ways_to_draw_agree(scene, one, other):
     number = {"chain": 500}
     found, same = (
-        initial.states(scene, number.get(way, 20_000), seed, by=way)
+        many_initial_states.states(scene, number.get(way, 20_000), seed, by=way)
         for seed, way in ((1, one), (2, other))
     )
     assert difference(scene, found, same) < 5
@@ -132,8 +134,8 @@ def test_ways_to_draw_agree(scene, one, other):
     ids=repr,
 )
 def test_chains_of_events_have_the_law_of_chains_of_single_moves(scene):
-    chain = initial._chain(scene)
-    singly = initial.Chain(chain.centres, 4000, chain.scales)
+    chain = many_initial_states._chain(scene)
+    singly = many_initial_states.Chain(chain.centres, 4000, chain.scales)
     assert difference(scene, drawn(scene, 500, 1), drawn(scene, 250, 2, chain=singly)) < 5
 
 
@@ -162,10 +164,14 @@ def test_long_channels_are_those_of_exact_draws():
      (Scene(6.0, 0.3600001, 0.18, discs=16), 0.5)],
 )  # fmt: skip
 def test_heights_in_a_channel_are_accepted_at_every_density(scene, least):
-    state, cells = open_stream(np.uint64(1), 0), initial.initial_of(scene, "channel").cells
+    state, cells = (
+        open_stream(np.uint64(1), 0),
+        many_initial_states.initial_of(scene, "channel").cells,
+    )
     heights = np.zeros(scene.discs)
     accepted = sum(
-        initial.propose_heights(state, cells, scene.contact_distance, heights) for _ in range(2000)
+        many_initial_states.propose_heights(state, cells, scene.contact_distance, heights)
+        for _ in range(2000)
     )
     assert accepted / 2000 > least
 
@@ -174,15 +180,15 @@ def test_heights_in_a_channel_are_accepted_at_every_density(scene, least):
 def test_each_disc_is_any_of_them(name):
     """Five sigma on how often a disc is in which place of the row; the first states stay."""
     scene, number = GASES[name], 400 if name == "chain" else 4000
-    found = initial.labelled(scene, number, 6)
-    assert np.array_equal(initial.labelled(scene, 50, 6), found[:, :50])
+    found = many_initial_states.labelled(scene, number, 6)
+    assert np.array_equal(many_initial_states.labelled(scene, 50, 6), found[:, :50])
     x, y, *_ = np.split(found, 4)
     ranks = np.argsort(np.argsort(y if scene.height > scene.width else x, axis=0), axis=0)
     counts = np.array([np.bincount(rank, minlength=scene.discs) for rank in ranks])
     share = 1 / scene.discs
     assert np.all(np.abs(counts - number * share) < 5 * math.sqrt(number * share * (1 - share)))
     # Nothing else has changed.
-    same = np.split(initial.states(scene, number, 6), 4)
+    same = np.split(many_initial_states.states(scene, number, 6), 4)
     assert np.array_equal(np.sort(x, axis=0), np.sort(same[0], axis=0))
     assert np.array_equal(found[2 * scene.discs :], np.vstack(same[2:]))
 
@@ -190,7 +196,9 @@ def test_each_disc_is_any_of_them(name):
 def test_who_waits_hears_how_many_states_are_drawn():
     """In several calls, which continue the streams; progress is reported from the second on."""
     scene, told = GASES["chain"], []
-    initial.labelled(scene, 200, 6, progress=lambda done, number: told.append((done, number)))
+    many_initial_states.labelled(
+        scene, 200, 6, progress=lambda done, number: told.append((done, number))
+    )
     done = [drawn for drawn, _ in told if drawn is not None]
     assert (done, done[-1]) == (sorted(done), 200)
     assert len(done) > 5

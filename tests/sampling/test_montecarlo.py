@@ -146,4 +146,4 @@ def test_the_sampler_suits_the_scene():
     samples = 2 * montecarlo.BLOCK
     assert montecarlo.plan(scene, samples - 1) == (montecarlo.weighted, samples)
     arguments = scene, everything(scene), samples, 0.1, 5
-    assert montecarlo.SamplingRun(*arguments).run() == sample_point(*arguments)
+    assert montecarlo.MonteCarloRun(*arguments).run() == sample_point(*arguments)

@@ -56,11 +56,11 @@ def test_pieces_are_those_of_an_absolute_grid(blocks, k):
 
 @given(st.floats(0.001, 1e12))
 def test_the_grid_has_sixteen_steps_while_a_number_doubles(blocks):
-    found = rounds.on_grid(blocks)
+    found = rounds.round_up_blocks(blocks)
     assert found >= blocks
     assert found <= max(math.ceil(blocks), blocks * (1 + 1 / rounds.STEPS) + 1)
-    assert rounds.on_grid(found) == found
-    assert rounds.on_grid(2 * found) in (2 * found, max(2 * found, 2))
+    assert rounds.round_up_blocks(found) == found
+    assert rounds.round_up_blocks(2 * found) in (2 * found, max(2 * found, 2))
 
 
 @pytest.mark.parametrize(
@@ -87,11 +87,11 @@ def test_sums_beyond_64_bits_are_exact():
 def test_rounds_end_where_the_error_is_reached_or_the_budget_spent(budget):
     seen = []
     run, counts = fabricated(0.003, budget)
-    done = rounds.in_rounds(run, lambda *given: seen.append(given))
+    done = rounds.run_in_rounds(run, lambda *given: seen.append(given))
     sums, blocks = reached(done)
     total = int(counts[:blocks].sum())
     assert int(sums[0][0]) == total
-    assert (run.excess_of(sums, blocks)[0] <= 1) == (budget == 1e12)
+    assert (run.error_over_target(sums, blocks)[0] <= 1) == (budget == 1e12)
     assert 200 * total <= budget
     # The reported work grows to the whole work.
     known = [(now, all_of_it) for now, all_of_it in seen if now is not None]
@@ -103,7 +103,7 @@ def test_rounds_end_where_the_error_is_reached_or_the_budget_spent(budget):
 def test_the_work_of_runs_one_after_the_other_ends_at_their_total():
     seen = []
     parts = {name: fabricated(0.01, 1e12)[0] for name in ("all", "vertical_hop")}
-    done = rounds.all_in_rounds(parts, lambda *given: seen.append(given))
+    done = rounds.run_all_in_rounds(parts, lambda *given: seen.append(given))
     work = [reached(pieces)[1] * parts[name].block_work for name, pieces in done.items()]
     assert seen[-1] == (sum(work), sum(work))
 
@@ -119,7 +119,7 @@ def test_a_budget_has_as_many_whole_blocks_as_it_can_pay(budget):
         budget,
         planned=1,
     )
-    assert reached(rounds.in_rounds(run))[1] == budget // 10
+    assert reached(rounds.run_in_rounds(run))[1] == budget // 10
 
 
 @pytest.mark.parametrize(("cores", "call"), [(1, 7000), (3, 7000), (3, rounds.CALL)])
@@ -128,8 +128,8 @@ def test_an_error_asked_for_later_has_the_sums_of_one_asked_for_at_once(monkeypa
     kept = {}
     for error in (0.1, 0.03, 0.01, 0.003, 0.02):
         run, _ = fabricated(error, 1e12)
-        kept = rounds.in_rounds(run, None, cores, kept)
-        (later, blocks), (at_once, known) = reached(kept), reached(rounds.in_rounds(run))
+        kept = rounds.run_in_rounds(run, None, cores, kept)
+        (later, blocks), (at_once, known) = reached(kept), reached(rounds.run_in_rounds(run))
         assert blocks == known
         assert later[0].tolist() == at_once[0].tolist()
 
@@ -138,10 +138,10 @@ def test_what_is_kept_is_not_done_again():
     run, _ = fabricated(0.01, 1e12)
     done, work = [], run.work
     run = replace(run, work=lambda *ends: done.append(ends) or work(*ends))
-    kept = rounds.in_rounds(run)
+    kept = rounds.run_in_rounds(run)
     assert done == [*kept]
     assert [first for first, _ in done] == [0, *(stop for _, stop in done[:-1])]
-    assert rounds.in_rounds(run, kept=kept) == kept
+    assert rounds.run_in_rounds(run, resume_from=kept) == kept
     assert done == [*kept]
 
 
@@ -150,7 +150,7 @@ def test_a_run_goes_on_from_shards():
     run, counts = fabricated(0.003, 1e12)
     shards, done, work = done_in_pieces(run, 256), [], run.work
     run = replace(run, work=lambda *ends: done.append(ends) or work(*ends))
-    found = reached(rounds.in_rounds(run, kept=shards))
+    found = reached(rounds.run_in_rounds(run, resume_from=shards))
     assert found[1] > 1000
     assert found[0][0].tolist() == [counts[: found[1]].sum()]
     assert sum(stop - first for first, stop in done) < found[1] - 700
@@ -163,7 +163,7 @@ TARGET = {"horizontal_hop": 0.01, "top_wall": 0.01, "any_wall": 0.003}
 def test_counts_in_pieces_are_those_of_their_blocks_and_reach_what_is_asked():
     """This holds for rare hops, too, which are counted from separate starts."""
     scene = PAPER.scene(0.24)
-    run = runs.CountingRun(scene, TARGET, 4 * 10**7, 3)
+    run = runs.DynamicsRun(scene, TARGET, 4 * 10**7, 3)
     assert {*run.parts} == {"all", "horizontal_hop"}
     found = [
         run.point({name: done_in_pieces(one, n) for name, one in run.parts.items()})
@@ -184,7 +184,7 @@ def test_planned_events_follow_the_errors_asked_for_as_far_as_the_budget_goes(bu
     """Each part has what its own events need; too small a budget shortens all equally."""
     scene = PAPER.scene(0.24)
     coarse, fine = (
-        runs.CountingRun(scene, {"horizontal_hop": error, "any_wall": 0.001}, budget, 1).parts
+        runs.DynamicsRun(scene, {"horizontal_hop": error, "any_wall": 0.001}, budget, 1).parts
         for error in (2e-3, 1e-3)
     )
     ratio = fine["horizontal_hop"].planned / fine["all"].planned
@@ -199,7 +199,7 @@ def test_planned_events_follow_the_errors_asked_for_as_far_as_the_budget_goes(bu
 
 
 def test_intervals_in_pieces_are_those_of_one_process():
-    run = runs.IntervalRun(PAPER.scene(0.1), "vertical_hop", 200_000, 5)
+    run = runs.IntervalsRun(PAPER.scene(0.1), "vertical_hop", 200_000, 5)
     assert run.parts["all"].planned == 4
     found = [run.point({"all": done_in_pieces(run.parts["all"], n)}) for n in (1, 2)]
     assert found[0] == found[1] == run.run()

@@ -22,10 +22,10 @@ from scipy.special import chdtrc
 from twodiscs.dynamics.two import strip
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
+from twodiscs.sampling.conditioned import conditioned_sampler, draw_separation
+from twodiscs.sampling.initial_states import COMPONENTS, draw_states, start_sampler, states
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.prism import fraction_if_accepted, prism_of, propose_anywhere
-from twodiscs.sampling.separations import draw_separation, separation_sampler
-from twodiscs.sampling.starts import COMPONENTS, draw_states, start_sampler, states
+from twodiscs.sampling.rejection import fraction_if_accepted, propose_anywhere, rejection_sampler
 from twodiscs.sampling.streams import open_stream
 
 PLAIN = Scene(1.5, 1.0, 0.2)
@@ -209,7 +209,7 @@ def slack_law(scene):
 @pytest.mark.parametrize(("width", "height", "radius"), CASES)
 def test_separations_have_the_invariant_law(width, height, radius):
     scene = Scene(width, height, radius)
-    draw = separation_sampler(scene)
+    draw = conditioned_sampler(scene)
     n = 40_000
     slack_x, slack_y, u = separations(np.uint64(11), draw, n)
     assert np.all((slack_x >= 0) & (slack_y >= 0))
@@ -286,7 +286,7 @@ def accepted(state, prism, proposals):
 def test_the_chance_of_a_proposal_is_exact(scene, hop):
     """At 5 sigma."""
     band, proposals = strip.strip_of(scene, hop), 200_000
-    prism, chance = prism_of(scene, hop, band.within), strip.acceptance(scene, hop, band)
+    prism, chance = rejection_sampler(scene, hop, band.within), strip.acceptance(scene, hop, band)
     assert 0.001 < chance <= 1
     found = accepted(open_stream(np.uint64(1), 0), prism, proposals) / proposals
     assert abs(found - chance) < 5 * math.sqrt(chance * (1 - chance) / proposals)

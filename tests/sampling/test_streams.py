@@ -5,7 +5,7 @@ import math
 import numpy as np
 from sampling.uniformity import assert_uniform
 
-from twodiscs.sampling.separations import second_largest_of
+from twodiscs.sampling.conditioned import second_largest_of
 from twodiscs.sampling.streams import (
     GOLDEN,
     exponential,

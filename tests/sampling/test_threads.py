@@ -6,7 +6,7 @@ import time
 import pytest
 from commands import python
 
-from twodiscs.sampling.rounds import in_threads
+from twodiscs.sampling.rounds import map_in_threads
 
 
 @pytest.mark.parametrize("cores", [1, 4])
@@ -15,7 +15,7 @@ def test_results_come_in_order_from_other_threads(cores):
         time.sleep(0.002 * (number % 3))
         return number, threading.current_thread()
 
-    found = [*in_threads(work, ((i,) for i in range(20)), cores)]
+    found = [*map_in_threads(work, ((i,) for i in range(20)), cores)]
     assert [number for number, _ in found] == [*range(20)]
     threads = {thread for _, thread in found}
     assert threading.main_thread() not in threads
@@ -24,7 +24,7 @@ def test_results_come_in_order_from_other_threads(cores):
 
 def test_only_some_calls_are_begun_ahead():
     begun = []
-    results = in_threads(lambda i: begun.append(i), ((i,) for i in range(100)), 2)
+    results = map_in_threads(lambda i: begun.append(i), ((i,) for i in range(100)), 2)
     next(results)
     results.close()
     assert len(begun) <= 6
@@ -38,7 +38,7 @@ def test_errors_come_out_and_end_the_work():
         raise ZeroDivisionError
 
     with pytest.raises(ZeroDivisionError):
-        list(in_threads(work, ((i,) for i in range(100))))
+        list(map_in_threads(work, ((i,) for i in range(100))))
     assert len(begun) <= 2
 
 
@@ -47,14 +47,14 @@ ENDING = """
 import contextlib, sys, time
 from numba.core.compiler_lock import global_compiler_lock
 from twodiscs.sampling import jit
-from twodiscs.sampling.rounds import in_threads
+from twodiscs.sampling.rounds import map_in_threads
 
 def work(seconds, compiling):
     with global_compiler_lock if compiling else contextlib.nullcontext():
         time.sleep(seconds)
         print("done", flush=True)
 
-list(in_threads(work, [{call}], waiting=sys.exit))
+list(map_in_threads(work, [{call}], waiting=sys.exit))
 """
 
 

@@ -15,12 +15,12 @@ from twodiscs.figures import style
 from twodiscs.figures.style import LOOKS
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.separations import separation_sampler
-from twodiscs.sampling.starts import draw_starts
+from twodiscs.sampling.conditioned import conditioned_sampler
+from twodiscs.sampling.initial_states import draw_starts
 from twodiscs.sampling.streams import open_stream
 from twodiscs_paper.studies.accuracy_cost import figure, figure_by_radius, scalar, timestepping
 from twodiscs_paper.studies.accuracy_cost import measure as costs
-from twodiscs_paper.studies.accuracy_cost.study import AccuracyCost
+from twodiscs_paper.studies.accuracy_cost.study import AccuracyCostTable
 
 FOLDER = Path(__file__).parents[2] / "paper" / "long_run" / "accuracy_cost"
 PAPER = Scene(1.5, 1.0, 0.2)
@@ -107,7 +107,7 @@ def plain(scene, start, steps, step):
 def test_it_is_the_plain_simulation(radius, step):
     """Short enough that chaos has not made a last digit into another count."""
     scene, replicas, steps = PAPER.with_radius(radius), 16, 150
-    draw, starts = separation_sampler(scene), np.zeros((8, 16))
+    draw, starts = conditioned_sampler(scene), np.zeros((8, 16))
     sums = timestepping.step_blocks(
         np.uint64(4), 0, 1, replicas, 8, steps, step, scene.contact_distance, draw
     )
@@ -125,7 +125,7 @@ def test_the_scalar_engine_counts_the_same(radius):
     """
     scene = PAPER.with_radius(radius)
     duration = runs.engine_of(scene).replica_duration(scene)
-    arguments = (duration, scene.contact_distance, separation_sampler(scene), (0, 0))
+    arguments = (duration, scene.contact_distance, conditioned_sampler(scene), (0, 0))
     usual = scalar.count_blocks(np.uint64(3), 0, 1, 1024, *arguments)
     sums, products = runs.engine_of(scene).run_blocks(scene, EVENTS, 3, 0, 1, duration)[:2]
     at = [EVENTS.index(event) for event in scalar.COUNTED]
@@ -234,7 +234,7 @@ def test_rows_are_those_of_all_methods_and_of_all_distances(given, monkeypatch):
     exact_one = SimpleNamespace(quantity="all", method="exact", c=0.0, floor=0.0)
     of_cost = SimpleNamespace(prices=[price, exact_one])
     monkeypatch.setattr(costs.twodiscs, "cost", lambda scene: of_cost, raising=False)
-    rows = [empty(AccuracyCost, **row) for row in AccuracyCost.rows(seconds=7.0, seed=1)]
+    rows = [empty(AccuracyCostTable, **row) for row in AccuracyCostTable.rows(seconds=7.0, seed=1)]
     assert len(of(rows, part="error")) == len(costs.methods(1))
     assert sum(seconds for seconds, _ in given) == pytest.approx(7)
     by_radius = of(rows, part="radius")
@@ -245,7 +245,7 @@ def test_rows_are_those_of_all_methods_and_of_all_distances(given, monkeypatch):
 
 
 def test_a_long_run_is_made_of_all_methods(given):
-    assert len([*AccuracyCost.part(seed=1, blocks=8)]) == len(costs.methods(1))
+    assert len([*AccuracyCostTable.part(seed=1, blocks=8)]) == len(costs.methods(1))
     assert {*given} == {(math.inf, 8)}
 
 
@@ -254,7 +254,7 @@ def test_a_long_run_is_made_of_all_methods(given):
 
 @pytest.fixture(scope="module")
 def long():
-    return AccuracyCost.read(FOLDER / "accuracy_cost.csv")
+    return AccuracyCostTable.read(FOLDER / "accuracy_cost.csv")
 
 
 # The figures --------------------------------------------------------------------------------------
@@ -278,7 +278,7 @@ def rows(long):
         )
         for distance in costs.DISTANCES
     ]  # fmt: skip
-    made = [empty(AccuracyCost, **row) for row in [*costs.exact_rows(), *prices]]
+    made = [empty(AccuracyCostTable, **row) for row in [*costs.exact_rows(), *prices]]
     return build + made
 
 

@@ -8,8 +8,8 @@ from factory import empty, written
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.model.events import HOPS
 from twodiscs_paper.studies.agreement import measure
-from twodiscs_paper.studies.agreement.study import Agreement
-from twodiscs_paper.studies.effects.study import Effects
+from twodiscs_paper.studies.agreement.study import AgreementTable
+from twodiscs_paper.studies.effects.study import EffectsTable
 
 #: Scores at four radii.
 SCORES = {
@@ -59,7 +59,7 @@ def histogram_rows():
 def effect_rows():
     start = {"scene": "channel", "radius": 0.1, "status": "reached", "starts": "invariant"}
     return [
-        dict.fromkeys(Effects.columns) | start | row
+        dict.fromkeys(EffectsTable.columns) | start | row
         for row in (
             {"quantity": "top_wall_time", "z": 1.0, "count": 4000},
             {"quantity": "any_wall_time", "z": -5.0, "count": 4000},
@@ -78,7 +78,7 @@ def rows():
         "a/hop_histogram": histogram_rows(),
         "effects": effect_rows(),
     }
-    return [*Agreement.rows(tables | {"b/check": check_rows()})]
+    return [*AgreementTable.rows(tables | {"b/check": check_rows()})]
 
 
 def one(rows, **where):
@@ -119,7 +119,7 @@ def test_a_count_from_a_strip_is_no_part_of_a_sum():
 
 
 def test_without_comparisons_there_is_little_to_say(tmp_path):
-    rows = written(tmp_path, Agreement, tables={"effects": []})
+    rows = written(tmp_path, AgreementTable, tables={"effects": []})
     assert [row["quantity"] for row in rows] == ["error_ratio", "third_virial"]
 
 

@@ -11,7 +11,7 @@ from scipy.integrate import quad
 from scipy.stats import norm
 
 from twodiscs_paper.studies.passages import brownian as study
-from twodiscs_paper.studies.passages.models import brownian
+from twodiscs_paper.studies.passages.models import brownian_steps
 
 SIGMA = 5
 every_program = pytest.mark.parametrize("program", study.PROGRAMS)
@@ -107,8 +107,8 @@ def test_both_methods_agree(program):
 
 def test_clusters_hold_each_crossing_once():
     counts = study.crossing_counts(1, "reflected", 0.125, 4, 100)
-    assert sum(number for _, number in counts["sizes"]) == 2 * brownian.CROSSINGS
-    assert counts["tried"] == 2 * brownian.CROSSINGS  # none is rejected
+    assert sum(number for _, number in counts["sizes"]) == 2 * brownian_steps.CROSSINGS
+    assert counts["tried"] == 2 * brownian_steps.CROSSINGS  # none is rejected
 
 
 # The motion -------------------------------------------------------------------------------------
@@ -125,10 +125,10 @@ def test_positions_stay_uniform(program):
     allowed = states[:, 0] ** 2 + (states[:, 1] - states[:, 2]) ** 2 >= 1
     states = states[allowed][:number]
     before = states.copy()
-    bits = brownian.open_stream(np.uint64(7), 0)
+    bits = brownian_steps.open_stream(np.uint64(7), 0)
     for state in states:
         for _ in range(8):
-            brownian.advance(state, study.PROGRAMS[program], 0.15, study.HALF, 1 + room, bits)
+            brownian_steps.advance(state, study.PROGRAMS[program], 0.15, study.HALF, 1 + room, bits)
     for value in (
         lambda s: s[:, 0] ** 2, lambda s: s[:, 1], lambda s: s[:, 1] * s[:, 2],
         lambda s: abs(s[:, 0]) < 0.3, lambda s: abs(s[:, 1] - s[:, 2]),

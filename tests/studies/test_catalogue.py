@@ -9,7 +9,7 @@ import pytest
 
 from twodiscs.model.effects import EFFECTS
 from twodiscs_paper.catalogue import STUDIES, STUDY_TABLES
-from twodiscs_paper.configuration.load import load, read
+from twodiscs_paper.configuration.yaml_files import load, read
 from twodiscs_paper.drawings import DRAW
 
 CONFIG = Path(__file__).parents[2] / "config"
@@ -100,7 +100,7 @@ def test_figures_are_drawn_from_all_tables_of_the_study_and_those_with_seconds_a
     for name, entry in study.figures.items():
         module = inspect.getmodule(DRAW[name]).__name__
         assert module.startswith(f"twodiscs_paper.studies.{study.name}.")
-        if entry.tables or not entry.kept:  # a figure may be of a long run alone
+        if entry.tables or not entry.long_runs:  # a figure may be of a long run alone
             assert names <= set(entry.tables)
     assert set(study.timed) <= names
     for table in study.tables:

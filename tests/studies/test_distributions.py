@@ -17,7 +17,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.theory import laws
 from twodiscs_paper.studies.distributions import measure as distributions
-from twodiscs_paper.studies.distributions.study import Distributions
+from twodiscs_paper.studies.distributions.study import DistributionsTable
 from twodiscs_paper.studies.single import tail_constant
 
 BOX = Box(1.5, 1.0)
@@ -26,7 +26,7 @@ PAPER = BOX.scene(0.24)
 
 def complete(rows):
     """Return rows with their empty cells."""
-    return [dict.fromkeys(Distributions.columns) | row for row in rows]
+    return [dict.fromkeys(DistributionsTable.columns) | row for row in rows]
 
 
 def measured(*given):
@@ -172,7 +172,7 @@ def test_radii_near_the_threshold():
 def test_the_table_is_written(tmp_path):
     scene = {"name": "paper", "box": BOX.parameters(), "event": "vertical_hop", "radii": [0.2]}
     other = scene | {"name": "other", "box": Box(3.0, 1.0).parameters()}
-    rows = written(tmp_path, Distributions, events=2**16, scenes=[scene, other], seed=9)
+    rows = written(tmp_path, DistributionsTable, events=2**16, scenes=[scene, other], seed=9)
     cases = list(dict.fromkeys((row["scene"], row["event"], row["radius"]) for row in rows))
     near = [
         ("paper", hop, radius)
@@ -181,7 +181,7 @@ def test_the_table_is_written(tmp_path):
     ]
     assert cases == [("paper", "vertical_hop", 0.2), *near, ("other", "vertical_hop", 0.2)]
     # A case does not depend on the others.
-    alone = complete(Distributions.rows([scene], 9, 2**16))
+    alone = complete(DistributionsTable.rows([scene], 9, 2**16))
     assert alone == [row for row in rows if row["scene"] == "paper"]
 
 

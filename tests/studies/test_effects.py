@@ -11,20 +11,25 @@ from factory import Laws, empty, written
 from marks import slow
 from numba.core.errors import NumbaError
 
-from twodiscs.analysis.tables import MeanTimes
+from twodiscs.analysis.tables import MeanTimesTable
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.trajectory import events_of
+from twodiscs.dynamics.paths import events_of
 from twodiscs.figures import curves, style
 from twodiscs.model.box import Box, key, stream_seed
 from twodiscs.model.events import EVENTS, WALLS
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.starts import draw_states, start_sampler
+from twodiscs.sampling.initial_states import draw_states, start_sampler
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
-from twodiscs_paper.configuration.load import load, read
-from twodiscs_paper.studies.effects import cost, figure
+from twodiscs_paper.configuration.yaml_files import load, read
+from twodiscs_paper.studies.effects import figure, price
 from twodiscs_paper.studies.effects import measure as effects
-from twodiscs_paper.studies.effects.study import SCENES, Effects, EffectsCost, EffectsCurves
+from twodiscs_paper.studies.effects.study import (
+    SCENES,
+    EffectsCostTable,
+    EffectsCurvesTable,
+    EffectsTable,
+)
 from twodiscs_paper.studies.single import tail_constant
 
 NAMES = [*SCENES]
@@ -71,7 +76,7 @@ def tables_of(names, rng):
         box, radii = request(name).box, request(name).radii
         laws = [Laws(box.scene(radius)) for radius in radii]
         points = [law.dynamics(rng, relative=1e-2, events=law.scene.events) for law in laws]
-        rows = MeanTimes.rows(points)
+        rows = MeanTimesTable.rows(points)
         tables[f"{name}/mean_times"] = rows
     return tables
 
@@ -90,7 +95,7 @@ def rows(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(effects, "survivors", survivors)
         return written(
-            tmp_path_factory.mktemp("effects"), Effects, tables=tables, scenes=BOXES, seed=SEED
+            tmp_path_factory.mktemp("effects"), EffectsTable, tables=tables, scenes=BOXES, seed=SEED
         )
 
 
@@ -161,15 +166,17 @@ RATIOS = {"without_effects": 1.0, "plain": 0.99, "plain_walls": 1.05}
 
 def costs():
     """Return rows of effects_cost.csv: ratios of 0.5, 0.6, … in their order."""
-    ratios = RATIOS | {name: 0.5 + 0.1 * i for i, name in enumerate((*NAMES, *cost.MORE))}
+    ratios = RATIOS | {name: 0.5 + 0.1 * i for i, name in enumerate((*NAMES, *price.MORE))}
     given = enumerate((ratios | {"all effects": 0.007}).items())
-    return [empty(EffectsCost, variant=v, ratio=r, instructions=4000 + i) for i, (v, r) in given]
+    return [
+        empty(EffectsCostTable, variant=v, ratio=r, instructions=4000 + i) for i, (v, r) in given
+    ]
 
 
 def test_curves_go_through_the_exact_ratios(rows, monkeypatch):
     monkeypatch.setattr(curves, "FEWER", 28)
     names = "rough", "torus"  # whose exact values take less time
-    table = [*EffectsCurves.rows({name: BOXES[name] for name in names})]
+    table = [*EffectsCurvesTable.rows({name: BOXES[name] for name in names})]
     for event in figure.SHOWN_EVENTS:
         for name in names:
             x, y = figure._curve(table, name, event)
@@ -191,7 +198,7 @@ def test_bars_are_the_times_over_the_package_without_effects():
     numbers = {(text.get_text(), text.xy[1]) for text in axes.texts}
     for i, row in enumerate(costs()):
         assert {(f"{1 / row['ratio']:.3g}", i), (f"{row['instructions']}", i)} <= numbers
-    assert [label.get_text() for label in axes.get_yticklabels()][3:] == [*NAMES, *cost.MORE]
+    assert [label.get_text() for label in axes.get_yticklabels()][3:] == [*NAMES, *price.MORE]
 
 
 # The cost of an event -----------------------------------------------------------------------------
@@ -201,15 +208,17 @@ def test_costs_are_of_every_scene_and_of_what_is_watched(monkeypatch):
     """The speeds are fabricated: seconds are the events of the plain scene, halved without hops."""
     watched = {}
 
-    def lockstep(blocks, scene=cost.SCENE, events=EVENTS, bare=None):
+    def lockstep(blocks, scene=price.SCENE, events=EVENTS, bare=None):
         watched[scene.has_effects, tuple(events)] = scene
         number = 8.0 if bare else 2.0 if scene.has_effects else 4.0
         return number, 1.0 if events == EVENTS else 0.5
 
-    monkeypatch.setattr(cost, "lockstep", lockstep)
-    monkeypatch.setattr(cost, "package_without_effects", lambda: "bare")
-    monkeypatch.setattr(cost, "instructions", lambda work, package: 10 if package == "bare" else 20)
-    rows = EffectsCost.rows({}, {name: BOXES[name] for name in ("torus", "rough")})
+    monkeypatch.setattr(price, "lockstep", lockstep)
+    monkeypatch.setattr(price, "package_without_effects", lambda: "bare")
+    monkeypatch.setattr(
+        price, "instructions", lambda work, package: 10 if package == "bare" else 20
+    )
+    rows = EffectsCostTable.rows({}, {name: BOXES[name] for name in ("torus", "rough")})
     assert {row["variant"]: row["ratio"] for row in rows} == {
         "without_effects": 1.0, "plain": 0.5, "torus": 0.5, "rough": 0.25, "plain_walls": 1.0,
         "friction": 0.25, "all effects": 0.5,
@@ -222,14 +231,14 @@ def test_costs_are_of_every_scene_and_of_what_is_watched(monkeypatch):
 @pytest.mark.slow
 def test_the_package_without_effects_counts_the_same_and_has_none():
     """Its plain kernel has the same sums and as many instructions; an effect cannot be compiled."""
-    name = cost.package_without_effects()
+    name = price.package_without_effects()
     ours, bare = (
-        import_module(f"{package}.dynamics.two.lockstep") for package in ("twodiscs", name)
+        import_module(f"{package}.dynamics.two.event_counts") for package in ("twodiscs", name)
     )
     plain = PLAIN.scene(0.2), EVENTS, 1, 0, 2, 32.0
     for found, due in zip(bare.run_blocks(*plain), ours.run_blocks(*plain), strict=True):
         np.testing.assert_array_equal(found, due)
-    counted = cost.instructions(lambda: cost.lockstep(1), "twodiscs")
-    assert cost.instructions(lambda: cost.lockstep(1, bare=name), name) == counted
+    counted = price.instructions(lambda: price.lockstep(1), "twodiscs")
+    assert price.instructions(lambda: price.lockstep(1, bare=name), name) == counted
     with pytest.raises(NumbaError):
         bare.run_blocks(ROUGH, EVENTS, 1, 0, 1, 1.0)

@@ -11,16 +11,16 @@ import pytest
 import yaml
 from factory import empty, of
 
-from twodiscs.dynamics.many.passages import cluster_sizes
-from twodiscs.dynamics.two.passages import HOPS_OF_BLOCK
-from twodiscs.measure.transmission import by_clusters, of_clusters, plateau
+from twodiscs.dynamics.many.many_hop_clusters import cluster_sizes
+from twodiscs.dynamics.two.hop_clusters import HOPS_OF_BLOCK
+from twodiscs.measure.transmission import cluster_coefficient, odd_clusters_per_passage, plateau
 from twodiscs.model.box import Box
 from twodiscs.points.base import read_json
 from twodiscs_paper.studies.passages import brownian
 from twodiscs_paper.studies.passages import measure as passages
-from twodiscs_paper.studies.passages.study import Brownian, Passages
+from twodiscs_paper.studies.passages.study import BrownianTable, PassagesTable
 from twodiscs_paper.studies.tails import measure as tails
-from twodiscs_paper.studies.tails.study import Tails
+from twodiscs_paper.studies.tails.study import TailsTable
 
 PAPER = Path(__file__).resolve().parents[2] / "paper"
 
@@ -60,15 +60,15 @@ def rows_of_steps(configuration, counts):
             assert len(point["seeds"]) == len(configuration["seeds"]) == 2
             for seed in point["seeds"]:
                 assert (seed.get("pairs") or sum(n for _, n in seed["sizes"])) == due[3]
-    return Brownian.rows(counts)
+    return BrownianTable.rows(counts)
 
 
 @pytest.mark.parametrize(
     ("name", "table", "rows"),
     [
-        ("passages", Passages, rows_of_clusters),
-        ("files", Passages, rows_of_files),
-        ("brownian", Brownian, rows_of_steps),
+        ("passages", PassagesTable, rows_of_clusters),
+        ("files", PassagesTable, rows_of_files),
+        ("brownian", BrownianTable, rows_of_steps),
     ],
 )
 def test_a_table_is_that_of_its_counts(name, table, rows):
@@ -81,7 +81,8 @@ def test_a_table_is_that_of_its_counts(name, table, rows):
 
 
 @pytest.mark.parametrize(
-    ("name", "table"), [("passages", Passages), ("tails", Tails), ("brownian", Brownian)]
+    ("name", "table"),
+    [("passages", PassagesTable), ("tails", TailsTable), ("brownian", BrownianTable)],
 )
 def test_the_parameters_of_a_long_run_are_those_of_a_part(name, table, monkeypatch):
     configuration, *_ = kept(name, table)
@@ -99,7 +100,7 @@ def test_files_diffuse_by_passages_if_hops_are_rare():
     κ of 128 discs is that of the same motion. κ of short files is that of hops that are drawn on
     their surface, from other states and by another kernel.
     """
-    rows = of(kept("files", Passages)[1], distance=1 / 32)
+    rows = of(kept("files", PassagesTable)[1], distance=1 / 32)
     files = {(row["discs"], row["friction"]) for row in rows}
     assert len(files) == 4
     for discs, friction in files:
@@ -111,8 +112,8 @@ def test_files_diffuse_by_passages_if_hops_are_rare():
             scene, unit = passages.file_of(Box(1.5, 1.0), discs, 5)
             gap = 8 * unit
             sizes, _ = cluster_sizes(scene, "horizontal_hop", gap, 48, 5)
-            law = partial(of_clusters, others=2)
-            drawn = plateau(by_clusters(sizes), gap, 2 / hops["estimate"], law)
+            law = partial(odd_clusters_per_passage, others=2)
+            drawn = plateau(cluster_coefficient(sizes), gap, 2 / hops["estimate"], law)
             value, error = drawn.value, drawn.stderr
         both = math.hypot(error, moves["stderr"])
         assert abs(value - moves["estimate"]) < 5 * both < 1 - value
@@ -121,10 +122,16 @@ def test_files_diffuse_by_passages_if_hops_are_rare():
 @pytest.mark.parametrize(
     ("name", "table", "quantity", "keys", "fewest"),
     [
-        ("passages", Passages, "coefficient", ("distance", "friction", "moment_of_inertia"), 11),
-        ("tails", Tails, "survival", ("radius", "method"), 10),
+        (
+            "passages",
+            PassagesTable,
+            "coefficient",
+            ("distance", "friction", "moment_of_inertia"),
+            11,
+        ),
+        ("tails", TailsTable, "survival", ("radius", "method"), 10),
         # The same streams: the radii of the build are among those of the long run.
-        ("displacements", Passages, "displacement", ("radius", "friction", "discs"), 21),
+        ("displacements", PassagesTable, "displacement", ("radius", "friction", "discs"), 21),
     ],
 )
 def test_long_runs_agree_with_the_build(name, table, quantity, keys, fewest):
@@ -141,7 +148,7 @@ def test_long_runs_agree_with_the_build(name, table, quantity, keys, fewest):
 
 
 def test_seeds_and_methods_of_brownian_steps_agree():
-    _, found, _ = kept("brownian", Brownian)
+    _, found, _ = kept("brownian", BrownianTable)
     judged = [row["seeds_z"] for row in found if row["seeds_z"] is not None]
     judged += [row["z"] for row in found if row["z"] is not None and row["program"] != "kicked"]
     assert len(judged) > 100
@@ -151,7 +158,7 @@ def test_seeds_and_methods_of_brownian_steps_agree():
 
 def test_reflected_discs_have_the_exponents_of_both_theories():
     """A neck of 8 steps and more, and one of 1/8 and less, have theirs from each seed."""
-    _, found, _ = kept("brownian", Brownian)
+    _, found, _ = kept("brownian", BrownianTable)
     fits = of(found, program="reflected", method="crossings", quantity="exponent")
     long, short = ([r for r in fits if (r["neck"] > 1) == long] for long in (True, False))
     assert {row["seed"] for row in long} == {row["seed"] for row in short} == {None, 1, 2}

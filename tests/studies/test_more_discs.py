@@ -5,14 +5,14 @@ import math
 import pytest
 
 from twodiscs_paper.studies.more_discs import measure
-from twodiscs_paper.studies.more_discs.study import MoreDiscs
+from twodiscs_paper.studies.more_discs.study import MoreDiscsTable
 
 
 @pytest.fixture(scope="module")
 def rows(tmp_path_factory):
     path = tmp_path_factory.mktemp("more") / "more_discs.csv"
-    MoreDiscs.write(path, measure.rows(300_000, 60_000, 1, discs=(2, 3, 4), radii=(0.1, 0.28)))
-    return MoreDiscs.read(path)
+    MoreDiscsTable.write(path, measure.rows(300_000, 60_000, 1, discs=(2, 3, 4), radii=(0.1, 0.28)))
+    return MoreDiscsTable.read(path)
 
 
 def test_dynamics_agrees_with_what_is_known(rows):

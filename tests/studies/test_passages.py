@@ -25,7 +25,7 @@ from twodiscs_paper.studies.estimates import LinearFit, mean_of
 from twodiscs_paper.studies.passages import figure, figure_diffusion, figure_transmission, measure
 from twodiscs_paper.studies.passages.measure import passing_rate
 from twodiscs_paper.studies.passages.models import file
-from twodiscs_paper.studies.passages.study import Passages
+from twodiscs_paper.studies.passages.study import PassagesTable
 
 BOX, HOP = Box(1.5, 1.0), "horizontal_hop"
 
@@ -61,7 +61,7 @@ def power_rows(power, sizes, inertia=None):
         value = 2.0 ** (-n * power)
         row = {"quantity": "coefficient", "distance": 2.0**-n, "stderr": size * value}
         row |= {"scene": "paper", "event": HOP, "discs": 2, "moment_of_inertia": inertia}
-        rows.append(empty(Passages, **row, estimate=value if inertia else 1 - value))
+        rows.append(empty(PassagesTable, **row, estimate=value if inertia else 1 - value))
     return rows
 
 
@@ -235,7 +235,7 @@ def test_the_measured_density_is_the_limit_of_long_waves():
 
 
 LONG_RUNS = {"kept": []} | {
-    name: Passages.read(Path(__file__).parents[2] / f"paper/long_run/{name}/passages.csv")
+    name: PassagesTable.read(Path(__file__).parents[2] / f"paper/long_run/{name}/passages.csv")
     for name in ("files", "displacements")
 }
 
@@ -252,8 +252,8 @@ def joined(name, box, inertias=(0.5,)):
         given = {"name": name, "box": box, "blocked": [0.28 * box.height], "seed": 1}
         parts.append({"part": "in_long_file", **given})
     parts.append({"part": "in_the_limit", "seed": 1})
-    found = [empty(Passages, **row) for given in parts for row in Passages.part(**given)]
-    return [empty(Passages, **row) for row in Passages.rows({"all": found})]
+    found = [empty(PassagesTable, **row) for given in parts for row in PassagesTable.part(**given)]
+    return [empty(PassagesTable, **row) for row in PassagesTable.rows({"all": found})]
 
 
 @pytest.mark.parametrize("rough", [False, slow(True)])
@@ -266,8 +266,8 @@ def test_the_table_is_written(rough, tmp_path, small, monkeypatch):
         )
     seeds, seed_of = [], measure.hop_seed
     monkeypatch.setattr(measure, "hop_seed", lambda *of: seeds.append(seed_of(*of)) or seeds[-1])
-    Passages.write(tmp_path / "passages.csv", joined("paper", BOX, (0.5, 1.0)))
-    rows = Passages.read(tmp_path / "passages.csv")
+    PassagesTable.write(tmp_path / "passages.csv", joined("paper", BOX, (0.5, 1.0)))
+    rows = PassagesTable.read(tmp_path / "passages.csv")
     assert len({*seeds}) == len(seeds) > 20  # every estimate has separate streams
     judged = [row for row in rows if rough or row["moment_of_inertia"] is None]
     assert max(abs(row["z"]) for row in judged if row["z"] is not None) < 5
@@ -343,7 +343,7 @@ def test_rows_with_friction(kicked, monkeypatch):
         square = sum((row["stderr"] / row["estimate"]) ** 2 for row in (before, after))
         assert slope["stderr"] == pytest.approx(math.sqrt(square) / math.log(4) / octaves)
     assert len(slopes) == 2
-    assert list(measure.fits([empty(Passages, **row) for row in rows])) == []
+    assert list(measure.fits([empty(PassagesTable, **row) for row in rows])) == []
 
 
 @pytest.mark.parametrize("halvings", [8, 10])

@@ -20,11 +20,11 @@ from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
-from twodiscs.sampling.starts import states
+from twodiscs.sampling.initial_states import states
 from twodiscs.theory import exact
 from twodiscs_paper.studies.stability import figure, figure_runs
 from twodiscs_paper.studies.stability import measure as stability
-from twodiscs_paper.studies.stability.study import Stability
+from twodiscs_paper.studies.stability.study import StabilityTable
 
 EXPECTED = Path(__file__).parents[2] / "paper" / "expected" / "stability.csv"
 PAPER = Box(1.5, 1.0)
@@ -136,7 +136,7 @@ def test_conditioned_agrees_with_rejection():
 def test_the_better_sampler_is_chosen():
     """Rejection while one in 64 of the prism is free, the other one up to the largest radius."""
     for radius, method, samples in ((0.3, "monte_carlo", 2**22), (0.38, "conditioned", 2**16)):
-        point = montecarlo.SamplingRun(PAPER.scene(radius), ["volume"], 2**22, 0.02, 1).run()
+        point = montecarlo.MonteCarloRun(PAPER.scene(radius), ["volume"], 2**22, 0.02, 1).run()
         assert (point.method, point.samples) == (method, samples)
 
 
@@ -325,7 +325,7 @@ def quick(monkeypatch):
 
 def test_table_and_figure_of_any_box(quick, tmp_path):
     box = Box(1e-6, 1e6)
-    rows = written(tmp_path, Stability, box=box, seed=1, ordinary=2000, hard=1000)
+    rows = written(tmp_path, StabilityTable, box=box, seed=1, ordinary=2000, hard=1000)
     parts = {row["part"] for row in rows}
     assert parts == {
         "theory", "sampling", "estimates", "times", "dynamics", "extremes", "reversal", "coverage"

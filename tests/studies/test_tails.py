@@ -19,7 +19,7 @@ from twodiscs.theory import exact
 from twodiscs_paper.studies.estimates import mean_of
 from twodiscs_paper.studies.single import tail_constant
 from twodiscs_paper.studies.tails import measure as tails
-from twodiscs_paper.studies.tails.study import Tails
+from twodiscs_paper.studies.tails.study import TailsTable
 
 BOX = Box(1.5, 1.0)
 PAPER = BOX.scene(0.24)
@@ -120,7 +120,7 @@ def test_the_table_is_written(tmp_path, monkeypatch):
     """And depends on the seed alone."""
     monkeypatch.setattr(tails, "WEIGHTED", (5, 50))
     given = {"box": BOX, "samples": 5, "replicas": 2000}
-    rows, again, other = (written(tmp_path, Tails, **given, seed=seed) for seed in (1, 1, 2))
+    rows, again, other = (written(tmp_path, TailsTable, **given, seed=seed) for seed in (1, 1, 2))
     assert rows == again != other
     assert [row["quantity"] for row in rows].count("rate") == 1
     assert {row["law"] is None for row in rows if row["radius"] == 0.3} == {True, False}

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from factory import empty, written
 
-from twodiscs.analysis.tables import MeanTimes
+from twodiscs.analysis.tables import MeanTimesTable
 from twodiscs.figures import style
 from twodiscs.model.box import Box
 from twodiscs.theory import exact
-from twodiscs_paper.studies.distributions.study import Distributions
+from twodiscs_paper.studies.distributions.study import DistributionsTable
 from twodiscs_paper.studies.thresholds import figure
 from twodiscs_paper.studies.thresholds import measure as thresholds
-from twodiscs_paper.studies.thresholds.study import Thresholds
+from twodiscs_paper.studies.thresholds.study import ThresholdsTable
 
 PAPER, LONG = Box(1.5, 1.0), Box(3.0, 1.0)
 
@@ -27,7 +27,7 @@ def times_of(event, radii, noise=0.0, relative=1e-3, box=PAPER, seed=2):
         value = time * (1 + noise * relative * rng.standard_normal())
         rows.append(
             empty(
-                MeanTimes,
+                MeanTimesTable,
                 radius=radius,
                 event=event,
                 exact=time,
@@ -41,7 +41,8 @@ def times_of(event, radii, noise=0.0, relative=1e-3, box=PAPER, seed=2):
 def passages_of(name, box, rows, last=None):
     """Return rows of distributions.csv: first passages half as long again as the mean times."""
     return [
-        empty(Distributions, scene=name, width=box.width, height=box.height, radius=row["radius"],
+        empty(DistributionsTable, scene=name, width=box.width, height=box.height,
+            radius=row["radius"],
             event=row["event"], quantity="first_passage", last=last, exact_mean=row["exact"],
             estimate=1.5 * row["exact"], stderr=row["stderr"], count=9,
         )
@@ -143,7 +144,7 @@ def test_the_table_is_written(box, tmp_path):
         ({"a/mean_times": rows} | passages, {"mean_time", "first_passage"}),
         (passages, {"first_passage"}),
     ):
-        found = written(tmp_path, Thresholds, tables=read, scenes={"a": box.parameters()})
+        found = written(tmp_path, ThresholdsTable, tables=read, scenes={"a": box.parameters()})
         assert {row["quantity"] for row in found} == quantities
         with style.context():
             assert figure.draw(box, read | {"thresholds": found})

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from twodiscs.model.many import largest_known_radius as largest_radius
+from twodiscs.model.many_geometry import largest_known_radius as largest_radius
 from twodiscs.theory import three
 
 BOUND = 1e-12

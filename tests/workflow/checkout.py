@@ -75,12 +75,12 @@ QUICKER = (
     (f"{STUDIES}/passages/study.py", 'return parts | {"in_the_limit"', 'return {"in_the_limit"'),
     (f"{STUDIES}/accuracy_cost/measure.py", "(0.6, 0.2, 0.05, 1e-2, ", "("),
     (
-        f"{STUDIES}/effects/cost.py",
+        f"{STUDIES}/effects/price.py",
         '"blocks": 40, "repetitions": 5',
         '"blocks": 8, "repetitions": 1',
     ),
-    (f"{STUDIES}/effects/cost.py", "scenes.items()} | MORE", "scenes.items()}"),
-    (f"{STUDIES}/effects/cost.py", "_without_effects()\n", "_without_effects() and 'twodiscs'\n"),
+    (f"{STUDIES}/effects/price.py", "scenes.items()} | MORE", "scenes.items()}"),
+    (f"{STUDIES}/effects/price.py", "_without_effects()\n", "_without_effects() and 'twodiscs'\n"),
 )
 
 #: The rules that build nothing but lists of files: targets, and checksums of sources.

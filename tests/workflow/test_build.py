@@ -7,8 +7,8 @@ import pytest
 from checkout import fresh
 
 import twodiscs as td
-from twodiscs.analysis.tables import Trajectory
-from twodiscs.figures.catalogue import FIGURES
+from twodiscs.analysis.tables import TrajectoryTable
+from twodiscs.figures.scene_figures import FIGURES
 
 #: Files with wall-clock seconds, or the date.
 TIMED = (
@@ -34,7 +34,7 @@ def test_everything_that_is_called_for_is_built(complete):
     assert walls == {f"walls/{n}.csv" for n in ("grid", "theory", "mean_times", "check", "cost")}
     assert {"check.passed", "tails.csv", "report.html", "configuration.json"} <= set(results)
     assert [n for n, text in results.items() if not text and not n.startswith("logs/")] == []
-    path = Trajectory.read(complete.path / "results/full/trajectory.csv")
+    path = TrajectoryTable.read(complete.path / "results/full/trajectory.csv")
     states = td.trajectory(td.Scene(1.5, 1.0, 0.24), duration=9, seed=7, name="full")
     assert [row["x1"] for row in path[:20]] == [*states["x1"][:20]]
 

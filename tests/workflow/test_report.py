@@ -9,7 +9,7 @@ import re
 import pytest
 from browser import ABSENT, BROWSER, browser
 
-from twodiscs.figures.catalogue import ANIMATION, FIGURES
+from twodiscs.figures.scene_figures import ANIMATION, FIGURES
 from twodiscs_paper.catalogue import STUDY_FIGURES
 
 pytestmark = pytest.mark.skipif(BROWSER is None, reason=ABSENT)

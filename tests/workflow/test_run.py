@@ -8,8 +8,8 @@ import sys
 import pytest
 from checkout import Checkout, first
 
-from twodiscs_paper.configuration.load import read
 from twodiscs_paper.configuration.new import new
+from twodiscs_paper.configuration.yaml_files import read
 
 
 @pytest.fixture

@@ -4,11 +4,11 @@ import pytest
 import yaml
 from checkout import REPOSITORY
 
-from twodiscs.figures.catalogue import FIGURES
+from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.model.events import HOPS, WALLS
 from twodiscs_paper.catalogue import STUDIES
-from twodiscs_paper.configuration.load import load, read
 from twodiscs_paper.configuration.request import STAGES
+from twodiscs_paper.configuration.yaml_files import load, read
 
 FILES = sorted((REPOSITORY / "config" / "scenes").glob("*.yaml"))
 BLOCKS = {path.stem: read(path) for path in FILES}

@@ -5,7 +5,7 @@ import shutil
 import pytest
 from checkout import folder
 
-from twodiscs_paper.configuration.load import load
+from twodiscs_paper.configuration.yaml_files import load
 
 TINY = {
     "shared": [],

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import twodiscs
-from twodiscs.figures.catalogue import ANIMATION, FIGURES
+from twodiscs.figures.scene_figures import ANIMATION, FIGURES
 from twodiscs_paper.catalogue import (
     ALL_FIGURES,
     STUDIES,
@@ -92,7 +92,7 @@ CODE = {
         *(f"twodiscs/figures/*.{kind}" for kind in ("py", "mplstyle", "html")),
         "twodiscs_paper/drawings.py",
     ),
-    "documents": modules("twodiscs/figures/catalogue.py", "twodiscs_paper/pipeline/**/*.py"),
+    "documents": modules("twodiscs/figures/scene_figures.py", "twodiscs_paper/pipeline/**/*.py"),
     "benchmark": modules("twodiscs_paper/benchmark.py"),
 }
 # Tables of studies have exact curves, too, which figures draw.
@@ -148,15 +148,15 @@ def shards(w):
 
 
 # The long runs that figures read: their paths are known only while this file is read.
-KEPT = {
-    figure: {name: source(path) for name, path in entry.kept.items()}
+LONG_RUNS = {
+    figure: {name: source(path) for name, path in entry.long_runs.items()}
     for figure, entry in ALL_FIGURES.items()
 }
 
 
 def figure_reads(w):
     """Return {name: path} of the tables that a figure reads, long runs that are kept among them."""
-    return CONFIGURATION.figure_reads(ALL_FIGURES[w.figure], w.get("scene")) | KEPT[w.figure]
+    return CONFIGURATION.figure_reads(ALL_FIGURES[w.figure], w.get("scene")) | LONG_RUNS[w.figure]
 
 
 def radius(w):

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from twodiscs_paper.configuration.load import load
-from twodiscs_paper.pipeline.cost import table
+from twodiscs_paper.configuration.yaml_files import load
+from twodiscs_paper.pipeline.job_cost import table
 
 text = table(load(snakemake.config))
 Path(snakemake.log[0]).write_text(f"{text}\n", "utf-8")

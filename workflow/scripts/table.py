@@ -5,9 +5,9 @@ from pathlib import Path
 
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.model.box import Box
-from twodiscs.points.dynamics import DynamicsPoint
-from twodiscs.points.intervals import IntervalsPoint
-from twodiscs.points.monte_carlo import MonteCarloPoint
+from twodiscs.points.dynamics_point import DynamicsPoint
+from twodiscs.points.intervals_point import IntervalsPoint
+from twodiscs.points.monte_carlo_point import MonteCarloPoint
 from twodiscs_paper.pipeline.job import start
 from twodiscs_paper.pipeline.points import read_point, read_seconds
 

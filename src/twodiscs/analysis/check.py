@@ -31,7 +31,7 @@ from itertools import groupby
 from twodiscs.analysis import scores
 from twodiscs.model.events import DECLARED
 from twodiscs.points.estimates import MIN_EVENTS, Estimate
-from twodiscs.points.monte_carlo import wall_weights
+from twodiscs.points.monte_carlo_point import wall_weights
 from twodiscs.theory import virial
 from twodiscs.theory.exact import replicas_needed
 from twodiscs.theory.virial import flux_constant
@@ -77,7 +77,9 @@ def sum_rule(point):
     or not. A wall's rate has the hits of all walls and discs that are equal by symmetry.
     """
     scene = point.scene
-    rates = {e: scene.accessible_fraction(e) / scene.copies(e) / point.duration for e in SUM_RULE}
+    rates = {
+        e: scene.accessible_fraction(e) / scene.multiplicity(e) / point.duration for e in SUM_RULE
+    }
     return point.combination({e: w * rates[e] for e, w in virial.weights(scene).items()})
 
 

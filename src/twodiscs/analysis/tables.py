@@ -70,7 +70,7 @@ class Table:
     @classmethod
     def name(cls):
         """Return the name of the table, that of its file without the ending."""
-        return re.sub(r"(?<!^)(?=[A-Z])", "_", cls.__name__).lower()
+        return re.sub(r"(?<!^)(?=[A-Z])", "_", cls.__name__.removesuffix("Table")).lower()
 
     @classmethod
     def meaning(cls):
@@ -128,7 +128,7 @@ class Table:
         return frame.astype(object).where(frame.notna(), None).to_dict("records")
 
 
-def of_stage(points, stage):
+def select_stage(points, stage):
     """Return the ``points`` of a ``stage`` in the order of radii."""
     return sorted((p for p in points if p.stage == stage), key=lambda point: point.radius)
 
@@ -175,7 +175,7 @@ def _values(texts, column):
 COARSE = 0.1
 
 
-class Grid(Table):
+class GridTable(Table):
     """One row per radius that the scene computes."""
 
     columns = {
@@ -193,10 +193,10 @@ class Grid(Table):
     def rows(box, radii):
         """Return the rows of a ``Box``, one for each radius."""
         scenes = map(box.scene, radii)
-        return [{name: getattr(scene, name) for name in Grid.columns} for scene in scenes]
+        return [{name: getattr(scene, name) for name in GridTable.columns} for scene in scenes]
 
 
-class Theory(Table):
+class TheoryTable(Table):
     """One row per radius and quantity: the exact values."""
 
     columns = {
@@ -266,7 +266,7 @@ def _sampled_columns(unit):
     }
 
 
-class Volume(Table):
+class VolumeTable(Table):
     """
     One row per radius: the volume of configuration space, exact and by Monte Carlo. In a field the
     invariant density weights it. For balls it is in length⁶, for N discs in length^2N.
@@ -278,14 +278,14 @@ class Volume(Table):
     def rows(points):
         """Return the rows of the Monte Carlo points that have the volume."""
         rows = []
-        for point in of_stage(points, "monte_carlo"):
+        for point in select_stage(points, "monte_carlo"):
             if sampled := point.sampled("volume"):
                 value = theory.volume(point.scene)
                 rows.append(_sampled_row(point, "volume", sampled, value, value))
         return rows
 
 
-class Areas(Table):
+class AreasTable(Table):
     """
     One row per radius and event: the area of the event's surface, exact and by Monte Carlo. A shell
     of finite thickness is not a surface, so its exact expectation has a column. In a field areas
@@ -302,7 +302,9 @@ class Areas(Table):
         top wall, so a point has these two even if only the area of all walls is asked for.
         """
         wanted = [event for event in EVENTS if event in events]
-        found = (_area_row(p, event) for p in of_stage(points, "monte_carlo") for event in wanted)
+        found = (
+            _area_row(p, event) for p in select_stage(points, "monte_carlo") for event in wanted
+        )
         return [row for row in found if row]
 
 
@@ -385,7 +387,7 @@ def _sampled_row(point, quantity, sampled, exact, expectation, score=None):
 # Molecular dynamics -------------------------------------------------------------------------------
 
 
-class MeanTimes(Table):
+class MeanTimesTable(Table):
     """
     One row per radius and event: the mean time between events, exact and by dynamics. If a hop is
     measured in a strip, check.csv also compares the count from ordinary initial states.
@@ -450,7 +452,7 @@ class MeanTimes(Table):
         """
         return [
             _mean_time_row(p, event, p.everywhere(event) if without_strips else p.count(event))
-            for p in of_stage(points, "dynamics")
+            for p in select_stage(points, "dynamics")
             for event in p.counted
             if event in p.strips or not without_strips
         ]
@@ -463,13 +465,13 @@ def _mean_time_row(point, event, count):
     from twodiscs.theory.exact import replicas_needed
 
     scene, exact = point.scene, theory.mean_times(point.scene)[event]
-    target, copies = point.target[event], scene.copies(event)
-    estimate, bound = count.estimate(copies), None
+    target, multiplicity = point.target[event], scene.multiplicity(event)
+    estimate, bound = count.estimate(multiplicity), None
     if target is None or (count.share == 1 and event in point.strips):
         status = "counted"
     else:
         status = "reached" if estimate and estimate.relative_stderr <= target else "budget"
-    z, test = scores.mean_time_z(*count.sums, count.time(copies), exact, count.mean)
+    z, test = scores.mean_time_z(*count.sums, count.time(multiplicity), exact, count.mean)
     if not scene.is_possible(event):
         z, test = scores.impossible_z(count.count)
         estimate, status = None, "impossible"
@@ -502,7 +504,7 @@ def _mean_time_row(point, event, count):
         "test": test,
         "starts": "invariant" if count.share == 1 else "strip",
         "share": count.share,
-        "copies": copies,
+        "copies": multiplicity,
     }
 
 
@@ -541,7 +543,7 @@ def shortfall(rows, budget, events=None, seconds=None, ends="ended"):
     return text
 
 
-class HopHistogram(Table):
+class HopHistogramTable(Table):
     """One row per radius and bin: intervals between hops, from one crossing to the next."""
 
     columns = {
@@ -577,7 +579,7 @@ class HopHistogram(Table):
         intervals.
         """
         rows = []
-        for point in of_stage(points, "intervals"):
+        for point in select_stage(points, "intervals"):
             mean = _mean_interval(point)
             start = {"radius": point.radius, "event": point.event}
             for each in point.bins():
@@ -620,7 +622,7 @@ def trajectory_columns(discs):
     }
 
 
-class Trajectory(Table):
+class TrajectoryTable(Table):
     """
     One row per event of one trajectory, in order: the centres of all discs at the event. Along
     periodic axes centres go on beyond the cell.
@@ -637,8 +639,8 @@ class Trajectory(Table):
     @staticmethod
     def rows(box, radius, seed):
         """Return the events of one trajectory in a ``Box``, in order."""
-        from twodiscs.dynamics.trajectory import followed  # which compiles
-        from twodiscs.sampling.starts import components
+        from twodiscs.dynamics.paths import followed  # which compiles
+        from twodiscs.sampling.initial_states import components
 
         scene, rows = box.scene(radius), []
         parts, columns = components(scene), trajectory_columns(scene.discs)
@@ -656,7 +658,7 @@ class Trajectory(Table):
 SEE_QUANTITY = partial(Column, float, "see quantity")
 
 
-class Check(Table):
+class CheckTable(Table):
     """One row per comparison with the exact theory."""
 
     columns = {
@@ -697,10 +699,10 @@ class Check(Table):
         from twodiscs.analysis import check  # which needs numpy and scipy
 
         compared = check.comparisons(
-            Volume.rows(points),
-            Areas.rows(points, events),
-            MeanTimes.rows(points) + MeanTimes.rows(points, without_strips=True),
-            HopHistogram.rows(points),
+            VolumeTable.rows(points),
+            AreasTable.rows(points, events),
+            MeanTimesTable.rows(points) + MeanTimesTable.rows(points, without_strips=True),
+            HopHistogramTable.rows(points),
             points,
         )
         return check.check_rows(compared)
@@ -710,7 +712,7 @@ class Check(Table):
 WORK = {"monte_carlo": "samples", "dynamics": "events", "intervals": "intervals"}
 
 
-class Cost(Table):
+class CostTable(Table):
     """One row per job: its time and work. It is the only table of a scene that no run repeats."""
 
     columns = {
@@ -736,7 +738,7 @@ class Cost(Table):
                 "seconds": seconds.get((stage, point.radius)),
             }
             for stage, work in sorted(WORK.items())
-            for point in of_stage(points, stage)
+            for point in select_stage(points, stage)
         ]
 
 
@@ -746,5 +748,15 @@ class Cost(Table):
 #: {name: table}
 SCENE_TABLES = {
     table.name(): table
-    for table in (Grid, Theory, Volume, Areas, MeanTimes, HopHistogram, Check, Cost, Trajectory)
+    for table in (
+        GridTable,
+        TheoryTable,
+        VolumeTable,
+        AreasTable,
+        MeanTimesTable,
+        HopHistogramTable,
+        CheckTable,
+        CostTable,
+        TrajectoryTable,
+    )
 }

@@ -18,7 +18,7 @@ import math
 from typing import NamedTuple
 
 from twodiscs.sampling.jit import inlined, optional
-from twodiscs.sampling.prism import PrismSampler, draw_velocities, prism_of
+from twodiscs.sampling.rejection import RejectionSampler, draw_velocities, rejection_sampler
 
 #: The event that ended a free flight. Codes are floats because they travel in the same registers as
 #: the state. Negative codes are no events: a disc leaves its periodic cell and comes back on the
@@ -44,7 +44,7 @@ class KickSampler(NamedTuple):
 
     masses: tuple
     inertias: tuple
-    prism: PrismSampler
+    prism: RejectionSampler
 
 
 class Law(NamedTuple):
@@ -66,7 +66,7 @@ class Law(NamedTuple):
     wrap_y: tuple | None = None
     wrap_z: tuple | None = None
     depth: bool | None = None
-    gravity: float | None = None
+    field: float | None = None
     weights: tuple | None = None  # 2 m2/M, 2 m1/M of unequal masses
     rough: tuple | None = None  # κ/(1 + κ), 1/(1 + κ) with κ = I/(m r²)
 
@@ -106,7 +106,7 @@ def law_of(scene):
     return Law(
         sigma=scene.contact_distance,
         depth=None if scene.depth is None else True,
-        gravity=scene.field or None,
+        field=scene.field or None,
         weights=None if m1 == m2 else divided(2.0, m2, m1),
         rough=None if inertia is None else divided(1.0, inertia, 1.0),
         **walls,
@@ -117,7 +117,7 @@ def law_of(scene):
 def kick_sampler(scene):
     """Return the ``KickSampler`` of a ``Scene``."""
     inertias = tuple((scene.moment_of_inertia or 0.0) * mass for mass in scene.masses)
-    return KickSampler(scene.masses, inertias, prism_of(scene))
+    return KickSampler(scene.masses, inertias, rejection_sampler(scene))
 
 
 # Effects: an absent effect (None, the last argument) is compiled to nothing ----------------------
@@ -171,10 +171,10 @@ def spins(state, rough):
     return state[8], state[9]
 
 
-@optional(lambda position, velocity, time, gravity: (position + velocity * time, velocity))
-def free_flight(position, velocity, time, gravity):
+@optional(lambda position, velocity, time, field: (position + velocity * time, velocity))
+def free_flight(position, velocity, time, field):
     """Return position and velocity after a flight, parabolic in a field."""
-    gained = gravity * time
+    gained = field * time
     return position + (velocity - 0.5 * gained) * time, velocity - gained
 
 
@@ -349,8 +349,8 @@ def wall_quotient(position, velocity, limit):
     return abs(math.copysign(limit, velocity) - position), abs(velocity)
 
 
-@optional(lambda position, velocity, limit, gravity: wall_quotient(position, velocity, limit))
-def fall_quotient(position, velocity, limit, gravity):
+@optional(lambda position, velocity, limit, field: wall_quotient(position, velocity, limit))
+def fall_quotient(position, velocity, limit, field):
     """Return (gap, speed) towards the wall that a disc in a field hits first, at ±``limit``.
 
     Without a field (None) that is ``wall_quotient``. A disc that rises fast enough, v² > 2 g (limit
@@ -359,19 +359,19 @@ def fall_quotient(position, velocity, limit, gravity):
     """
     above, below = abs(limit - position), abs(limit + position)
     square = velocity * velocity
-    left = square - 2.0 * gravity * above
-    at_top, at_bottom = math.sqrt(left), math.sqrt(square + 2.0 * gravity * below)
+    left = square - 2.0 * field * above
+    at_top, at_bottom = math.sqrt(left), math.sqrt(square + 2.0 * field * below)
     rises = velocity > 0.0
     hits = rises & (left > 0.0)
     # Downwards the time is (v + root)/g, which is 2 below/(root − v).
     gap = velocity + at_bottom if rises else 2.0 * below
-    speed = gravity if rises else at_bottom - velocity
+    speed = field if rises else at_bottom - velocity
     return 2.0 * above if hits else gap, velocity + at_top if hits else speed
 
 
-def _walls_quotient(q1, q2, p1, p2, half1, half2, gravity, code1, code2, code_wrap, wrap):
-    gap1, speed1 = fall_quotient(q1, p1, half1, gravity)
-    gap2, speed2 = fall_quotient(q2, p2, value_or(half1, half2), gravity)
+def _walls_quotient(q1, q2, p1, p2, half1, half2, field, code1, code2, code_wrap, wrap):
+    gap1, speed1 = fall_quotient(q1, p1, half1, field)
+    gap2, speed2 = fall_quotient(q2, p2, value_or(half1, half2), field)
     # A speed of 0 or NaN never comes first, because 0 · gap < gap · speed is false. If disc 1 rests
     # on its wall, its time is 0/0. Disc 2 would not come before that, so disc 1 is left out.
     second = (gap2 * speed1 < gap1 * speed2) | (speed1 == 0.0)
@@ -379,7 +379,7 @@ def _walls_quotient(q1, q2, p1, p2, half1, half2, gravity, code1, code2, code_wr
 
 
 @optional(_walls_quotient)
-def axis_quotient(q1, q2, p1, p2, half1, half2, gravity, code1, code2, code_wrap, wrap):
+def axis_quotient(q1, q2, p1, p2, half1, half2, field, code1, code2, code_wrap, wrap):
     """Return (gap, speed, code) of the first thing that happens along one axis.
 
     Between walls that is a disc at a wall; on a periodic axis it is the separation at half a
@@ -446,7 +446,7 @@ def first_event(state, remaining, gap_d, speed_d, law):
         x1, x2, u1, u2, law.half_x1, law.half_x2, None, WALL_X1, WALL_X2, WRAP_X, law.wrap_x
     )
     gap_y, speed_y, code_y = axis_quotient(
-        y1, y2, v1, v2, law.half_y1, law.half_y2, law.gravity, WALL_Y1, WALL_Y2, WRAP_Y, law.wrap_y
+        y1, y2, v1, v2, law.half_y1, law.half_y2, law.field, WALL_Y1, WALL_Y2, WRAP_Y, law.wrap_y
     )
 
     # A tree of comparisons has a shorter latency than a chain.
@@ -485,8 +485,8 @@ def after_event(state, time, code, law):
     z1, z2, w1, w2 = depth_part(state, law.depth)
     du, dv, dw = u1 - u2, v1 - v2, difference(w1, w2)
     x1, x2 = x1 + u1 * time, x2 + u2 * time
-    y1, v1 = free_flight(y1, v1, time, law.gravity)
-    y2, v2 = free_flight(y2, v2, time, law.gravity)
+    y1, v1 = free_flight(y1, v1, time, law.field)
+    y2, v2 = free_flight(y2, v2, time, law.field)
     dx, dy, dz = x1 - x2, y1 - y2, difference(moved(z1, time, w1), moved(z2, time, w2))
     square = dot(dx, dy, dz, dx, dy, dz)
     exchange = dot(dx, dy, dz, du, dv, dw) / square

@@ -20,14 +20,14 @@ from functools import cached_property
 import numpy as np
 
 from twodiscs.dynamics.ensemble import RETURNS, nearest_power_of_two
-from twodiscs.dynamics.two import lockstep, returns, strip
+from twodiscs.dynamics.two import event_counts, returns, strip
 from twodiscs.model.checks import InputError, format_number
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene, why_absent
-from twodiscs.points.dynamics import DynamicsPoint, simulated_events
-from twodiscs.points.intervals import BINS, GRAIN, IntervalsPoint, wide_edges
-from twodiscs.sampling.rounds import Run, SequentialRun, fixed, on_grid
-from twodiscs.sampling.starts import require_room
+from twodiscs.points.dynamics_point import DynamicsPoint, simulated_events
+from twodiscs.points.intervals_point import BINS, GRAIN, IntervalsPoint, wide_edges
+from twodiscs.sampling.initial_states import require_initial_states
+from twodiscs.sampling.rounds import Run, SequentialRun, fixed, round_up_blocks
 from twodiscs.theory.exact import replicas_needed
 
 #: Chains of intervals that share a stream, and the usual budget of their wall and disc events.
@@ -42,14 +42,14 @@ DAY = 86400 * 10**8
 def engine_of(scene):
     """Return the module that counts the events of a ``Scene``: of two discs, or of many."""
     if scene.discs == 2:
-        return lockstep
+        return event_counts
     from twodiscs.dynamics.many import engine
 
     return engine
 
 
 @dataclass(frozen=True)
-class CountingRun(Run):
+class DynamicsRun(Run):
     """Counts of the events of a ``Scene`` in independent replicas until each is known well enough.
 
     ``target`` maps each tracked event to the relative standard error asked for (0 < target ≤ 1);
@@ -67,7 +67,7 @@ class CountingRun(Run):
     seed: int
 
     def __post_init__(self):
-        require_room(self.scene)
+        require_initial_states(self.scene)
 
     @property
     def most_events(self):
@@ -107,7 +107,9 @@ class CountingRun(Run):
         most = min(1.0, budget / total)
         return {
             name: replace(
-                run, budget=run.budget * events[name] / total, planned=on_grid(run.planned * most)
+                run,
+                budget=run.budget * events[name] / total,
+                planned=round_up_blocks(run.planned * most),
             )
             for name, run in runs.items()
         }
@@ -135,17 +137,17 @@ class CountingRun(Run):
         if scene.discs > 2:  # rare hops of two discs have their own parts
             planned = min(planned, budget / block_events)
 
-        def excess_of(sums, blocks):
+        def error_over_target(sums, blocks):
             errors = relative_errors(*sums, blocks * each)[index] / goals
             return np.maximum(errors, np.sqrt(needed / blocks))
 
         return SequentialRun(
             work,
-            excess_of,
+            error_over_target,
             lambda sums: max(1, simulated_events(sums[0])),
             block_events,
             budget,
-            on_grid(planned),
+            round_up_blocks(planned),
             engine.cost_ratio(scene),
         )
 
@@ -191,7 +193,7 @@ def relative_errors(sums, products, replicas):
 
 
 @dataclass(frozen=True)
-class TimedRun(CountingRun):
+class TimedRun(DynamicsRun):
     """Blocks of replicas, at least one, until all replicas together have a ``duration``.
 
     All events are counted in the same replicas. Rare hops have no strips, because trajectories in a
@@ -253,7 +255,7 @@ def recorded(scene, event, seed, first, stop, going):
 
 
 @dataclass(frozen=True)
-class IntervalRun(Run):
+class IntervalsRun(Run):
     """Intervals between hops of one kind, each one exact, counted in bins.
 
     ``event`` is a hop that the ``Scene`` allows; ``intervals`` is the least number of intervals,
@@ -278,7 +280,7 @@ class IntervalRun(Run):
         if not scene.is_possible(self.event):
             why = why_absent(scene, self.event) or f" is blocked at radius {scene.radius!r}"
             raise InputError(f"event {self.event!r} has no intervals{why}")
-        require_room(scene)
+        require_initial_states(scene)
         if not self._blocks:
             raise InputError(
                 f"budget must allow for {self._each} intervals, at radius {scene.radius!r} "
@@ -339,10 +341,10 @@ class IntervalRun(Run):
         }
         return IntervalsPoint.of(self.scene, {"all": part})
 
-    def run(self, progress=None, cores=1, kept=None):
+    def run(self, progress=None, cores=1, resume_from=None):
         """Return the ``IntervalsPoint``; stop long kernels if nobody waits any more."""
         try:
-            return super().run(progress, cores, kept)
+            return super().run(progress, cores, resume_from)
         except BaseException:
             self._going[0] = False
             raise

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from twodiscs.analysis.tables import Theory
+from twodiscs.analysis.tables import TheoryTable
 from twodiscs.model.events import AXIS, EVENTS, HOPS
 
 #: The name of the largest radius, and the names of the radii at which hops become blocked.
@@ -112,7 +112,7 @@ def exact_curves(box, others=()):
     for branch in branches(box, others):
         for radius in map(float, branch):
             radii.append(radius)
-            rows.append({row["quantity"]: row["exact"] for row in Theory.rows(box, [radius])})
+            rows.append({row["quantity"]: row["exact"] for row in TheoryTable.rows(box, [radius])})
         radii.append(np.nan)
         rows.append({})
     names = ["volume", *(f"{event}_{kind}" for kind in ("area", "time") for event in EVENTS)]

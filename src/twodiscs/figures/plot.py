@@ -12,9 +12,9 @@ from matplotlib.axes import Axes
 
 from twodiscs.analysis.tables import SCENE_TABLES, quantity_of
 from twodiscs.figures import panels, style
-from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.draw import OF_A_BOX, draw
 from twodiscs.figures.radius import OVER_RADIUS, add
+from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.figures.style import BLACK, LOOKS, SERIES, name_of, new_figure
 from twodiscs.measure.intervals import Intervals
 from twodiscs.measure.measurements import Measurements
@@ -22,7 +22,7 @@ from twodiscs.measure.observe import Observed
 from twodiscs.measure.scan import Scan
 from twodiscs.measure.transmission import Transmission, box_time
 from twodiscs.model.box import Box, scene_of
-from twodiscs.model.checks import InputError, answering, check_choice
+from twodiscs.model.checks import InputError, check_choice, checked_call
 from twodiscs.model.scene import Scene
 from twodiscs.theory import laws
 
@@ -39,7 +39,7 @@ DRAWN = (
 )
 
 
-@answering
+@checked_call
 def plot(
     result: object,
     path: str | PathLike[str] | None = None,
@@ -260,7 +260,7 @@ def rows_of(trajectory):
     return trajectory.to_dict("records")
 
 
-@answering
+@checked_call
 def animate(trajectory: pd.DataFrame, path: str | PathLike[str]) -> None:
     """Write an animation of a trajectory.
 

@@ -7,8 +7,8 @@ from matplotlib.lines import Line2D
 
 from twodiscs.analysis.tables import quantity_of
 from twodiscs.figures import curves, panels
-from twodiscs.figures.catalogue import FIGURES, Curves
 from twodiscs.figures.curves import hop_ends, limits
+from twodiscs.figures.scene_figures import FIGURES, Curves
 from twodiscs.figures.style import BLACK, LOOKS, SERIES, name_of, new_figure
 from twodiscs.model.checks import InputError
 from twodiscs.theory import virial

@@ -19,16 +19,16 @@ from typing import TYPE_CHECKING, NamedTuple
 from twodiscs.measure.result import Printed
 from twodiscs.model.checks import (
     MOST_WITH_VOLUME,
-    answering,
     check_error,
     check_fraction,
+    checked_call,
     format_number,
     format_seconds,
     quote,
 )
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene, check_scene
-from twodiscs.points.monte_carlo import WALL_AREAS
+from twodiscs.points.monte_carlo_point import WALL_AREAS
 from twodiscs.theory import exact
 
 if TYPE_CHECKING:
@@ -83,22 +83,22 @@ def timed(work, seconds, fewest=1):
 
     The blocks take roughly ``seconds``, and are at least ``fewest``.
     """
-    from twodiscs.sampling.rounds import in_a_thread
+    from twodiscs.sampling.rounds import call_in_thread
 
     def run(blocks):
         start = time.thread_time()
         sums = work(0, blocks)
         return sums, (time.thread_time() - start) / blocks
 
-    in_a_thread(run, 1)  # compiles or loads the kernel
-    _, first = in_a_thread(run, 1)
+    call_in_thread(run, 1)  # compiles or loads the kernel
+    _, first = call_in_thread(run, 1)
     blocks = max(fewest, int(seconds / max(first, 1e-5)))
-    sums, each = in_a_thread(run, blocks)
+    sums, each = call_in_thread(run, blocks)
     return sums, blocks, each
 
 
 def pilots(run, seconds=PILOT):
-    """Return {part: ``Pilot``} of a ``CountingRun``: "all", and the rare hops in their strips."""
+    """Return {part: ``Pilot``} of a ``DynamicsRun``: "all", and the rare hops in their strips."""
     return {name: _pilot(run, name, seconds) for name in run.parts}
 
 
@@ -117,7 +117,7 @@ def _pilot(run, name, seconds):
                 few = count < FEWEST_COUNTS and expected
                 errors[event] = math.sqrt(CLUSTER / (expected * number)) if few else error
     else:
-        error = float(part.excess_of(sums, blocks)[0])
+        error = float(part.error_over_target(sums, blocks)[0])
         if not math.isfinite(error):
             error = math.sqrt(part.planned / blocks)
         errors = {name: error * run.target[name]}
@@ -415,7 +415,7 @@ class Cost(Printed):
         )
 
 
-@answering
+@checked_call
 def cost(
     scene: Scene, errors: float | Iterable[float] | None = None, *, shell: float = 0.02
 ) -> Cost:
@@ -452,13 +452,13 @@ def cost(
     >>> found["horizontal_hop_time", "dynamics"].seconds(1e-3) < 60
     True
     """
-    from twodiscs.dynamics.runs import CountingRun
+    from twodiscs.dynamics.runs import DynamicsRun
 
     if isinstance(errors, str) or not isinstance(errors, Iterable):
         errors = ERRORS if errors is None else [errors]
     errors = [check_error("errors", error) for error in errors]
     check_fraction("shell", shell)
-    run = CountingRun(check_scene(scene), dict.fromkeys(scene.events, 1.0), 10**15, 0)
+    run = DynamicsRun(check_scene(scene), dict.fromkeys(scene.events, 1.0), 10**15, 0)
     measured = pilots(run)
     prices = [*_prices_of_times(scene, measured), *_prices_of_samples(scene, shell)]
     prices += _price_of_exact(scene)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Unpack
 
-from twodiscs.analysis.tables import Theory
+from twodiscs.analysis.tables import TheoryTable
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, answering, check_length, did_you_mean, quote
+from twodiscs.model.checks import InputError, check_length, checked_call, did_you_mean, quote
 from twodiscs.model.events import EVENTS
 from twodiscs.theory import exact as theory
 
@@ -121,7 +121,7 @@ def exact(scene: Scene) -> Exact:
     return theory.exact(scene) | {"areas": areas(scene), "mean_times": mean_times(scene)}
 
 
-@answering
+@checked_call
 def exact_table(
     width: float, height: float, radii: Iterable[float], **effects: Unpack[Effects]
 ) -> pd.DataFrame:
@@ -165,7 +165,7 @@ def exact_table(
             "radius": scene.radius,
             "regime": scene.regime,
             "ergodic_components": scene.ergodic_components,
-            **{row["quantity"]: row["exact"] for row in Theory.rows(box, [scene.radius])},
+            **{row["quantity"]: row["exact"] for row in TheoryTable.rows(box, [scene.radius])},
         }
         for scene in scenes
     ]

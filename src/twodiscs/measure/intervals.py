@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from twodiscs.analysis.tables import HopHistogram
+from twodiscs.analysis.tables import HopHistogramTable
 from twodiscs.measure.measurements import Measurement, frame_of, table_of
 from twodiscs.measure.result import Result, note_of_number, progress_bar, seed_of
-from twodiscs.model.checks import InputError, answering, check_choice, check_count
+from twodiscs.model.checks import InputError, check_choice, check_count, checked_call
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.points.estimates import MIN_EVENTS
@@ -87,7 +87,7 @@ class Intervals(Result):
         self.settings, self.parts = settings, point.parts
         self.intervals, self.overflow = point.intervals, point.overflow
         self.note = note_of_number("intervals", settings["number"], self.intervals)
-        self.rows = HopHistogram.rows([point])
+        self.rows = HopHistogramTable.rows([point])
         self.counts = point.equal.counts
         # Wide bins, which hold the same intervals again, come after the equal ones.
         self._bins = self.rows[: len(self.counts)]
@@ -115,7 +115,7 @@ class Intervals(Result):
         return hash((self.scene, self.hop))
 
     def _again(self, settings, options):
-        return run_intervals(self.scene, **settings, **options, kept=self.parts)
+        return run_intervals(self.scene, **settings, **options, resume_from=self.parts)
 
     def _texts(self) -> pd.DataFrame:
         """Return the texts of the printed table: the mean and the density at 0."""
@@ -144,7 +144,7 @@ class Intervals(Result):
         return frame_of([{n: row[n] for n in names} for row in self._bins], index="left")
 
 
-@answering
+@checked_call
 def intervals(
     scene: Scene,
     hop: Hop,
@@ -189,8 +189,10 @@ def intervals(
     return run_intervals(scene, hop, number, seed, name, cores, progress)
 
 
-def run_intervals(scene, hop, number, seed, name, cores=1, progress=None, kept=None, budget=None):
-    """Return the ``Intervals`` of ``intervals``; the parts ``kept`` are not done again.
+def run_intervals(
+    scene, hop, number, seed, name, cores=1, progress=None, resume_from=None, budget=None
+):
+    """Return the ``Intervals`` of ``intervals``; the parts ``resume_from`` are not done again.
 
     ``budget`` is the largest number of wall hits and collisions, None for the usual one.
     """
@@ -201,11 +203,11 @@ def run_intervals(scene, hop, number, seed, name, cores=1, progress=None, kept=N
             f"intervals have no exact mean, but moment_of_inertia is {scene.moment_of_inertia!r}"
         )
     number, stream = check_count("number", number), seed_of(scene, "intervals", seed, name)
-    from twodiscs.dynamics.runs import BUDGET, IntervalRun
+    from twodiscs.dynamics.runs import BUDGET, IntervalsRun
 
     settings = {"hop": hop, "number": number, "seed": int(seed), "name": name}
     settings["budget"] = budget or BUDGET
-    run = IntervalRun(scene, hop, number, stream, settings["budget"])
+    run = IntervalsRun(scene, hop, number, stream, settings["budget"])
     with progress_bar(progress, f"intervals r = {scene.radius:g}") as progress:
-        point = run.run(progress, cores, kept)
+        point = run.run(progress, cores, resume_from)
     return Intervals(scene, point, settings)

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 import twodiscs
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.model.box import Box, scene_of
-from twodiscs.model.checks import InputError, answering, quote
-from twodiscs.points.base import digest, read_json, with_arrays
+from twodiscs.model.checks import InputError, checked_call, quote
+from twodiscs.points.base import digest, read_json, restore_arrays
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -33,7 +33,7 @@ def plugin(name):
     return None
 
 
-@answering
+@checked_call
 def load(folder: str | PathLike[str]) -> dict[str, pd.DataFrame]:
     """Read every table in a folder of results.
 
@@ -134,11 +134,11 @@ def from_dict(content):
         from twodiscs.measure.measurements import MAKERS
 
         make = MAKERS[content["kind"]]
-    parts, settings = with_arrays(content["parts"]), content["settings"]
-    return make(scene_of(content["scene"]), **settings, kept=parts)
+    parts, settings = restore_arrays(content["parts"]), content["settings"]
+    return make(scene_of(content["scene"]), **settings, resume_from=parts)
 
 
-@answering
+@checked_call
 def load_result(path: str | PathLike[str]) -> Measurements | Any:
     """Read a result that ``save(path)`` wrote, or a point of a build; ``more`` goes on from it.
 

@@ -14,23 +14,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from twodiscs.analysis.tables import Areas, MeanTimes, Volume, quantity_of, shortfall
+from twodiscs.analysis.tables import AreasTable, MeanTimesTable, VolumeTable, quantity_of, shortfall
 from twodiscs.measure.exact_values import Quantities
 from twodiscs.measure.result import Result, note_of_number, progress_bar, seed_of
 from twodiscs.model.checks import (
     AccuracyWarning,
     InputError,
-    answering,
     check_count,
     check_error,
     check_fraction,
     check_length,
+    checked_call,
     did_you_mean,
     quote,
 )
 from twodiscs.model.scene import Scene, check_scene, why_absent
 from twodiscs.points.estimates import Estimate
-from twodiscs.points.monte_carlo import WALL_AREAS, wall_weights
+from twodiscs.points.monte_carlo_point import WALL_AREAS, wall_weights
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -304,7 +304,7 @@ class Measurements(Result, Mapping[str, Measurement]):
         return by_name
 
     def _again(self, settings, options):
-        return MAKERS[self.kind](self.scene, **settings, **options, kept=self.parts)
+        return MAKERS[self.kind](self.scene, **settings, **options, resume_from=self.parts)
 
     def __getitem__(self, name: str) -> Measurement:
         return self._measurements[name]
@@ -384,7 +384,7 @@ def _named(key, what, names, allowed, scene):
     return [name for name in allowed if name in names]
 
 
-@answering
+@checked_call
 def simulate(
     scene: Scene,
     error: float | str | Mapping[Event, float | str] | None = None,
@@ -465,9 +465,9 @@ def simulate(
 
 def run_simulation(
     scene, error, duration=None, seed=1, budget=None, events=None, name=None, cores=1,
-    progress=None, kept=None,
+    progress=None, resume_from=None,
 ):  # fmt: skip
-    """Return the ``Measurements`` of ``simulate``; the parts ``kept`` are not done again."""
+    """Return the ``Measurements`` of ``simulate``, which goes on from ``resume_from``."""
     possible, timed = check_scene(scene).events, duration is not None
     if timed and error is not None:
         raise InputError("error and duration must not both be given: leave out one of them")
@@ -484,7 +484,7 @@ def run_simulation(
     budget = None if budget is None else check_count("budget", budget)
     stream = seed_of(scene, "dynamics", seed, name)
     settings = {"seed": int(seed), "budget": budget, "events": tracked, "name": name}
-    from twodiscs.dynamics.runs import CountingRun, TimedRun
+    from twodiscs.dynamics.runs import DynamicsRun, TimedRun
 
     if timed:
         duration = check_length("duration", duration)
@@ -492,10 +492,10 @@ def run_simulation(
         run = TimedRun(scene, target, budget, stream, duration)
     else:
         settings["error"] = target if errors is error else check_error("error", error)
-        run = CountingRun(scene, target, budget, stream)
+        run = DynamicsRun(scene, target, budget, stream)
     with progress_bar(progress, f"simulate r = {scene.radius:g}") as progress:
-        point = run.run(progress, cores, kept)
-    rows = MeanTimes.rows([point])
+        point = run.run(progress, cores, resume_from)
+    rows = MeanTimesTable.rows([point])
     if timed:
         note = (
             f"duration {duration:g} asked for, {point.replicas * point.duration:g} simulated: "
@@ -525,7 +525,7 @@ def _note_of_error(rows, target, budget, events):
     return None
 
 
-@answering
+@checked_call
 def sample(
     scene: Scene,
     samples: float = 10**7,
@@ -576,22 +576,24 @@ def sample(
     return run_sampling(scene, samples, seed, quantities, shell, name, cores, progress)
 
 
-def run_sampling(scene, samples, seed, quantities, shell, name, cores=1, progress=None, kept=None):
-    """Return the ``Measurements`` of ``sample``; the parts ``kept`` are not done again."""
+def run_sampling(
+    scene, samples, seed, quantities, shell, name, cores=1, progress=None, resume_from=None
+):
+    """Return the ``Measurements`` of ``sample``, which goes on from ``resume_from``."""
     allowed = ("volume", *(f"{event}_area" for event in check_scene(scene).events))
     quantities = _named("quantities", "quantity", quantities, allowed, scene)
     samples = check_count("samples", samples)
     shell, stream = check_fraction("shell", shell), seed_of(scene, "monte_carlo", seed, name)
     settings = {"samples": samples, "seed": int(seed), "quantities": quantities}
     settings |= {"shell": shell, "name": name}
-    from twodiscs.sampling.montecarlo import SamplingRun
-    from twodiscs.sampling.starts import require_free_fraction
+    from twodiscs.sampling.initial_states import require_free_fraction
+    from twodiscs.sampling.montecarlo import MonteCarloRun
 
     require_free_fraction(scene)
-    run = SamplingRun(scene, quantities, samples, shell, stream)
+    run = MonteCarloRun(scene, quantities, samples, shell, stream)
     with progress_bar(progress, f"sample r = {scene.radius:g}") as progress:
-        point = run.run(progress, cores, kept)
-    rows = Volume.rows([point]) + Areas.rows([point])
+        point = run.run(progress, cores, resume_from)
+    rows = VolumeTable.rows([point]) + AreasTable.rows([point])
     # Insertions always have the volume.
     rows = [row for row in rows if row["quantity"] in quantities]
     note = note_of_number("samples", samples, point.samples)

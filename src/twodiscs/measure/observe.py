@@ -9,14 +9,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from twodiscs.dynamics.paths import MOST_EVENTS, path_of
 from twodiscs.dynamics.runs import engine_of
-from twodiscs.dynamics.trajectory import MOST_EVENTS, path_of
 from twodiscs.measure.result import note_of_number, progress_bar, seed_of
-from twodiscs.model.checks import InputError, answering, as_list, check_count, format_number, quote
-from twodiscs.model.many import LARGE
+from twodiscs.model.checks import (
+    InputError,
+    as_list,
+    check_count,
+    checked_call,
+    format_number,
+    quote,
+)
+from twodiscs.model.many_geometry import LARGE
 from twodiscs.model.scene import Scene, check_scene
-from twodiscs.sampling.rounds import in_threads
-from twodiscs.sampling.starts import MOST_NUMBERS, as_records, components, states
+from twodiscs.sampling.initial_states import MOST_NUMBERS, as_records, components, states
+from twodiscs.sampling.rounds import map_in_threads
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,7 +37,7 @@ BLOCK = 4096
 KEPT = 2**22
 
 
-@answering
+@checked_call
 def starts(
     scene: Scene,
     number: float,
@@ -215,7 +222,7 @@ def _check_finite(values, times, first):
         )
 
 
-@answering
+@checked_call
 def observe(
     scene: Scene,
     function: Callable[[np.ndarray, np.ndarray], np.ndarray],
@@ -322,7 +329,7 @@ def averages(
             parts = {}
             for first in range(0, times.size, together):
                 calls = ((of_block,) for of_block in series)
-                every = in_threads(lambda of_block: [*islice(of_block, together)], calls, cores)
+                every = map_in_threads(lambda of_block: [*islice(of_block, together)], calls, cores)
                 for block, pairs in zip(numbers, every, strict=True):
                     before = parts[block][-1][0] if first else None
                     part = moments(block, first, pairs, before)
@@ -342,7 +349,7 @@ def averages(
     return Observed(scene, times, mean, stderr, total, settings, note, names)
 
 
-@answering
+@checked_call
 def diffusion(
     scene: Scene,
     times: float | Iterable[float],

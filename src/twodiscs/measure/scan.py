@@ -9,7 +9,7 @@ from twodiscs.measure.exact_values import box_with, scenes_of
 from twodiscs.measure.measurements import Measurements, rows_by_quantity, run_simulation
 from twodiscs.measure.result import Result
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, answering, quote
+from twodiscs.model.checks import InputError, checked_call, quote
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -121,7 +121,7 @@ class Scan(Result, Sequence[Measurements]):
         return "".join(result._repr_html_() for result in self)
 
 
-@answering
+@checked_call
 def scan(
     width: float,
     height: float,

@@ -9,12 +9,12 @@ import numpy as np
 import pandas as pd
 
 from twodiscs.analysis.tables import trajectory_columns
-from twodiscs.dynamics.trajectory import followed
+from twodiscs.dynamics.paths import followed
 from twodiscs.measure.result import progress_bar, seed_of
 from twodiscs.model.box import parameters_of, scene_of
-from twodiscs.model.checks import InputError, answering, as_list, quote, writing_to
+from twodiscs.model.checks import InputError, as_list, checked_call, quote, writing_to
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.starts import components
+from twodiscs.sampling.initial_states import components
 
 
 class Trajectory(pd.DataFrame):
@@ -272,7 +272,7 @@ def require_all_rows(trajectory, scene):
         )
 
 
-@answering
+@checked_call
 def trajectory(
     scene: Scene,
     duration: float | None = None,

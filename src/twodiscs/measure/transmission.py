@@ -13,12 +13,12 @@ from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK
 from twodiscs.dynamics.runs import chains_of, engine_of
 from twodiscs.measure.result import Result, note_of_number, progress_bar, stream_name
 from twodiscs.model.box import key, stream_seed
-from twodiscs.model.checks import answering, check_choice, check_count
+from twodiscs.model.checks import check_choice, check_count, checked_call
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.points.base import reached
 from twodiscs.points.estimates import MIN_EVENTS, Estimate
-from twodiscs.sampling.rounds import all_in_rounds, fixed
+from twodiscs.sampling.rounds import fixed, run_all_in_rounds
 from twodiscs.theory import exact
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def quiet_time(scene, hop):
     return QUIET * box_time(scene, hop)
 
 
-def by_clusters(sizes):
+def cluster_coefficient(sizes):
     """Return the fraction of hops that are passages as an ``Estimate``, ⟨1[n odd]/n⟩.
 
     ``sizes`` are those of ``cluster_sizes``.
@@ -75,20 +75,20 @@ def with_error(estimate, *numbers):
     return estimate if min(numbers) >= MIN_EVENTS else replace(estimate, stderr=None)
 
 
-def clusters_with_error(sizes):
-    """Return the estimate of ``by_clusters``; its error needs passages and hops in clusters."""
+def cluster_estimate(sizes):
+    """Return the estimate of ``cluster_coefficient``; its error needs odd and even clusters."""
     odd = int(sizes[1:-1:2].sum())
-    return with_error(by_clusters(sizes), odd, int(sizes.sum() - sizes[1]))
+    return with_error(cluster_coefficient(sizes), odd, int(sizes.sum() - sizes[1]))
 
 
-def times_with_errors(sums, replicas):
-    """Return the estimates of ``by_total``; an error needs hops that are undone, and others."""
+def time_estimates(sums, replicas):
+    """Return the estimates of ``correlations``; an error needs hops that are undone, and others."""
     undone, stayed = sums[1], replicas - np.abs(sums[0])
-    estimates = by_total(sums, replicas)
+    estimates = correlations(sums, replicas)
     return [with_error(*of) for of in zip(estimates, undone, stayed, strict=True)]
 
 
-def by_total(sums, replicas):
+def correlations(sums, replicas):
     """Return an ``Estimate`` of C = 1 + 2 ⟨Σ s_0 s_k⟩ at each time.
 
     ``sums`` are those of ``hop_sums`` over all blocks, with a number of ``replicas``. Between walls
@@ -108,7 +108,7 @@ def are_rare(scene, hop, mean):
     return quiet_time(scene, hop) <= MOST_IN_GAP * mean
 
 
-def of_clusters(x, others=0):
+def odd_clusters_per_passage(x, others=0):
     """Return (odd clusters per passage, its derivative) for x passages in a gap on average.
 
     A cluster goes on after a passage with a probability q, and there are 1 − q clusters for each
@@ -124,8 +124,9 @@ def plateau(estimate, time, mean, law):
     """Return κ, corrected for the passages in a ``time``, from an ``Estimate`` of κ(``time``).
 
     Passages come independently, at the rate κ/τ for the ``mean`` time τ between hops. The ``law``
-    gives the factor by which they reduce the estimate, and its derivative, like ``of_clusters``.
-    The result is None if the time has more than ``MOST_MERGED`` passages.
+    gives the factor by which they reduce the estimate, and its derivative, like
+    ``odd_clusters_per_passage``. The result is None if the time has more than ``MOST_MERGED``
+    passages.
     """
     value, x = estimate.value, estimate.value * time / mean
     if value <= 0 or x > MOST_MERGED:
@@ -202,7 +203,7 @@ class Transmission(Result):
     kind = "transmission"
 
     def _again(self, settings, options):
-        return run_transmission(self.scene, **settings, **options, kept=self.parts)
+        return run_transmission(self.scene, **settings, **options, resume_from=self.parts)
 
     @property
     def passage_time(self) -> Estimate | None:
@@ -260,25 +261,29 @@ def _text_of(estimate):
 def passages_of(scene):
     """Return the module that follows the hops of a ``Scene``."""
     if scene.discs > 2:
-        from twodiscs.dynamics.many import passages
-    else:
-        from twodiscs.dynamics.two import passages
-    return passages
+        from twodiscs.dynamics.many import many_hop_clusters
+
+        return many_hop_clusters
+    from twodiscs.dynamics.two import hop_clusters
+
+    return hop_clusters
 
 
 def parts_of(scene, hop, mean, gap, times, blocks, name, seed):
     """Return {"times": run} for ``blocks`` of hops, and "clusters", too, if hops are rare."""
     seeds = {what: hop_seed(scene, hop, name, seed, what) for what in ("clusters", "times")}
-    passages, engine = passages_of(scene), engine_of(scene)
+    hop_clusters, engine = passages_of(scene), engine_of(scene)
     events = HOPS_OF_BLOCK * engine.expected_event_rate(scene)
     work = engine.work_per_event(scene) * chains_of(scene).cost_ratio(scene)
 
     def clusters(first, stop):
-        sizes, _ = passages.cluster_sizes(scene, hop, gap, stop - first, seeds["clusters"], first)
+        sizes, _ = hop_clusters.cluster_sizes(
+            scene, hop, gap, stop - first, seeds["clusters"], first
+        )
         return (sizes,)
 
     def curve(first, stop):
-        sums, _ = passages.hop_sums(scene, hop, times, stop - first, seeds["times"], first)
+        sums, _ = hop_clusters.hop_sums(scene, hop, times, stop - first, seeds["times"], first)
         return (sums.sum(axis=0),)
 
     parts = {"times": fixed(curve, blocks, times[-1] * events, work)}
@@ -287,7 +292,7 @@ def parts_of(scene, hop, mean, gap, times, blocks, name, seed):
     return parts
 
 
-@answering
+@checked_call
 def transmission(
     scene: Scene,
     hop: Hop,
@@ -344,8 +349,8 @@ def transmission(
     return run_transmission(scene, hop, hops, seed, name, cores, progress)
 
 
-def run_transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None):
-    """Return the ``Transmission`` of ``transmission``; the parts ``kept`` are not done again."""
+def run_transmission(scene, hop, hops, seed, name, cores=1, progress=None, resume_from=None):
+    """Return the ``Transmission`` of ``transmission``, which goes on from ``resume_from``."""
     passages_of(check_scene(scene)).require_coefficient(scene, check_choice("hop", hop, HOPS))
     blocks = -(-check_count("hops", hops, most=10**9) // HOPS_OF_BLOCK)
     mean, gap = exact.mean_times(scene)[hop], quiet_time(scene, hop)
@@ -354,15 +359,15 @@ def run_transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=
     runs = parts_of(scene, hop, neighbour_mean, gap, times, blocks, stream_name(scene, name), seed)
     settings = {"hop": hop, "hops": int(hops), "seed": int(seed), "name": name}
     with progress_bar(progress, f"transmission r = {scene.radius:g}") as progress:
-        pieces = all_in_rounds(runs, progress, cores, kept or {})
+        pieces = run_all_in_rounds(runs, progress, cores, resume_from or {})
     parts = {name: {"sums": sums} for name, sums in pieces.items()}
     ((sums,), _), clusters, kappa = reached(pieces["times"]), {}, None
     if "clusters" in pieces:
         (sizes,), _ = reached(pieces["clusters"])
         clusters = {n: int(number) for n, number in enumerate(sizes) if number}
-        law = partial(of_clusters, others=others)
-        kappa = plateau(clusters_with_error(sizes), gap, neighbour_mean, law)
-    curve = times_with_errors(sums, blocks * HOPS_OF_BLOCK)
+        law = partial(odd_clusters_per_passage, others=others)
+        kappa = plateau(cluster_estimate(sizes), gap, neighbour_mean, law)
+    curve = time_estimates(sums, blocks * HOPS_OF_BLOCK)
     note = note_of_number("hops", settings["hops"], blocks * HOPS_OF_BLOCK)
     return Transmission(
         scene, hop, kappa, gap, clusters, mean, neighbour_mean, times, curve, settings, parts, note

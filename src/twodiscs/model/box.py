@@ -13,10 +13,10 @@ from hashlib import blake2b
 from twodiscs.model.checks import (
     SHORTEST,
     InputError,
-    answering,
     check_choice,
     check_integer,
     check_length,
+    checked_call,
     did_you_mean,
     quote,
 )
@@ -34,7 +34,7 @@ METHODS = (
 )  # fmt: skip
 
 
-@answering
+@checked_call
 @dataclass(frozen=True)
 class Box:
     """A box with its effects and its number of discs, for any radius.

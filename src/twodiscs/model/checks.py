@@ -223,10 +223,10 @@ def did_you_mean(name, allowed):
     return f"; did you mean {found[0]}?" if found else ""
 
 
-def answering(function):
+def checked_call(function):
     """Return a ``function`` that raises a ``WrongCall`` for wrong arguments, or such a class."""
     if isinstance(function, type):
-        function.__init__ = answering(function.__init__)
+        function.__init__ = checked_call(function.__init__)
         return function
 
     @wraps(function)

@@ -17,17 +17,17 @@ from dataclasses import KW_ONLY, dataclass, fields, replace
 from fractions import Fraction
 from functools import cached_property
 
-from twodiscs.model import many, two
+from twodiscs.model import many_geometry, two_geometry
 from twodiscs.model.checks import (
     LONGEST,
     MOST_DISCS,
     SHORTEST,
     InputError,
-    answering,
     check_choice,
     check_integer,
     check_length,
     check_number,
+    checked_call,
     quote,
 )
 from twodiscs.model.effects import ABSENT, EFFECTS
@@ -40,7 +40,7 @@ MOST_KICKS = 1e6
 REGIMES = ("all-hops", "vertical-hops", "horizontal-hops", "no-hops")
 
 
-@answering
+@checked_call
 @dataclass(frozen=True)
 class Scene:
     """Hard discs in a box, two of them by default, in which disc 1 has mass 1.
@@ -277,7 +277,7 @@ class Scene:
     @property
     def _geometry(self):
         """The module with the geometry of the discs."""
-        return many if self.discs > 2 else two
+        return many_geometry if self.discs > 2 else two_geometry
 
     @property
     def calls_for(self):
@@ -393,7 +393,7 @@ class Scene:
         """
         return self._geometry.open_axes(self)
 
-    def room(self, hop):
+    def clearance(self, hop):
         """Return the largest distance of discs at a ``hop``, minus σ.
 
         For equal discs in the plane it is B − σ for the horizontal hop and A − σ for the vertical
@@ -408,7 +408,7 @@ class Scene:
 
         It is also the length of the gradient of a separation, in the metric of the masses.
         """
-        return math.sqrt(sum(2 * two.ENERGY / mass for mass in self.masses[:2]))
+        return math.sqrt(sum(2 * two_geometry.ENERGY / mass for mass in self.masses[:2]))
 
     @cached_property
     def vertical_hops(self):
@@ -457,7 +457,7 @@ class Scene:
         declared = DECLARED[event]
         return 0.5 if declared.kind == "wall" and self.confined["xy".index(declared.axis)] else 1.0
 
-    def copies(self, event):
+    def multiplicity(self, event):
         """Return the number of events with the rate of ``event`` by symmetry.
 
         By mirror images and for equal discs, four pairs of a disc and a wall have the same rate. If
@@ -465,7 +465,7 @@ class Scene:
         mirror image along y. It is 2N for walls of more than two discs, and 1 for all events except
         wall hits.
         """
-        return self._geometry.copies(self, DECLARED[event])
+        return self._geometry.multiplicity(self, DECLARED[event])
 
     @cached_property
     def events(self) -> tuple[str, ...]:
@@ -509,7 +509,7 @@ class Scene:
         if declared.kind == "hop":
             return declared.axis in self.open_axes
         if self.field and (declared.axis, declared.side) == ("y", +1):
-            return self.field * (self.height - 2 * self.radius) < two.ENERGY
+            return self.field * (self.height - 2 * self.radius) < two_geometry.ENERGY
         return True
 
 

@@ -133,7 +133,7 @@ def content_of(kind, scene, settings, parts):
     return {"twodiscs": twodiscs.__version__} | content
 
 
-def with_arrays(parts):
+def restore_arrays(parts):
     """Return the ``parts`` of a run from those of ``content_of``."""
     return {
         name: part

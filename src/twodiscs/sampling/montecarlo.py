@@ -10,7 +10,7 @@ normal in configuration space; the surface is g = 0 with |∇g| = 1:
 
 A shell of finite thickness is biased; ``exact.shell_expectation`` is its exact expectation. If the
 discs overlap in almost all of the prism, draws are ``conditioned`` instead of ``in_prism``.
-``SamplingRun`` chooses between them.
+``MonteCarloRun`` chooses between them.
 
 A coordinate is one of 2³² equidistant values, the grains. Two coordinates come from one draw of 64
 bits, and their difference is an integer. The grains change a probability by some 2⁻³² of the prism,
@@ -30,10 +30,15 @@ import numpy as np
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
 from twodiscs.model.scene import Scene
+from twodiscs.sampling.conditioned import conditioned_sampler, propose_separation
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.prism import kinetic_fraction, power_chance, prism_of, propose_in_prism
+from twodiscs.sampling.rejection import (
+    kinetic_fraction,
+    power_chance,
+    propose_in_prism,
+    rejection_sampler,
+)
 from twodiscs.sampling.rounds import Run, Sampler, fixed
-from twodiscs.sampling.separations import propose_separation, separation_sampler
 from twodiscs.sampling.streams import GOLDEN, next_bits, open_stream, splitmix, uniform
 from twodiscs.theory import exact
 
@@ -290,7 +295,7 @@ def _sampler(
 def propose_blocks(seed, first, stop, sampler, ends):
     """Count the proposals of blocks ``first`` … ``stop`` − 1 that fall into each set.
 
-    The counts are those of ``sample_blocks``; ``sampler`` is the ``SeparationSampler`` of a scene.
+    The counts are those of ``sample_blocks``; ``sampler`` is the ``ConditionedSampler`` of a scene.
     The proposals give distances from the walls and from contact, so that shells keep their
     thickness if the discs hardly fit. ``ends`` are ends of |Δx|² − σ² for collisions and of −1
     times the distance from the far wall.
@@ -320,13 +325,13 @@ def conditioned(scene, quantities, shell, seed):
 
     It is for radii at which the discs overlap in almost all of the prism. At any radius, up to the
     largest one, at least a quarter of the proposals is accepted. A proposal is a sample of a set
-    whose volume, twice ``SeparationSampler.mass``, is known. Points therefore have the same form as
-    ``in_prism``, for the same arguments, and the errors are binomial too. A sample takes some forty
-    times the time of a sample of the prism. If a few per cent of the prism are free, sampling in
-    the prism is therefore better.
+    whose volume, twice ``ConditionedSampler.mass``, is known. Points therefore have the same form
+    as ``in_prism``, for the same arguments, and the errors are binomial too. A sample takes some
+    forty times the time of a sample of the prism. If a few per cent of the prism are free, sampling
+    in the prism is therefore better.
     """
     wanted, epsilon = _shells(scene, quantities, shell)
-    separations, sigma = separation_sampler(scene), scene.contact_distance
+    separations, sigma = conditioned_sampler(scene), scene.contact_distance
     ranges = {"x": scene.range_x, "y": scene.range_y}
     ends = shell_ends(
         epsilon,
@@ -449,8 +454,8 @@ def count_shells(totals, state, prism, centre, separation, fraction, ends):
 def weighted_blocks(seed, first, stop, prism, ends):
     """Count the samples of blocks ``first`` … ``stop`` − 1 that count for each set.
 
-    ``prism`` is the ``PrismSampler`` of a scene with effects, ``ends`` are its ``weighted_ends``.
-    Returns int64 counts: volume, then ``EVENTS``.
+    ``prism`` is the ``RejectionSampler`` of a scene with effects, ``ends`` are its
+    ``weighted_ends``. Returns int64 counts: volume, then ``EVENTS``.
     """
     totals = np.zeros(1 + len(EVENTS), np.int64)
     for block in range(first, stop):
@@ -478,7 +483,7 @@ def weighted(scene, quantities, shell, seed):
     """
     wanted, epsilon = _shells(scene, quantities, shell)
     # Configuration space has no spins: without them there is one kernel less to compile.
-    prism = prism_of(scene)._replace(inertia=None)
+    prism = rejection_sampler(scene)._replace(inertia=None)
     ends, axes = weighted_ends(scene, epsilon), range(len(scene.axes))
     measure = math.prod(4 * prism.half_1[axis] * prism.half_2[axis] for axis in axes)
     return _sampler(
@@ -511,7 +516,7 @@ def plan(scene, samples):
 
 
 @dataclass(frozen=True)
-class SamplingRun(Run):
+class MonteCarloRun(Run):
     """An estimate of the volume and areas of a ``Scene`` by the best sampler for it, in blocks.
 
     The sampler is ``weighted`` for effects, and ``in_prism`` if a sample of the prism has no

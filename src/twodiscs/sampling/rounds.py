@@ -1,14 +1,14 @@
 """Work in blocks whose sums are integers: by one process in rounds, or by many in pieces.
 
-One process works in rounds until all errors are small enough (``in_rounds``). Many processes can do
-pieces of the planned blocks, whose number is known before anything runs. The bits depend neither on
-the size of the pieces nor on the process that does a piece. Pieces are {(first, stop): sums}, as in
-``points.base``.
+One process works in rounds until all errors are small enough (``run_in_rounds``). Many processes
+can do pieces of the planned blocks, whose number is known before anything runs. The bits depend
+neither on the size of the pieces nor on the process that does a piece. Pieces are {(first, stop):
+sums}, as in ``points.base``.
 
-A process works in threads (``in_threads``): on several cores, and so that Ctrl-C stops it without
-delay. Kernels release Python's lock, so threads can use all cores. Python handles no signal while a
-kernel runs. If it handles one while numba prepares or ends a call, the KeyboardInterrupt is lost,
-or a ``SystemError`` takes its place. Python handles signals in the main thread only. The main
+A process works in threads (``map_in_threads``): on several cores, and so that Ctrl-C stops it
+without delay. Kernels release Python's lock, so threads can use all cores. Python handles no signal
+while a kernel runs. If it handles one while numba prepares or ends a call, the KeyboardInterrupt is
+lost, or a ``SystemError`` takes its place. Python handles signals in the main thread only. The main
 thread therefore waits, and other threads call the kernels.
 """
 
@@ -26,7 +26,7 @@ import numpy as np
 from twodiscs.model.checks import check_integer
 from twodiscs.model.scene import Scene
 from twodiscs.points.base import added, reached
-from twodiscs.points.monte_carlo import MonteCarloPoint
+from twodiscs.points.monte_carlo_point import MonteCarloPoint
 
 #: Blocks of the first round, and the longest round over the work before it: an error from few
 #: events predicts badly.
@@ -55,8 +55,8 @@ class SequentialRun:
     """Work in blocks until the errors are small enough or a budget is spent.
 
     ``work(first, stop)`` returns the sums of a range of blocks, a tuple of integer arrays.
-    ``excess_of(sums, blocks)`` returns the array of their errors over the errors asked for; if it
-    is empty, one round is enough. ``simulated_in(sums)`` returns the number of events.
+    ``error_over_target(sums, blocks)`` returns the array of their errors over the errors asked for;
+    if it is empty, one round is enough. ``simulated_in(sums)`` returns the number of events.
     ``block_events`` is the approximate number of events in a block, ``budget`` the largest number
     of events. ``planned`` is the number of blocks for many processes, known before anything runs.
     ``cost_ratio`` is the time of an event over the time of an event in the plain ensemble, and
@@ -64,7 +64,7 @@ class SequentialRun:
     """
 
     work: Callable
-    excess_of: Callable
+    error_over_target: Callable
     simulated_in: Callable
     block_events: float
     budget: float
@@ -96,14 +96,14 @@ def _done(run, stop, pieces, cores, progress):
         return sums
     step, new = max(1, int(CALL / run.block_work)), None
     calls = ((start, min(start + step, stop)) for start in range(first, stop, step))
-    for done, more in enumerate(in_threads(run.work, calls, cores, lambda: progress(None)), 1):
+    for done, more in enumerate(map_in_threads(run.work, calls, cores, lambda: progress(None)), 1):
         new = added(new, more)
         progress(min(first + done * step, stop))
     pieces[first, stop] = new
     return added(sums, new)
 
 
-def in_rounds(run, progress=None, cores=1, kept=None):
+def run_in_rounds(run, progress=None, cores=1, resume_from=None):
     """Work in rounds until the errors are small enough or the budget is spent; return the pieces.
 
     The first round is small: it keeps to the budget, but has at least one block. The errors so far
@@ -111,10 +111,10 @@ def in_rounds(run, progress=None, cores=1, kept=None):
     ``progress``, if given, is called repeatedly with the work that is done and the expected total,
     in events of the plain ensemble.
 
-    ``kept`` are pieces of an earlier run to another error. This run does not repeat them, and the
-    sums are the same as without.
+    ``resume_from`` are pieces of an earlier run to another error. This run does not repeat them,
+    and the sums are the same as without.
     """
-    pieces = dict(kept or {})
+    pieces = dict(resume_from or {})
     blocks = int(max(1, min(run.first_round, run.budget / run.block_events)))
     last, done = max(blocks, min(run.planned, run.budget / run.block_events)), 0
 
@@ -125,7 +125,7 @@ def in_rounds(run, progress=None, cores=1, kept=None):
     while True:
         done += blocks
         sums = _done(run, done, pieces, cores, report)
-        excess, simulated = run.excess_of(sums, done), run.simulated_in(sums)
+        excess, simulated = run.error_over_target(sums, done), run.simulated_in(sums)
         if not excess.size:
             break
         worst = float(np.max(excess))
@@ -159,12 +159,13 @@ class Sampler(NamedTuple):
         return MonteCarloPoint.of(self.scene, {"all": self.constants | {"sums": pieces}})
 
 
-def all_in_rounds(parts, progress=None, cores=1, kept=None):
+def run_all_in_rounds(parts, progress=None, cores=1, resume_from=None):
     """Return {name: pieces} of the runs in ``parts``, {name: run}, one after the other.
 
-    ``progress`` is called with the work of all of them; ``kept`` are the parts of an earlier run.
+    ``progress`` is called with the work of all of them; ``resume_from`` are the parts of an earlier
+    run.
     """
-    kept = {} if kept is None else kept
+    resume_from = {} if resume_from is None else resume_from
     done_parts, work = {}, {name: run.planned * run.block_work for name, run in parts.items()}
 
     def report(done, expected):
@@ -174,25 +175,26 @@ def all_in_rounds(parts, progress=None, cores=1, kept=None):
             progress(done if done is None else before + done, sum(work.values()))
 
     for name, run in parts.items():
-        done_parts[name] = in_rounds(run, report, cores, kept.get(name, {}).get("sums"))
+        done_parts[name] = run_in_rounds(run, report, cores, resume_from.get(name, {}).get("sums"))
     return done_parts
 
 
 class Run:
     """Work in ``parts``, {name: SequentialRun}; ``point`` makes a result of {name: pieces}."""
 
-    def run(self, progress=None, cores=1, kept=None):
+    def run(self, progress=None, cores=1, resume_from=None):
         """Do all work in this process and return the point.
 
-        ``kept`` are the parts of an earlier run, which are not done again (see ``all_in_rounds``).
+        ``resume_from`` are the parts of an earlier run, which are not done again (see
+        ``run_all_in_rounds``).
         """
-        return self.point(all_in_rounds(self.parts, progress, cores, kept))
+        return self.point(run_all_in_rounds(self.parts, progress, cores, resume_from))
 
 
 # Pieces ------------------------------------------------------------------------------------------
 
 
-def on_grid(blocks):
+def round_up_blocks(blocks):
     """Return the next number of blocks on a grid of ``STEPS`` while it doubles, at least 1.
 
     A slightly smaller error then needs the same pieces, or a few more.
@@ -216,7 +218,7 @@ def _serve(work, calls):
         del future, given  # results may be large, and the next call late
 
 
-def in_threads(work, arguments, cores=1, waiting=None):
+def map_in_threads(work, arguments, cores=1, waiting=None):
     """Yield ``work(*given)`` for each tuple in ``arguments``, in their order, by ``cores`` threads.
 
     With one core the calls run one after the other. Only a few calls begin before the caller asks
@@ -254,12 +256,12 @@ def in_threads(work, arguments, cores=1, waiting=None):
 
 def draw_in_calls(work, calls, number, progress):
     """Do ``work`` in ``calls``; ``progress``, if given, gets what each returns, and ``number``."""
-    for done in in_threads(work, calls, waiting=lambda: progress and progress(None, number)):
+    for done in map_in_threads(work, calls, waiting=lambda: progress and progress(None, number)):
         if progress is not None:
             progress(done, number)
 
 
-def in_a_thread(work, *given):
+def call_in_thread(work, *given):
     """Return ``work(*given)``, run in another thread: for a kernel that is called once."""
-    (result,) = in_threads(work, [given])
+    (result,) = map_in_threads(work, [given])
     return result

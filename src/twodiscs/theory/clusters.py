@@ -50,7 +50,7 @@ class Region(NamedTuple):
 
 def _neck(scene, hop):
     """Return the separation up to which there is a neck, None without one."""
-    room, sigma = scene.room(hop), scene.contact_distance
+    room, sigma = scene.clearance(hop), scene.contact_distance
     depth = room if room > 0 else -2 * room  # the height of the arch above the gap
     return math.sqrt(depth * (2 * sigma - depth)) if depth < sigma else None
 

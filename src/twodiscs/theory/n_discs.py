@@ -10,7 +10,7 @@ from functools import lru_cache
 
 from twodiscs.model.checks import MOST_WITH_VOLUME
 from twodiscs.model.events import DECLARED, EVENTS, by_kind
-from twodiscs.model.many import is_ordered
+from twodiscs.model.many_geometry import is_ordered
 from twodiscs.theory import channel, three
 from twodiscs.theory.virial import flux_constant
 

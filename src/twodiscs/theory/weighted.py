@@ -33,7 +33,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.model.events import AXIS, DECLARED, EVENTS
-from twodiscs.model.two import ENERGY
+from twodiscs.model.two_geometry import ENERGY
 from twodiscs.theory.quadrature import double_exponential, gauss_legendre
 from twodiscs.theory.virial import flux_constant
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from hashlib import blake2b
 
-from twodiscs.figures.catalogue import ANIMATION, FIGURES
+from twodiscs.figures.scene_figures import ANIMATION, FIGURES
 from twodiscs.model.box import Box, key, stream_seed
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.model import MOST_EVENTS

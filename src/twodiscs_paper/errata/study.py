@@ -4,7 +4,7 @@ from twodiscs.analysis.tables import LENGTH, NUMBER, TEXT, Table
 from twodiscs_paper.study import Study
 
 
-class Errata(Table):
+class ErrataTable(Table):
     """One row per displayed formula of arXiv:1908.04749, or a claim of its text: is it right?"""
 
     columns = {
@@ -42,7 +42,7 @@ class Errata(Table):
 STUDY = Study(
     "errata",
     builds="which formulas of the source are right",
-    tables=(Errata,),
+    tables=(ErrataTable,),
     seconds=3.0,
     order=1,
 )

@@ -15,11 +15,11 @@ from importlib import metadata
 from pathlib import Path
 
 import twodiscs
-from twodiscs.figures.catalogue import FIGURES
+from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.model.checks import InputError, check_integer
 from twodiscs_paper.catalogue import STUDIES
-from twodiscs_paper.configuration.load import ConfigError, check_results, load, read
-from twodiscs_paper.pipeline.cost import missed
+from twodiscs_paper.configuration.yaml_files import ConfigError, check_results, load, read
+from twodiscs_paper.pipeline.job_cost import missed
 
 #: Targets by name, beside the figures and the studies.
 TARGETS = (

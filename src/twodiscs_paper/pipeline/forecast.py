@@ -15,7 +15,7 @@ class Forecast(NamedTuple):
     reached: dict
 
     def shortfall(self, run):
-        """Return a sentence on the accuracy that a ``CountingRun`` will not reach, or None."""
+        """Return a sentence on the accuracy that a ``DynamicsRun`` will not reach, or None."""
         rows = [
             {
                 "event": event,
@@ -29,7 +29,7 @@ class Forecast(NamedTuple):
 
 
 def of_dynamics(run, pilots, planned=False):
-    """Return the ``Forecast`` of a ``CountingRun`` from the ``pilots`` of its parts.
+    """Return the ``Forecast`` of a ``DynamicsRun`` from the ``pilots`` of its parts.
 
     If its blocks are ``planned``, it does all of these: its jobs are shards.
     """
@@ -45,7 +45,7 @@ def of_dynamics(run, pilots, planned=False):
 
 
 def of_samples(run, seconds):
-    """Return the ``Forecast`` of a ``SamplingRun`` from a pilot of some ``seconds``."""
+    """Return the ``Forecast`` of a ``MonteCarloRun`` from a pilot of some ``seconds``."""
     part = run.parts["all"]
     sums, blocks, each = timed(run.sampler.count, seconds)
     found = variances(run.scene, run.sampler, sums, blocks)

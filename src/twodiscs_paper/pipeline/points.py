@@ -5,7 +5,7 @@ from pathlib import Path
 
 from twodiscs.model.box import key, scene_of, stream_seed
 from twodiscs.model.checks import InputError
-from twodiscs.points.base import SECONDS, read_json, with_arrays
+from twodiscs.points.base import SECONDS, read_json, restore_arrays
 
 #: The function of the face that does the work of a stage.
 KINDS = {"monte_carlo": "sample", "dynamics": "simulate", "intervals": "intervals"}
@@ -20,14 +20,14 @@ def run_of(stage, scene, settings):
     given = dict(settings)
     seed = stream_seed(given.pop("seed"), given.pop("name"), stage, key(scene.radius))
     if stage == "monte_carlo":
-        from twodiscs.sampling.montecarlo import SamplingRun
+        from twodiscs.sampling.montecarlo import MonteCarloRun
 
-        return SamplingRun(scene, seed=seed, **given)
-    from twodiscs.dynamics.runs import CountingRun, IntervalRun
+        return MonteCarloRun(scene, seed=seed, **given)
+    from twodiscs.dynamics.runs import DynamicsRun, IntervalsRun
 
     if stage == "dynamics":
-        return CountingRun(scene, given["error"], given["budget"], seed)
-    return IntervalRun(scene, given["hop"], given["number"], seed, given["budget"])
+        return DynamicsRun(scene, given["error"], given["budget"], seed)
+    return IntervalsRun(scene, given["hop"], given["number"], seed, given["budget"])
 
 
 def read_point(kind, path):
@@ -37,7 +37,7 @@ def read_point(kind, path):
     """
     content = read_json(path)
     try:
-        return kind.of(scene_of(content["scene"]), with_arrays(content["parts"]))
+        return kind.of(scene_of(content["scene"]), restore_arrays(content["parts"]))
     except (KeyError, TypeError, ValueError):
         raise InputError(
             f"{path} must be a point of {kind.stage}, but was made by another version or stage; "
@@ -59,7 +59,7 @@ def pieces_of(paths):
     for path in paths:
         if "parts" not in (content := read_json(path)):
             raise InputError(f"{path} must be a shard of a point; delete it, and it is made again")
-        for name, part in with_arrays(content["parts"]).items():
+        for name, part in restore_arrays(content["parts"]).items():
             pieces.setdefault(name, {}).update(part["sums"])
     return pieces
 

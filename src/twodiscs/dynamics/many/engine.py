@@ -1,6 +1,6 @@
 """More than two discs: counts, trajectories and intervals, their durations and costs.
 
-The kernels are ``lockstep`` for few discs and ``cells`` for ``LARGE`` numbers of them.
+The kernels are ``all_pairs`` for few discs and ``cell_list`` for ``LARGE`` numbers of them.
 """
 
 import math
@@ -10,15 +10,29 @@ import numpy as np
 
 from twodiscs.dynamics import ensemble
 from twodiscs.dynamics.law import END_OF_TIME, crosses, crossing_time
-from twodiscs.dynamics.many import cells, lockstep
-from twodiscs.dynamics.many.lockstep import ABOVE, BESIDE, CLASSES, COLLISIONS, N, law_of, new_kicks
+from twodiscs.dynamics.many import all_pairs, cell_list
+from twodiscs.dynamics.many.all_pairs import (
+    ABOVE,
+    BESIDE,
+    CLASSES,
+    COLLISIONS,
+    N,
+    law_of,
+    new_kicks,
+)
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import HOPS, by_kind
-from twodiscs.model.many import LARGE
+from twodiscs.model.many_geometry import LARGE
 from twodiscs.sampling.many import insertions
-from twodiscs.sampling.many.cells import grid_of
+from twodiscs.sampling.many.cell_grid import grid_of
 from twodiscs.sampling.many.chains import DENSEST, crowding
-from twodiscs.sampling.many.initial import draw_states, initial_of, large_grid, method, states_of
+from twodiscs.sampling.many.many_initial_states import (
+    draw_states,
+    initial_of,
+    large_grid,
+    method,
+    states_of,
+)
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import n_discs
 from twodiscs.theory.virial import bulk_derivatives, rates
@@ -154,7 +168,7 @@ def expected_rate(scene, event):
 
 
 def run_blocks(scene, events, seed, first, stop, duration, **shape):
-    """Return counts as ``two.lockstep.run_blocks`` does; few discs count hops in any case."""
+    """Return counts as ``two.event_counts.run_blocks`` does; few discs count hops in any case."""
     hops = any(event in HOPS for event in events)
     counts = run_classes(scene, seed, first, stop, duration, hops=hops, **shape)
     return of_events(*counts)
@@ -177,11 +191,11 @@ def run_classes(scene, seed, first, stop, duration, *, replicas=None, lanes=None
         given = states, np.uint64(seed), block * replicas
         kicks = new_kicks(scene, lanes if grid is None else 1)
         if grid is None:
-            of_block = lockstep.count_events(*given, lanes, duration, law, hops_x, kicks)
+            of_block = all_pairs.count_events(*given, lanes, duration, law, hops_x, kicks)
         else:
             counted = (True, hops_x) if hops else (None, None)
             given += duration, epoch_of(scene), law, grid
-            of_block = cells.count_events(*given, *counted, kicks)
+            of_block = cell_list.count_events(*given, *counted, kicks)
         counts = tuple(map(np.add, counts, of_block))
     return counts
 
@@ -234,8 +248,8 @@ def advance_all(scene, states, laps, time, kicks, hops=None):
     """
     law, grid = law_of(scene), large_grid(scene)
     if grid is None:
-        return lockstep.advance_states(states, laps, time, law, kicks, hops)
-    return cells.advance_all(states, laps, time, epoch_of(scene), law, grid, kicks, hops)
+        return all_pairs.advance_states(states, laps, time, law, kicks, hops)
+    return cell_list.advance_all(states, laps, time, epoch_of(scene), law, grid, kicks, hops)
 
 
 def kicks_of(scene, number, seed, block=0):
@@ -252,8 +266,8 @@ class Followed:
     def __init__(self, scene, counted):
         self.scene, self.law, self.grid = scene, law_of(scene), grid_of(scene)
         self.epoch, self.laps = epoch_of(scene), np.zeros(scene.discs)
-        self.motion = cells.new_motion(scene.discs, self.grid, self.law.rough)
-        self.log = cells.new_log(scene.discs, ENTRIES, 4 if self.law.rough is None else 5)
+        self.motion = cell_list.new_motion(scene.discs, self.grid, self.law.rough)
+        self.log = cell_list.new_log(scene.discs, ENTRIES, 4 if self.law.rough is None else 5)
         self.counts = np.zeros(N, np.int64)
         self.hops = [True if hop in counted else None for hop in ("vertical_hop", "horizontal_hop")]
 
@@ -261,13 +275,13 @@ class Followed:
         """Begin a path with a ``state``, a column of numbers, and the kicks of its stream."""
         self.kicks = kicks_of(self.scene, 1, seed, replica)
         self.log.origin[0] = self.laps[:] = 0.0
-        cells.start_from(state, 0, self.motion, self.grid, self.law)
+        cell_list.start_from(state, 0, self.motion, self.grid, self.law)
 
     def go_on(self, duration):
         """Yield the log of one stretch after the other, with the order of its entries in time."""
         while duration > 0.0:
             self.log.size[0] = 0
-            duration = cells.follow_discs(
+            duration = cell_list.follow_discs(
                 duration, self.epoch, self.motion, self.laps, self.grid, self.law, self.counts,
                 0, self.kicks, self.log, *self.hops,
             )  # fmt: skip
@@ -307,7 +321,7 @@ def events_of(scene, state, duration, seed=0):
         yield from _logged(scene, np.array(state), duration, seed)
         return
     n, law, time, kicks = scene.discs, law_of(scene), 0.0, kicks_of(scene, 1, seed)
-    lanes = lockstep.lanes_of(np.array(state)[:, None], np.full(1, float(duration)), law)
+    lanes = all_pairs.lanes_of(np.array(state)[:, None], np.full(1, float(duration)), law)
     x, y, u, v, *s = (part for part in lanes[:5] if part is not None)
     ring = law.ring[0] if law.ring else None
     # The distance of centres beyond the cell in which the kernel keeps them.
@@ -320,10 +334,10 @@ def events_of(scene, state, duration, seed=0):
     while True:
         before, speed = np.ravel([x + beyond, y]), np.ravel([u, v, *s])
         is_kick = ensemble.before_kick(lanes.remaining[0], 0, kicks) < lanes.remaining[0]
-        lockstep.find_events(lanes, law, kicks)
+        all_pairs.find_events(lanes, law, kicks)
         flight, code = float(lanes.times[0]), int(lanes.codes[0])
-        lockstep.advance(lanes, law, True)
-        lockstep.kick_lanes(lanes, law, kicks)
+        all_pairs.advance(lanes, law, True)
+        all_pairs.kick_lanes(lanes, law, kicks)
         if ring:
             beyond = ring * np.round(((before + flight * speed[: 2 * n])[:n, None] - x) / ring)
         after, hops = np.ravel([x + beyond, y]), []
@@ -360,20 +374,20 @@ def _logged(scene, state, duration, seed):
     path.laps[:] = rounds
     # The last known place of each disc, and its time.
     at, since = np.reshape(state, (-1, scene.discs)).copy(), np.zeros(scene.discs)
-    names = {lockstep.VERTICAL: "vertical_hop", lockstep.HORIZONTAL: "horizontal_hop"}
-    names |= {COLLISIONS: "disc_collision", cells.KICKS: "kick"}
+    names = {all_pairs.VERTICAL: "vertical_hop", all_pairs.HORIZONTAL: "horizontal_hop"}
+    names |= {COLLISIONS: "disc_collision", cell_list.KICKS: "kick"}
     yield 0.0, "start", None, None, state
     for log, order in path.go_on(duration):
         for k in order:
             time, kind, (i, j) = float(log.times[k]), int(log.classes[k]), log.discs[k].tolist()
-            if kind not in (lockstep.VERTICAL, lockstep.HORIZONTAL):
+            if kind not in (all_pairs.VERTICAL, all_pairs.HORIZONTAL):
                 at[:, i], at[:, j] = log.states[k]
                 since[[i, j]] = time
-            if kind == cells.KICKS and i < scene.discs - 1:
+            if kind == cell_list.KICKS and i < scene.discs - 1:
                 continue
             first, second = min(i, j) + 1, max(i, j) + 1 if i != j else None
             name = names.get(kind) or f"wall_{'x' if kind == BESIDE else 'y'}{first}"
-            first = None if kind == cells.KICKS else first
+            first = None if kind == cell_list.KICKS else first
             yield time, name, first, second, _then(at, time - since)
     yield float(duration), "end", None, None, _then(at, duration - since)
 
@@ -427,7 +441,7 @@ def record_intervals(scene, hop, seed, first, stop, chains, bins, sums, going):
 
 
 def record_within(window, scene, hop, seed, first, stop, chains, bins, sums, going):
-    """Add the intervals that begin within a ``window`` of time, see ``lockstep``."""
+    """Add the intervals that begin within a ``window`` of time, see ``all_pairs``."""
     if large_grid(scene) is None:
         hops_x, kicks = True if hop == "horizontal_hop" else None, new_kicks(scene, ensemble.LANES)
         given = window, law_of(scene), hops_x, bins, sums, going, kicks
@@ -435,7 +449,7 @@ def record_within(window, scene, hop, seed, first, stop, chains, bins, sums, goi
         for block in range(first, stop):
             states = states_of(initial, chains, seed, block)
             seeds = np.uint64(seed), block * chains
-            totals.append(lockstep.record_intervals(states, *seeds, *given))
+            totals.append(all_pairs.record_intervals(states, *seeds, *given))
         return np.hstack(totals)
     (width, wide), path, initial = bins, Followed(scene, (hop,)), initial_of(scene)
     totals, state = np.zeros((2, (stop - first) * chains)), np.zeros((initial.rows, 1))

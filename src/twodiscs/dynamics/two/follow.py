@@ -23,8 +23,8 @@ centre is at −0.3, after a time of 0.5. ``after_event`` moves both discs and t
 [-0.25, 0.05, 0.25, -0.3, 0.5, 0.1, -0.5, 0.7]
 
 The experiment then takes a note of the flight. The separation y1 − y2 was −0.05 and is 0.35, so the
-flight had a vertical hop. An experiment that counts (``lockstep.Counts``) adds 1 for the hop and
-256⁴ for the hit of a wall at an end of y: six counts share one double, and each has eight bits.
+flight had a vertical hop. An experiment that counts (``event_counts.Counts``) adds 1 for the hop
+and 256⁴ for the hit of a wall at an end of y: six counts share one double, and each has eight bits.
 Other experiments are strips (``strip.HopsInStrip``), intervals (``returns.Returns``) and passages
 (``passages.NetHops``, ``passages.Clusters``). The page docs/add-an-experiment.md adds one.
 
@@ -40,8 +40,8 @@ import numpy as np
 
 from twodiscs.dynamics.ensemble import before_kick, idle_kicks, open_kicks, renew_kicks
 from twodiscs.dynamics.law import after_event, first_event, kick_sampler, law_of, meeting, redrawn
+from twodiscs.sampling.initial_states import COMPONENTS, draw_states
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.starts import COMPONENTS, draw_states
 from twodiscs.sampling.streams import exponential, open_stream
 
 # An experiment -----------------------------------------------------------------------------------

@@ -10,8 +10,8 @@ from twodiscs.dynamics.ensemble import before_kick, nearest_power_of_two, opened
 from twodiscs.dynamics.law import after_event, crosses, crossing_time, law_of, next_event
 from twodiscs.dynamics.two.follow import across, kicked, new_kicks, put_state, state_at
 from twodiscs.model.events import HOPS
+from twodiscs.sampling.initial_states import components
 from twodiscs.sampling.jit import compiled, optional
-from twodiscs.sampling.starts import components
 from twodiscs.theory import exact
 
 #: Wall and disc events that a trajectory lasts at most, on average.

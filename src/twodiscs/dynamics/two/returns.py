@@ -8,7 +8,7 @@ from twodiscs.dynamics.ensemble import LANES, RETURNS, SWEEPS
 from twodiscs.dynamics.law import crosses, crossing_time
 from twodiscs.dynamics.two.follow import across, follow
 from twodiscs.model.scene import hopping_along
-from twodiscs.sampling.starts import start_sampler
+from twodiscs.sampling.initial_states import start_sampler
 from twodiscs.theory import exact
 
 #: Numbers that are summed in each bin: Σ c and Σ c².

@@ -28,9 +28,14 @@ from twodiscs.model.box import key, stream_seed
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import hopping_along
 from twodiscs.points.estimates import PARTS, fractions_of_speeds, stratified_mean
-from twodiscs.sampling.prism import kinetic_fraction_of, neck_of, prism_of, proposed_measure
-from twodiscs.sampling.rounds import SequentialRun, on_grid
-from twodiscs.sampling.starts import start_sampler
+from twodiscs.sampling.initial_states import start_sampler
+from twodiscs.sampling.rejection import (
+    kinetic_fraction_of,
+    neck_of,
+    proposed_measure,
+    rejection_sampler,
+)
+from twodiscs.sampling.rounds import SequentialRun, round_up_blocks
 from twodiscs.theory import exact
 
 #: Hops that come more often than once in this many events are counted from ordinary initial
@@ -109,7 +114,7 @@ def expected_events(scene, hop, strip):
     of it a large disc may have more events, if it hardly fits between two walls.
     """
     arch = strip.within**2 / (6 * scene.contact_distance)
-    rate = scene.fastest / (scene.room(hop) + arch)
+    rate = scene.fastest / (scene.clearance(hop) + arch)
     return 2 * strip.time * max(rate, exact.event_rate(scene))
 
 
@@ -143,7 +148,7 @@ def acceptance(scene, hop, strip):
     """
     if scene.is_plain:
         return 0.25
-    measure = proposed_measure(prism_of(scene, hop, strip.within))
+    measure = proposed_measure(rejection_sampler(scene, hop, strip.within))
     return strip.fraction * exact.volume(scene) / measure
 
 
@@ -179,7 +184,7 @@ class HopsInStrip(NamedTuple):
     fastest: float
     near: float
     slow: float
-    prism: tuple | None  # a ``PrismSampler``
+    prism: tuple | None  # a ``RejectionSampler``
     horizontal: bool | None
     packed: np.ndarray  # (lanes,), hops and events
     stratum: np.ndarray  # (2, lanes)
@@ -265,7 +270,7 @@ def run_of(scene, hop, target, budget, seed):
         lambda sums: int(sums[1]),
         REPLICAS * events,
         max(1, int(budget / max(1.0, proposals / PROPOSALS_PER_EVENT))),
-        on_grid(margin / target**2 / hops),
+        round_up_blocks(margin / target**2 / hops),
         COST_RATIO + PROPOSAL * proposals,
     )
 

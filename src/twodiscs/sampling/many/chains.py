@@ -15,7 +15,7 @@ import math
 import numpy as np
 
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.many.cells import around_columns, enter, interval_of, leave, new_places
+from twodiscs.sampling.many.cell_grid import around_columns, enter, interval_of, leave, new_places
 from twodiscs.sampling.many.insertions import around
 from twodiscs.sampling.streams import next_bits, uniform
 

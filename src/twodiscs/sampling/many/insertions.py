@@ -21,10 +21,10 @@ import numpy as np
 
 from twodiscs.model.checks import MOST_WITH_VOLUME, InputError
 from twodiscs.model.events import SHELLS, by_kind
-from twodiscs.points.monte_carlo import InsertionPoint
+from twodiscs.points.monte_carlo_point import InsertionPoint
+from twodiscs.sampling.conditioned import draw_in_disc
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.rounds import Sampler, in_a_thread
-from twodiscs.sampling.separations import draw_in_disc
+from twodiscs.sampling.rounds import Sampler, call_in_thread
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
 from twodiscs.theory.virial import Derivatives, overlap_of_two
 
@@ -216,7 +216,7 @@ def run_blocks(scene, seed, first, stop):
 
 def free_fraction(scene):
     """Return the estimate of V/(AB)^N from the first block of the stream 0, maybe 0."""
-    sums, _ = in_a_thread(run_blocks, scene, 0, 0, 1)
+    sums, _ = call_in_thread(run_blocks, scene, 0, 0, 1)
     return float(sums[0]) / UNITS / BLOCK * box_of(scene).typical
 
 
@@ -253,7 +253,7 @@ def estimate(scene, sums, products, samples):
 def sample(scene, samples, seed):
     """Return the ``estimate`` of a ``Scene`` from a number of ``samples``, in whole blocks."""
     blocks = -(-samples // BLOCK)
-    return estimate(scene, *in_a_thread(run_blocks, scene, seed, 0, blocks), blocks * BLOCK)
+    return estimate(scene, *call_in_thread(run_blocks, scene, seed, 0, blocks), blocks * BLOCK)
 
 
 # The pipeline -------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ import json
 import math
 from pathlib import Path
 
-from twodiscs.analysis.tables import Areas, MeanTimes, Volume
+from twodiscs.analysis.tables import AreasTable, MeanTimesTable, VolumeTable
 from twodiscs.figures.style import LOOKS
 from twodiscs.model.events import DECLARED
 from twodiscs.theory.virial import flux_constant
@@ -66,7 +66,7 @@ def points(tables, periodic=""):
     """
     volumes, areas, times = (
         table.read(tables[table.name()]) if table.name() in tables else []
-        for table in (Volume, Areas, MeanTimes)
+        for table in (VolumeTable, AreasTable, MeanTimesTable)
     )
     dynamics, sampled = by_dynamics(times), by_monte_carlo(volumes, areas, 4 - len(periodic))
     return {

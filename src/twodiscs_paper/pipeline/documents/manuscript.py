@@ -6,7 +6,7 @@ from pathlib import Path
 
 from twodiscs.analysis.tables import NUMBER, TEXT, Table
 from twodiscs.dynamics.runs import RETURNS
-from twodiscs.figures.catalogue import FIGURES
+from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.measure.transmission import QUIET
 from twodiscs.model.box import Box
 from twodiscs.sampling.montecarlo import COST_RATIO
@@ -17,7 +17,7 @@ from twodiscs_paper.pipeline.results.provenance import commit, versions
 CONSTANTS = {"dearer": COST_RATIO, "intervals": RETURNS, "passages_pause": QUIET}
 
 
-class PaperNumbers(Table):
+class PaperNumbersTable(Table):
     """One row per number that the manuscript prints."""
 
     columns = {

@@ -15,13 +15,20 @@ from pathlib import Path, PurePosixPath
 from markupsafe import Markup, escape
 from PIL import Image, ImageSequence
 
-from twodiscs.analysis.tables import SCENE_TABLES, Check, Cost, Grid, MeanTimes, quantity_of
-from twodiscs.figures.catalogue import ANIMATION, GEOMETRY
+from twodiscs.analysis.tables import (
+    SCENE_TABLES,
+    CheckTable,
+    CostTable,
+    GridTable,
+    MeanTimesTable,
+    quantity_of,
+)
+from twodiscs.figures.scene_figures import ANIMATION, GEOMETRY
 from twodiscs.measure.measurements import measurement
 from twodiscs.model.box import Box
 from twodiscs.model.checks import format_number, format_seconds
 from twodiscs_paper.catalogue import ALL_FIGURES
-from twodiscs_paper.pipeline.cost import missed, taken
+from twodiscs_paper.pipeline.job_cost import missed, taken
 from twodiscs_paper.pipeline.results.provenance import commit, versions
 
 #: The large figures of the section of a scene, of which it has ``SOME``, and of the section of all
@@ -63,7 +70,7 @@ def agreement(folder, scene):
     own = Path(folder, scene["name"])
     if not (own / "check.csv").exists():
         return None
-    check, cost = Check.frame(own / "check.csv"), Cost.frame(own / "cost.csv")
+    check, cost = CheckTable.frame(own / "check.csv"), CostTable.frame(own / "cost.csv")
     check = check[check["passed"].notna()]
     return scene | {
         "comparisons": len(check),
@@ -71,7 +78,7 @@ def agreement(folder, scene):
         "tests": check["independent"].sum(),
         "failed": (~check["passed"]).sum(),
         "largest": check["z"].abs().max() if len(check) else 0.0,
-        "radii": len(Grid.frame(own / "grid.csv")),
+        "radii": len(GridTable.frame(own / "grid.csv")),
     }
 
 
@@ -81,7 +88,7 @@ def mean_times(folder, scene):
     Without an error it is the status of the estimate. Nothing is returned without mean_times.csv.
     """
     path, by_radius = Path(folder, scene["name"], "mean_times.csv"), {}
-    for row in MeanTimes.read(path) if path.exists() else ():
+    for row in MeanTimesTable.read(path) if path.exists() else ():
         one = box_of(scene).scene(row["radius"])
         quantity, value, error, exact, _, z, _, status = measurement(one, row).cells()
         event = quantity.removesuffix("_time").replace("_", " ")

@@ -28,8 +28,8 @@ from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import stratified_mean
 from twodiscs.sampling import montecarlo
+from twodiscs.sampling.conditioned import conditioned_sampler
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.separations import separation_sampler
 from twodiscs.sampling.streams import open_stream, signed_uniform
 from twodiscs.theory import exact, plain
 from twodiscs.theory.quadrature import gauss_legendre
@@ -110,7 +110,7 @@ def by_lockstep(scene, seed, blocks=1):
 def by_scalar(scene, seed):
     """Return the ``Method`` of one trajectory after the other."""
     given = FEW_REPLICAS, runs.engine_of(scene).replica_duration(scene), scene.contact_distance
-    given += separation_sampler(scene), (0, 0)
+    given += conditioned_sampler(scene), (0, 0)
 
     def block(i):
         return scalar.count_blocks(np.uint64(seed), i, i + 1, *given)[0]
@@ -121,7 +121,7 @@ def by_scalar(scene, seed):
 def by_steps(scene, seed, step):
     """Return the ``Method`` of looking for overlaps every ``step``, a power of two."""
     steps = round(runs.engine_of(scene).replica_duration(scene) / step)
-    given = FEW_REPLICAS, LANES, steps, step, scene.contact_distance, separation_sampler(scene)
+    given = FEW_REPLICAS, LANES, steps, step, scene.contact_distance, conditioned_sampler(scene)
 
     def block(i):
         return timestepping.step_blocks(np.uint64(seed), i, i + 1, *given)

@@ -1,8 +1,8 @@
 """The usual engine, for comparison: one trajectory at a time, with branches and divisions.
 
-It does the same experiment as ``dynamics.two.lockstep``, from the same starts, with the same law in
-its most direct form. It serves as an independent check and as the baseline of the benchmarks.
-``count_blocks.py_func`` is the plain Python program.
+It does the same experiment as ``dynamics.two.event_counts``, from the same starts, with the same
+law in its most direct form. It serves as an independent check and as the baseline of the
+benchmarks. ``count_blocks.py_func`` is the plain Python program.
 """
 
 import math
@@ -10,8 +10,8 @@ import math
 import numpy as np
 
 from twodiscs.dynamics.law import RESTING_SPEED
+from twodiscs.sampling.initial_states import draw_starts
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.starts import draw_starts
 from twodiscs.sampling.streams import open_stream
 
 #: The events that the engines for comparison count, in this order.
@@ -27,7 +27,7 @@ def simulated_events(counts):
 
 @compiled
 def count_blocks(seed, first, stop, replicas, duration, sigma, draw, order):
-    """Return (sums, products) of ``COUNTED`` as ``dynamics.two.lockstep`` does."""
+    """Return (sums, products) of ``COUNTED`` as ``dynamics.two.event_counts`` does."""
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
     starts = np.zeros((8, replicas))
     for block in range(first, stop):

@@ -11,11 +11,11 @@ from twodiscs.analysis.tables import (
     Column,
     Table,
 )
-from twodiscs.figures.catalogue import Caption, Figure
+from twodiscs.figures.scene_figures import Caption, Figure
 from twodiscs_paper.study import Study
 
 
-class AccuracyCost(Table):
+class AccuracyCostTable(Table):
     """
     One row per method and amount of work: its true error against the processor time it takes, on
     one core.
@@ -67,7 +67,7 @@ class AccuracyCost(Table):
 STUDY = Study(
     "accuracy_cost",
     builds="the cost of an accuracy by each method",
-    tables=(AccuracyCost,),
+    tables=(AccuracyCostTable,),
     seconds=lambda configuration: 20.0 + configuration.accuracy_cost["seconds"],
     order=2,
     figures={
@@ -89,7 +89,7 @@ STUDY = Study(
                 """
             ),
             tables=("accuracy_cost",),
-            kept={"kept": "paper/long_run/accuracy_cost/accuracy_cost.csv"},
+            long_runs={"kept": "paper/long_run/accuracy_cost/accuracy_cost.csv"},
         ),
         "accuracy_cost_by_radius": Figure(
             "The cost of an accuracy against the radius",

@@ -11,8 +11,8 @@ the ensemble, and treats discs, not polygons.
 import numpy as np
 
 from twodiscs.dynamics.law import crosses
+from twodiscs.sampling.initial_states import draw_starts
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.starts import draw_starts
 from twodiscs.sampling.streams import open_stream
 from twodiscs_paper.studies.accuracy_cost.scalar import N
 

@@ -4,7 +4,7 @@ from twodiscs.analysis.tables import COUNT, NUMBER, RADIUS, TEXT, Table
 from twodiscs_paper.study import SEE_QUANTITY, Study
 
 
-class Agreement(Table):
+class AgreementTable(Table):
     """One row per quantity that follows from the comparisons of several scenes, radii or events."""
 
     columns = {
@@ -52,7 +52,7 @@ def _reads(configuration):
 STUDY = Study(
     "agreement",
     builds="how deviations from the exact values are correlated",
-    tables=(Agreement,),
+    tables=(AgreementTable,),
     seconds=2.0,
     order=8,
     reads=_reads,

@@ -23,13 +23,13 @@ from twodiscs.dynamics.law import law_of
 from twodiscs.model.box import Box, key, stream_seed
 from twodiscs.model.events import HOPS
 from twodiscs.points.estimates import Estimate
-from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.separations import (
+from twodiscs.sampling.conditioned import (
+    conditioned_sampler,
     draw_configuration,
     draw_crossing,
     draw_velocity,
-    separation_sampler,
 )
+from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact, laws
 from twodiscs_paper.studies.estimates import chi2_p, mean_of
@@ -232,7 +232,7 @@ def measured(start, scene, hop, seed, events=EVENTS):
     oriented = scene
     if hop == "horizontal_hop":
         oriented = Box.of(scene).turned().scene(scene.radius)
-    draw, histogram = separation_sampler(oriented), np.zeros(BINS + 1, np.int64)
+    draw, histogram = conditioned_sampler(oriented), np.zeros(BINS + 1, np.int64)
     means = draw_passages(
         np.uint64(seed), 0, BLOCKS, block, passages, cut, law_of(oriented), draw, width, histogram,
     )  # fmt: skip

@@ -11,11 +11,11 @@ from twodiscs.analysis.tables import (
     WIDTH,
     Table,
 )
-from twodiscs.figures.catalogue import DYNAMICS, Caption, Figure
+from twodiscs.figures.scene_figures import DYNAMICS, Caption, Figure
 from twodiscs_paper.study import AS_ESTIMATE, SEE_QUANTITY, Study, scaled
 
 
-class Distributions(Table):
+class DistributionsTable(Table):
     """
     One row per scene, radius and quantity: how the times to the next hop are distributed, from a
     hop (intervals T) and from a random moment (first passages F). Every T and every F has its own
@@ -94,7 +94,7 @@ def _parameters(configuration):
 STUDY = Study(
     "distributions",
     builds="how intervals between hops are distributed",
-    tables=(Distributions,),
+    tables=(DistributionsTable,),
     seconds=10.0,
     order=5,
     figures={

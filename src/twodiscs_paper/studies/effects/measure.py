@@ -17,8 +17,8 @@ from twodiscs.figures import curves
 from twodiscs.figures.curves import limits
 from twodiscs.model.box import Box, key, stream_seed
 from twodiscs.points import estimates
+from twodiscs.sampling.initial_states import draw_states, start_sampler
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.starts import draw_states, start_sampler
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 from twodiscs_paper.studies.single import tail_constant, time_to_next

@@ -13,11 +13,11 @@ from twodiscs.analysis.tables import (
     Table,
     Z,
 )
-from twodiscs.figures.catalogue import DYNAMICS, Caption, Figure
+from twodiscs.figures.scene_figures import DYNAMICS, Caption, Figure
 from twodiscs_paper.study import AS_EXACT, Study
 
 
-class Effects(Table):
+class EffectsTable(Table):
     """One row per scene with effects, radius and quantity, beside discs without effects."""
 
     columns = {
@@ -61,7 +61,7 @@ class Effects(Table):
         return measure.rows(tables, scenes, seed)
 
 
-class EffectsCurves(Table):
+class EffectsCurvesTable(Table):
     """One row per scene with effects, radius and event: the exact curves that the figure shows.
 
     A row without a radius stands between two regimes, where a curve has a gap.
@@ -85,7 +85,7 @@ class EffectsCurves(Table):
         return measure.curve_rows(scenes)
 
 
-class EffectsCost(Table):
+class EffectsCostTable(Table):
     """The rows of benchmark.csv on effects, from a short run."""
 
     columns = {
@@ -104,12 +104,12 @@ class EffectsCost(Table):
     @staticmethod
     def rows(tables, scenes):
         """Return the rows of ``scenes``; once the ``tables`` are made, all kernels are compiled."""
-        from twodiscs_paper.studies.effects import cost
+        from twodiscs_paper.studies.effects import price
 
-        return cost.rows(scenes, **cost.QUICK)
+        return price.rows(scenes, **price.QUICK)
 
 
-class Benchmark(EffectsCost):
+class Benchmark(EffectsCostTable):
     """One row per benchmark and variant, all variants of a benchmark measured in one run."""
 
 
@@ -136,7 +136,7 @@ def _reads(configuration):
 STUDY = Study(
     "effects",
     builds="how each effect changes the mean times, and its cost",
-    tables=(Effects, EffectsCost, EffectsCurves),
+    tables=(EffectsTable, EffectsCostTable, EffectsCurvesTable),
     seconds=40.0,
     order=7,
     figures={

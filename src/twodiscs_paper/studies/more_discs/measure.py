@@ -10,9 +10,9 @@ import numpy as np
 
 from twodiscs.dynamics.many import engine
 from twodiscs.model.events import DECLARED, SHELLS
-from twodiscs.model.many import copies
+from twodiscs.model.many_geometry import multiplicity
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.many import initial, insertions
+from twodiscs.sampling.many import insertions, many_initial_states
 from twodiscs.theory import n_discs, plain, virial
 from twodiscs.theory.virial import rates
 from twodiscs_paper.study import row
@@ -47,7 +47,9 @@ def known_derivatives(scene, hops=True):
 
 def virial_weights(scene):
     """Return ``virial.weights`` of the rates of all events of a class, as in ``virial.rates``."""
-    return {e: weight / copies(scene, DECLARED[e]) for e, weight in virial.weights(scene).items()}
+    return {
+        e: weight / multiplicity(scene, DECLARED[e]) for e, weight in virial.weights(scene).items()
+    }
 
 
 def virial_sum(scene, rates):
@@ -85,7 +87,7 @@ def _time(scene, event, rate, error=0.0):
     if not rate:
         return None, None
     # The mean is over all initial states, for two discs too, so that all numbers of discs compare.
-    time = copies(scene, DECLARED[event]) / rate / math.sqrt(scene.discs / 2)
+    time = multiplicity(scene, DECLARED[event]) / rate / math.sqrt(scene.discs / 2)
     return time, time * error / rate
 
 
@@ -118,7 +120,7 @@ def _of_scene(scene, events, samples, seed):
     found, errors, virial_error = dynamics_rates(scene, events, seed)
     start = {
         "discs": scene.discs, "width": scene.width, "height": scene.height, "radius": scene.radius,
-        "theory": theory, "states": initial.method(scene),
+        "theory": theory, "states": many_initial_states.method(scene),
     }  # fmt: skip
     for event in SHELLS:
         time, _ = _time(scene, event, true.get(event))

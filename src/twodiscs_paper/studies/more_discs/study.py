@@ -1,11 +1,11 @@
 """More than two discs: mean times against exact values if these are known, and the virial sum."""
 
 from twodiscs.analysis.tables import COUNT, HEIGHT, NUMBER, RADIUS, TEXT, WIDTH, Column, Table
-from twodiscs.figures.catalogue import DYNAMICS, Caption, Figure
+from twodiscs.figures.scene_figures import DYNAMICS, Caption, Figure
 from twodiscs_paper.study import AS_EXACT, Study, scaled
 
 
-class MoreDiscs(Table):
+class MoreDiscsTable(Table):
     """
     One row per number of discs, radius and event, in boxes whose width is in proportion to the
     number of discs, at the energy per disc of two discs.
@@ -67,7 +67,7 @@ def _parameters(configuration):
 STUDY = Study(
     "more_discs",
     builds="mean times of three to 64 discs",
-    tables=(MoreDiscs,),
+    tables=(MoreDiscsTable,),
     seconds=10.0,
     order=8,
     figures={

@@ -19,17 +19,18 @@ from itertools import groupby, pairwise
 import numpy as np
 from scipy.integrate import quad
 
-from twodiscs.measure.transmission import by_clusters
+from twodiscs.measure.transmission import cluster_coefficient
 from twodiscs.model.box import stream_seed
 from twodiscs.points.estimates import Estimate
 from twodiscs_paper.studies.estimates import LinearFit
-from twodiscs_paper.studies.passages.models import brownian
+from twodiscs_paper.studies.passages.models import brownian_steps
 from twodiscs_paper.study import row
 
 #: {program: its number in ``models.brownian``}.
 PROGRAMS = {
-    "reflected": brownian.REFLECTED, "kicked": brownian.KICKED, "together": brownian.TOGETHER,
-    "singly": brownian.SINGLY,
+    "reflected": brownian_steps.REFLECTED, "kicked": brownian_steps.KICKED,
+    "together": brownian_steps.TOGETHER,
+    "singly": brownian_steps.SINGLY,
 }  # fmt: skip
 
 #: {program that rejects moves: the standard deviation of a move of u over s}.
@@ -93,9 +94,9 @@ def points(groups):
 def crossing_counts(seed, program, step, halvings, crossings):
     """Return the counts of a number of random ``crossings`` as plain values for JSON."""
     stream = _stream(seed, "crossings", program, step, halvings)
-    sizes, tried, steps = brownian.cluster_sizes(
+    sizes, tried, steps = brownian_steps.cluster_sizes(
         PROGRAMS[program], step, 2.0**-halvings, HALF, stream, 0,
-        -(-crossings // brownian.CROSSINGS),
+        -(-crossings // brownian_steps.CROSSINGS),
     )  # fmt: skip
     pairs = [[n, int(number)] for n, number in enumerate(sizes) if number]
     return {"tried": int(tried), "steps": int(steps), "sizes": pairs}
@@ -104,7 +105,9 @@ def crossing_counts(seed, program, step, halvings, crossings):
 def passage_counts(seed, program, step, halvings, pairs):
     """Return the counts of the first passages of ``pairs`` as plain values for JSON."""
     stream = _stream(seed, "passages", program, step, halvings)
-    found = brownian.first_passages(PROGRAMS[program], step, 2.0**-halvings, HALF, stream, 0, pairs)
+    found = brownian_steps.first_passages(
+        PROGRAMS[program], step, 2.0**-halvings, HALF, stream, 0, pairs
+    )
     columns = dict(zip(("first", "passage", "crossings"), found.T.tolist(), strict=True))
     sums = {name: [sum(own), sum(n * n for n in own)] for name, own in columns.items()}
     both = sum(map(operator.mul, columns["passage"], columns["crossings"]))
@@ -153,15 +156,15 @@ def joined(counts):
 
 def of_crossings(point, counts):
     """Return {quantity: ``Estimate``} from the ``counts`` of random crossings at a ``point``."""
-    sizes = np.zeros(brownian.LARGEST_CLUSTER + 2, np.int64)
+    sizes = np.zeros(brownian_steps.LARGEST_CLUSTER + 2, np.int64)
     for n, number in counts["sizes"]:
         sizes[n] = number
     number = int(sizes.sum())
-    kappa, found = by_clusters(sizes), {}
+    kappa, found = cluster_coefficient(sizes), {}
     if point["program"] in REJECTING:
         step, room = point["step"], 2.0 ** -point["halvings"]
         length = REJECTING[point["program"]] * step
-        farthest = min(brownian.LONGEST * length, 1.0)
+        farthest = min(brownian_steps.LONGEST * length, 1.0)
         area = (1 + room - math.sqrt(1 - farthest**2)) ** 2
         tried = length / math.sqrt(2 * math.pi) * area / side_volume(room)
         tried *= MOVES.get(point["program"], 1)
@@ -207,7 +210,7 @@ METHODS = {"crossings": of_crossings, "passages": of_passages}
 
 
 def rows(counts):
-    """Yield the rows of brownian.csv from what ``counted`` returns."""
+    """Yield the rows of brownian_steps.csv from what ``counted`` returns."""
     known = {}
     for method, estimates in METHODS.items():
         for point in counts[method]:

@@ -76,7 +76,7 @@ def scaled(rows):
 
 def _scaled(row):
     scene = Box(row["width"], row["height"]).scene(row["radius"])
-    return row["friction"] * (scene.room(row["event"]) * scene.contact_distance) ** 0.5
+    return row["friction"] * (scene.clearance(row["event"]) * scene.contact_distance) ** 0.5
 
 
 def _before(row, coefficients):

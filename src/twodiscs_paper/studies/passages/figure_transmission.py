@@ -102,7 +102,7 @@ def place(box, hop):
 def cube_root(row):
     """Return ∛(σ²ε)/A of a ``row``: the range A along its hop, the room ε left in the neck."""
     scene, hop = Box(row["width"], row["height"]).scene(row["radius"]), row["event"]
-    return (scene.contact_distance**2 * scene.room(hop)) ** (1 / 3) / scene.reach(AXIS[hop])
+    return (scene.contact_distance**2 * scene.clearance(hop)) ** (1 / 3) / scene.reach(AXIS[hop])
 
 
 def _rough(axes, ours, where):

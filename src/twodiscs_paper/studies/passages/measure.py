@@ -17,15 +17,15 @@ import numpy as np
 from twodiscs.analysis.scores import student_deviate
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.two import strip
-from twodiscs.dynamics.two.passages import HOPS_OF_BLOCK, cluster_sizes, hop_sums
+from twodiscs.dynamics.two.hop_clusters import HOPS_OF_BLOCK, cluster_sizes, hop_sums
 from twodiscs.measure.transmission import (
     TIMES,
     are_rare,
     box_time,
-    by_clusters,
-    by_total,
+    cluster_coefficient,
+    correlations,
     hop_seed,
-    of_clusters,
+    odd_clusters_per_passage,
     plateau,
     quiet_time,
 )
@@ -98,8 +98,8 @@ HOP = ("scene", "width", "height", "event", "discs", "moment_of_inertia")
 
 
 def by_time(sums):
-    """Return the estimates of ``by_total`` from ``sums``, a row for each block of hops."""
-    return by_total(sums.sum(axis=0), sums.shape[0] * HOPS_OF_BLOCK)
+    """Return the estimates of ``correlations`` from ``sums``, a row for each block of hops."""
+    return correlations(sums.sum(axis=0), sums.shape[0] * HOPS_OF_BLOCK)
 
 
 def of_order(x):
@@ -141,7 +141,7 @@ def slope_time(scene, hop):
     """
     density = laws.density_at_zero(scene, hop)
     time = FIRST / (2 * density)
-    found = time <= math.sqrt(scene.contact_distance * scene.room(hop))
+    found = time <= math.sqrt(scene.contact_distance * scene.clearance(hop))
     return time if found else None, density
 
 
@@ -227,7 +227,7 @@ class NearThreshold:
 
     def of_sizes(self, sizes, events, gap):
         """Return (κ or None, the rows of it) from what ``cluster_sizes`` returns for a ``gap``."""
-        kappa = plateau(by_clusters(sizes), gap, self.mean, of_clusters)
+        kappa = plateau(cluster_coefficient(sizes), gap, self.mean, odd_clusters_per_passage)
         if kappa is None:
             return None, []
         time = Estimate(self.mean / kappa.value, self.mean * kappa.stderr / kappa.value**2, kappa.n)
@@ -368,7 +368,7 @@ def pause_of(scene, hop):
 
 def scaled_friction(scene, hop):
     """Return x = γ√(εσ) of a ``Scene``."""
-    return scene.friction * math.sqrt(scene.room(hop) * scene.contact_distance)
+    return scene.friction * math.sqrt(scene.clearance(hop) * scene.contact_distance)
 
 
 def diffusive_limit(scene, hop):
@@ -377,7 +377,7 @@ def diffusive_limit(scene, hop):
     It is 3/4 for a short neck. The density of the separation u has the factor A − |u|, which adds
     the share 2√(2εσ)/(πA) to the resistance of the neck.
     """
-    length = math.sqrt(2 * scene.room(hop) * scene.contact_distance)
+    length = math.sqrt(2 * scene.clearance(hop) * scene.contact_distance)
     return 3 / 4 / (1 + 2 * length / (math.pi * float(scene.reach(AXIS[hop]))))
 
 
@@ -632,7 +632,9 @@ def file_rows(one, run, counts):
     for k, pause in enumerate(run["pauses"]):
         found = file.quotient(passed[:, k], hops)
         # Two discs take part in a hop, and each has two neighbours.
-        kappa = plateau(found, pause * unit, 2 / rate.value, partial(of_clusters, others=2))
+        kappa = plateau(
+            found, pause * unit, 2 / rate.value, partial(odd_clusters_per_passage, others=2)
+        )
         if kappa:
             cells = {"method": "clusters", "time": pause * unit, "replicas": kappa.n}
             yield row(start, kappa, quantity="coefficient", **cells)

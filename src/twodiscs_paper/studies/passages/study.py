@@ -12,12 +12,12 @@ from twodiscs.analysis.tables import (
     Table,
     Z,
 )
-from twodiscs.figures.catalogue import DYNAMICS, Caption, Figure
+from twodiscs.figures.scene_figures import DYNAMICS, Caption, Figure
 from twodiscs.model.events import HOPS
 from twodiscs_paper.study import AS_ESTIMATE, Study, scaled
 
 
-class Passages(Table):
+class PassagesTable(Table):
     """
     One row per quantity of the hops of one kind at one radius: which of them are passages, how fast
     they make discs diffuse along a ring.
@@ -102,7 +102,7 @@ class Passages(Table):
         return [*rows, *measure.fits(rows)]
 
 
-class Brownian(Table):
+class BrownianTable(Table):
     """
     One row per quantity of two discs in Brownian dynamics: steps of equal length in a channel that
     is closed to a ring. Lengths are in units of the contact distance σ, times in steps.
@@ -205,8 +205,8 @@ def _parts(configuration):
 STUDY = Study(
     "passages",
     builds="which hops are passages, and diffusion by them",
-    tables=(Passages,),
-    kept=(Brownian,),
+    tables=(PassagesTable,),
+    long_runs=(BrownianTable,),
     seconds=50.0,
     order=6,
     figures={
@@ -248,7 +248,7 @@ STUDY = Study(
                 """
             ),
             tables=("passages",),
-            kept={"kept": "paper/long_run/passages/passages.csv"},
+            long_runs={"kept": "paper/long_run/passages/passages.csv"},
         ),
         "friction": Figure(
             "Passages with friction",
@@ -266,7 +266,7 @@ STUDY = Study(
                 """
             ),
             tables=("passages",),
-            kept={"kept": "paper/long_run/passages/passages.csv"},
+            long_runs={"kept": "paper/long_run/passages/passages.csv"},
         ),
         "brownian": Figure(
             "Passages in Brownian dynamics",
@@ -287,7 +287,7 @@ STUDY = Study(
                 table is that of a long run.
                 """
             ),
-            kept={"brownian": "paper/long_run/brownian/brownian.csv"},
+            long_runs={"brownian": "paper/long_run/brownian/brownian.csv"},
         ),
         "diffusion": Figure(
             "Diffusion by hops",
@@ -305,7 +305,7 @@ STUDY = Study(
                 """
             ),
             tables=("passages",),
-            kept={
+            long_runs={
                 name: f"paper/long_run/{name}/passages.csv" for name in ("files", "displacements")
             },
         ),
@@ -325,7 +325,7 @@ STUDY = Study(
                 equally. Error bars are one standard error.
                 """
             ),
-            kept={"displacements": "paper/long_run/displacements/passages.csv"},
+            long_runs={"displacements": "paper/long_run/displacements/passages.csv"},
         ),
     },
     parts=_parts,

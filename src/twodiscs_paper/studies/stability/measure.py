@@ -16,7 +16,7 @@ from mpmath import mp, mpf
 
 from twodiscs.analysis import scores
 from twodiscs.analysis.check import comparisons
-from twodiscs.analysis.tables import Areas, MeanTimes, Volume
+from twodiscs.analysis.tables import AreasTable, MeanTimesTable, VolumeTable
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import after_event, contact_quotient, law_of, wall_quotient
@@ -27,9 +27,9 @@ from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.sampling import montecarlo
+from twodiscs.sampling.conditioned import conditioned_sampler
+from twodiscs.sampling.initial_states import states
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.separations import separation_sampler
-from twodiscs.sampling.starts import states
 from twodiscs.theory import exact
 from twodiscs_paper.reference import DIGITS, exact_numbers
 from twodiscs_paper.studies.estimates import LinearFit, covers, mean_of
@@ -229,7 +229,7 @@ def sampling_rows(box, seed):
     radii += beside(box, [-(10.0**-k) for k in range(1, 13)])
     for i, (case, distance, radius) in enumerate(radii):
         scene = box.scene(radius)
-        draw, volume = separation_sampler(scene), exact.volume(scene)
+        draw, volume = conditioned_sampler(scene), exact.volume(scene)
         prism = volume / (scene.range_x * scene.range_y) ** 2
         due = min(volume / 2 / draw.mass, 1.0)
         point = conditioned_point(scene, ["volume"], SHARE_PROPOSALS, other_seed(seed, i))
@@ -250,7 +250,7 @@ def estimate_rows(box, seed):
         quantities = ["volume", *(f"{event}_area" for event in EVENTS)]
         point = conditioned_point(scene, quantities, ESTIMATE_PROPOSALS, other_seed(seed, i))
         start = start_of("estimates", case, radius, distance) | {"method": "conditioned"}
-        for found in Volume.rows([point]) + Areas.rows([point]):
+        for found in VolumeTable.rows([point]) + AreasTable.rows([point]):
             kept = {"stderr": found["stderr"], "z": found["z"], "status": found["status"]}
             kept |= {"count": found["samples"], "exact": found["expectation"]}
             yield judged(start, found["quantity"], found["estimate"], **kept)
@@ -507,8 +507,8 @@ def extreme_rows(seed, scenes=EXTREMES):
     for i, (case, scene) in enumerate(scenes.items()):
         events = KICKED.get(case, EXTREME_EVENTS)
         target = dict.fromkeys(scene.events, EXTREME_ERROR)
-        point = runs.CountingRun(scene, target, events, other_seed(seed, i)).run()
-        times = MeanTimes.rows([point])
+        point = runs.DynamicsRun(scene, target, events, other_seed(seed, i)).run()
+        times = MeanTimesTable.rows([point])
         start = start_of("extremes", case, scene.radius)
         for found in comparisons([], [], times, [], [point]):
             if found["test"] == "certain":
@@ -693,7 +693,9 @@ def coverage_rows(box, seed, repetitions=REPETITIONS):
             if sum(estimates.has_error_bar(*m) for m in moments) < repetitions / 2:
                 yield judged(start, event, None, status="too-few")
                 continue
-            intervals = [estimates.mean_time(*m, scene.copies(event) * duration) for m in moments]
+            intervals = [
+                estimates.mean_time(*m, scene.multiplicity(event) * duration) for m in moments
+            ]
             share = sum(i is not None and covers(i, times[event]) for i in intervals) / repetitions
             found = {"exact": 0.95, "stderr": math.sqrt(0.95 * 0.05 / repetitions)}
             yield judged(start, event, share, low, high, status="counted", **found)

@@ -1,11 +1,11 @@
 """How accurate each method is in numerically hard cases."""
 
 from twodiscs.analysis.tables import COUNT, NUMBER, RADIUS, TEXT, TRUTH, Table, Z
-from twodiscs.figures.catalogue import Caption, Figure
+from twodiscs.figures.scene_figures import Caption, Figure
 from twodiscs_paper.study import SEE_QUANTITY, Study, main_box, scaled
 
 
-class Stability(Table):
+class StabilityTable(Table):
     """
     One row per number that says how a method behaves in a numerically hard case, for the box of the
     first scene.
@@ -72,7 +72,7 @@ def _parameters(configuration):
 STUDY = Study(
     "stability",
     builds="how accurate each method is in numerically hard cases",
-    tables=(Stability,),
+    tables=(StabilityTable,),
     seconds=20.0,
     order=3,
     figures={

@@ -25,9 +25,9 @@ from twodiscs.dynamics.two.follow import across, state_at
 from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
 from twodiscs.points.estimates import Estimate
+from twodiscs.sampling.conditioned import conditioned_sampler, draw_configuration, draw_in_disc
+from twodiscs.sampling.initial_states import draw_starts
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.separations import draw_configuration, draw_in_disc, separation_sampler
-from twodiscs.sampling.starts import draw_starts
 from twodiscs.sampling.streams import next_bits, open_stream, uniform
 from twodiscs.theory import exact
 from twodiscs_paper.studies.estimates import chi2_p, mean_of
@@ -157,7 +157,7 @@ def tail(scene, event, times, samples, seed, blocks=BLOCKS):
     strata = 2 + int(math.frexp(longest)[1])
     means = length_biased(
         np.uint64(seed), 0, blocks, strata, samples, np.array(times), law_of(oriented),
-        separation_sampler(oriented), hop,
+        conditioned_sampler(oriented), hop,
     )  # fmt: skip
     return mean_of(means * exact.mean_times(scene)[event])
 
@@ -173,7 +173,7 @@ def survivals(scene, event, times, replicas, seed):
     window = 8 * exact.mean_times(scene)[event]
     counts = count_long(
         np.uint64(seed), 0, 1, replicas, window, np.array(times), law_of(oriented),
-        separation_sampler(oriented), hop,
+        conditioned_sampler(oriented), hop,
     )  # fmt: skip
     return counts[:, 1:] / 8
 

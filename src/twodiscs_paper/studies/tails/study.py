@@ -1,11 +1,11 @@
 """How probable long intervals are."""
 
 from twodiscs.analysis.tables import RADIUS, TEXT, TIME, Column, Table
-from twodiscs.figures.catalogue import DYNAMICS, Caption, Figure
+from twodiscs.figures.scene_figures import DYNAMICS, Caption, Figure
 from twodiscs_paper.study import AS_ESTIMATE, Study, main_box, scaled
 
 
-class Tails(Table):
+class TailsTable(Table):
     """
     One row per time t: how probable an interval T longer than t is, in the box of the first scene.
     """
@@ -62,7 +62,7 @@ def _parameters(configuration):
 STUDY = Study(
     "tails",
     builds="how probable long intervals are",
-    tables=(Tails,),
+    tables=(TailsTable,),
     seconds=8.0,
     order=4,
     figures={

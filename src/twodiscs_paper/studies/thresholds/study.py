@@ -10,11 +10,11 @@ from twodiscs.analysis.tables import (
     Column,
     Table,
 )
-from twodiscs.figures.catalogue import DYNAMICS, Caption, Figure
+from twodiscs.figures.scene_figures import DYNAMICS, Caption, Figure
 from twodiscs_paper.study import AS_ESTIMATE, Study
 
 
-class Thresholds(Table):
+class ThresholdsTable(Table):
     """
     One row per fitted power law: mean times near a limiting radius r_c, τ = C δ^p with δ = r_c − r,
     weighted least squares in ln τ against ln δ.
@@ -67,7 +67,7 @@ def _reads(configuration):
 STUDY = Study(
     "thresholds",
     builds="the laws where a hop becomes blocked",
-    tables=(Thresholds,),
+    tables=(ThresholdsTable,),
     seconds=4.0,
     order=6,
     figures={

@@ -26,9 +26,9 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.dynamics.many import engine
-from twodiscs.dynamics.many.lockstep import HORIZONTAL
+from twodiscs.dynamics.many.all_pairs import HORIZONTAL
 from twodiscs.points.estimates import Estimate
-from twodiscs.sampling.many import initial
+from twodiscs.sampling.many import many_initial_states
 from twodiscs.theory import channel
 from twodiscs_paper.studies.estimates import mean_of
 
@@ -184,7 +184,10 @@ def recorded(scene, step, number, replicas, seed, friction=None):
     process of this rate.
     """
     moving = scene if friction is None else replace(scene, friction=friction)
-    states, laps = initial.states(scene, replicas, seed), np.zeros((scene.discs, replicas))
+    states, laps = (
+        many_initial_states.states(scene, replicas, seed),
+        np.zeros((scene.discs, replicas)),
+    )
     hops = np.zeros(replicas)
     places = np.empty((number + 1, scene.discs, replicas))
     places[0] = states[: scene.discs]
@@ -202,7 +205,7 @@ def logged(scene, step, number, replicas, seed, friction=None):
     """
     moving = scene if friction is None else replace(scene, friction=friction)
     path, n = engine.Followed(moving, ("horizontal_hop",)), scene.discs
-    states = initial.states(scene, replicas, seed)
+    states = many_initial_states.states(scene, replicas, seed)
     for replica in range(replicas):
         path.start(states[:, replica : replica + 1], seed, replica)
         places, times, pairs = [states[:n, replica]], [], []

@@ -24,13 +24,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.many import LARGE, arrangement, is_ordered
+from twodiscs.model.many_geometry import LARGE, arrangement, is_ordered
+from twodiscs.sampling.conditioned import draw_in_disc
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import chains, insertions
-from twodiscs.sampling.many.cells import CellGrid, grid_of
+from twodiscs.sampling.many.cell_grid import CellGrid, grid_of
 from twodiscs.sampling.many.insertions import around, is_free
-from twodiscs.sampling.rounds import draw_in_calls, in_a_thread
-from twodiscs.sampling.separations import draw_in_disc
+from twodiscs.sampling.rounds import call_in_thread, draw_in_calls
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
 from twodiscs.theory import channel
 
@@ -166,7 +166,7 @@ def _cells(scene):
     cells = len(ends) - 1
     weights, backward = np.empty((cells, cells)), np.ones((n, cells))
     sizes = scene.contact_distance, b, known.least
-    in_a_thread(fill_cells, ends, tilt, *sizes, weights, backward)
+    call_in_thread(fill_cells, ends, tilt, *sizes, weights, backward)
     return Cells(ends, weights, backward, room, known.least, (1 - 2.0**-20) / bound, turned)
 
 
@@ -445,7 +445,7 @@ def labelled(scene, number, seed, block=0, progress=None):
     initial = initial_of(scene)
     filled = np.zeros((initial.rows, number))
     seeds = np.uint64(seed), ~np.uint64(seed)
-    stream, labels = (in_a_thread(open_stream, each, block) for each in seeds)
+    stream, labels = (call_in_thread(open_stream, each, block) for each in seeds)
     seconds = 0.0
 
     def fill(first, stop):

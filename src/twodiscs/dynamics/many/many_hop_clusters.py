@@ -18,14 +18,14 @@ import numpy as np
 
 from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK, open_kicks, renew_kicks
 from twodiscs.dynamics.law import crossing_time
-from twodiscs.dynamics.many import lockstep
-from twodiscs.dynamics.many.lockstep import COLLISIONS, ManyLaw, law_of
-from twodiscs.dynamics.two.passages import LARGEST_CLUSTER, SUMS
+from twodiscs.dynamics.many import all_pairs
+from twodiscs.dynamics.many.all_pairs import COLLISIONS, ManyLaw, law_of
+from twodiscs.dynamics.two.hop_clusters import LARGEST_CLUSTER, SUMS
 from twodiscs.model.checks import InputError
-from twodiscs.model.many import LARGE
+from twodiscs.model.many_geometry import LARGE
 from twodiscs.model.scene import hopping_along
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.many import initial, insertions
+from twodiscs.sampling.many import insertions, many_initial_states
 from twodiscs.sampling.many.insertions import is_free
 from twodiscs.sampling.streams import open_stream, signed_uniform, uniform
 from twodiscs.theory import n_discs
@@ -42,7 +42,7 @@ LEAST_ACCEPTED = 1e-4
 class Pair(NamedTuple):
     """The constants of a pair on its surface among other discs; ``room`` is B − σ."""
 
-    sampler: initial.Initial
+    sampler: many_initial_states.Initial
     room: float
     law: ManyLaw
 
@@ -50,7 +50,9 @@ class Pair(NamedTuple):
 def pair_of(scene, hop):
     """Return the ``Pair`` of a ``Scene``, turned by a quarter if the ``hop`` is along y."""
     scene, hop = hopping_along(scene, hop, "x")
-    return Pair(initial.initial_of(scene, "rejection"), scene.room(hop), law_of(scene))
+    return Pair(
+        many_initial_states.initial_of(scene, "rejection"), scene.clearance(hop), law_of(scene)
+    )
 
 
 @compiled
@@ -61,7 +63,7 @@ def draw_on_surface(state, pair, states, most):
     """
     sampler, proposals = pair.sampler, 0
     n, ring, spin = sampler.discs, sampler.ring, sampler.spin
-    centres, (velocities, cuts) = np.empty((2, n)), initial.velocity_memory(n, spin)
+    centres, (velocities, cuts) = np.empty((2, n)), many_initial_states.velocity_memory(n, spin)
     for k in range(states.shape[1]):
         i = 0
         while i < n:
@@ -81,10 +83,10 @@ def draw_on_surface(state, pair, states, most):
                 centres[0, i], centres[1, i] = x, y
                 i = i + 1 if is_free(centres, i, x, y, sampler, -1) else 0
         while True:
-            initial.draw_velocities(state, velocities, cuts, ring, spin)
+            many_initial_states.draw_velocities(state, velocities, cuts, ring, spin)
             if math.sqrt(2.0) * uniform(state) < abs(velocities[0, 0] - velocities[0, 1]):
                 break
-        initial.put_state(states, k, centres, velocities, spin)
+        many_initial_states.put_state(states, k, centres, velocities, spin)
     return states.shape[1], proposals
 
 
@@ -96,17 +98,17 @@ def follow_pair(states, remaining, gap, net, hops, law, kicks):
     (above 0) a lane goes on after each hop for this time, up to ``LARGEST_CLUSTER`` hops. Returns
     the number of wall hits and collisions.
     """
-    lanes = lockstep.lanes_of(states, remaining, law)
+    lanes = all_pairs.lanes_of(states, remaining, law)
     x, u, old_x, times = lanes.x, lanes.u, lanes.old_x, lanes.times
     rising = np.zeros(remaining.size)
     while np.max(remaining) > 0.0:
         for l in range(remaining.size):
             rising[l] = u[0, l] - u[1, l]
-        lockstep.sweep(lanes, law, None, kicks)
+        all_pairs.sweep(lanes, law, None, kicks)
         for l in range(remaining.size):
             apart = old_x[0, l] - old_x[1, l]
-            if lockstep.changes_order(apart, x[0, l] - x[1, l], law.ring):
-                apart = lockstep.nearest(apart, law.ring)
+            if all_pairs.changes_order(apart, x[0, l] - x[1, l], law.ring):
+                apart = all_pairs.nearest(apart, law.ring)
                 net[l] += math.copysign(1.0, rising[l])
                 hops[l] += 1.0
                 if gap > 0.0:
@@ -178,7 +180,7 @@ def _followed(scene, hop, times, gap, blocks, seed, first):
     sums = np.zeros((blocks, SUMS, len(times)), np.int64)
     sizes = np.zeros(LARGEST_CLUSTER + 1, np.int64)
     run = np.uint64(seed), first, first + blocks, np.array(times), gap, pair_of(scene, hop)
-    return sums, sizes, follow_blocks(*run, sums, sizes, lockstep.new_kicks(scene, HOPS_OF_BLOCK))
+    return sums, sizes, follow_blocks(*run, sums, sizes, all_pairs.new_kicks(scene, HOPS_OF_BLOCK))
 
 
 def hop_sums(scene, hop, times, blocks, seed, first=0):
@@ -199,7 +201,7 @@ def require_coefficient(scene, hop):
         raise InputError(f"discs must be at most {LARGE - 1} for passages, not {scene.discs}")
     if scene.periodic and hop != "horizontal_hop":
         raise InputError(f"hop must be horizontal_hop for passages on a ring, not {hop!r}")
-    if not (scene.room(hop) > 0 if scene.periodic else scene.is_possible(hop)):
+    if not (scene.clearance(hop) > 0 if scene.periodic else scene.is_possible(hop)):
         raise InputError(
             f"hop {hop!r} must be open for passages, but is blocked at radius {scene.radius!r}"
         )
@@ -238,6 +240,6 @@ def hop_rate(scene, hop):
     accepted, proposals = surface_fraction(scene, hop)
     volume, _ = insertions.sample(scene, SAMPLES, 0)
     a, b, n = scene.range_x, scene.range_y, scene.discs
-    level = n * (n - 1) / 2 * (scene.room(hop) / b) ** 2 / a * accepted / proposals
+    level = n * (n - 1) / 2 * (scene.clearance(hop) / b) ** 2 / a * accepted / proposals
     empty = math.exp(n * math.log(a * b) - volume.log_volume)
     return math.sqrt(2) * flux_constant(scene.velocity_components) * level * empty

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.model.events import AXIS
+from twodiscs.sampling.conditioned import draw_in_disc
 from twodiscs.sampling.jit import compiled, optional
-from twodiscs.sampling.separations import draw_in_disc
 from twodiscs.sampling.streams import largest_of, next_bits, signed_uniform, uniform
 
 
@@ -31,7 +31,7 @@ class Neck(NamedTuple):
     most: float  # the largest kinetic fraction of the energy
 
 
-class PrismSampler(NamedTuple):
+class RejectionSampler(NamedTuple):
     """The constants of a scene for draws by rejection; None for absent effects.
 
     The centre of disc i lies within ±half_xi, half the side where the axis is periodic; ``period``
@@ -67,8 +67,8 @@ def neck_of(scene, hop, within):
     return Neck("xy".index(axis), float(within), tuple(least.values()), tuple(span.values()), most)
 
 
-def prism_of(scene, hop=None, within=None):
-    """Return the ``PrismSampler`` of a ``Scene``, for a ``hop`` in its neck (see ``neck_of``)."""
+def rejection_sampler(scene, hop=None, within=None):
+    """Return the ``RejectionSampler`` of a ``Scene``, for a ``hop`` in its neck (``neck_of``)."""
 
     def half(axis, radius):
         if axis not in scene.axes:
@@ -76,7 +76,7 @@ def prism_of(scene, hop=None, within=None):
         return (scene.side(axis) - (0 if axis in scene.periodic else 2 * radius)) / 2
 
     (m1, m2), inertia = scene.masses, scene.moment_of_inertia
-    return PrismSampler(
+    return RejectionSampler(
         half_1=tuple(half(axis, scene.radii[0]) for axis in "xyz"),
         half_2=tuple(half(axis, scene.radii[1]) for axis in "xyz"),
         period=tuple(scene.side(axis) if axis in scene.periodic else 0.0 for axis in "xyz"),

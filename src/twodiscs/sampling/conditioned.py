@@ -23,7 +23,7 @@ from twodiscs.sampling.jit import compiled, inlined
 from twodiscs.sampling.streams import largest_of, next_bits, signed_uniform, uniform
 
 
-class SeparationSampler(NamedTuple):
+class ConditionedSampler(NamedTuple):
     """The constants of a scene for draws of separations: lengths, and weights without unit."""
 
     half_x: float  # a
@@ -41,8 +41,8 @@ class SeparationSampler(NamedTuple):
     mass: float  # integral of the proposal; the acceptance is V/2 over it
 
 
-def separation_sampler(scene, within=None):
-    """Return the ``SeparationSampler`` of a ``Scene``; with u < ``within`` < σ, if that is given.
+def conditioned_sampler(scene, within=None):
+    """Return the ``ConditionedSampler`` of a ``Scene``; with u < ``within`` < σ, if that is given.
 
     Such a strip needs an open horizontal hop: σ < B. Differences of lengths that cancel near a
     threshold or near the largest radius are computed from exact fractions and rounded once.
@@ -78,7 +78,7 @@ def separation_sampler(scene, within=None):
         parts.append(c * math.prod([span] * (j + 2)) / ((j + 1) * (j + 2)))
     total = math.fsum(parts)
     cumulative = tuple(math.fsum(parts[: i + 1]) / total for i in range(len(parts)))
-    return SeparationSampler(
+    return ConditionedSampler(
         range_x / 2, range_y / 2, range_y, sigma, arch, start, stop, span, beyond_x, beyond_y,
         least_k, cumulative, total,
     )  # fmt: skip

@@ -40,9 +40,9 @@ from twodiscs.dynamics.two.follow import across, follow
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import AXIS
 from twodiscs.model.scene import hopping_along
+from twodiscs.sampling.initial_states import StartSampler, require_initial_states
 from twodiscs.sampling.jit import inlined
-from twodiscs.sampling.prism import prism_of
-from twodiscs.sampling.starts import StartSampler, require_room
+from twodiscs.sampling.rejection import rejection_sampler
 from twodiscs.theory import exact
 
 #: Clusters of this many hops, or more, are in one class. It counts as even, which makes κ too small
@@ -161,7 +161,7 @@ class Clusters(NamedTuple):
 
 def require_coefficient(scene, hop):
     """Raise ``InputError`` unless the hops of a ``Scene`` can have a transmission coefficient."""
-    require_room(scene)
+    require_initial_states(scene)
     if AXIS[hop] in scene.periodic:
         raise InputError(
             f"hop {hop!r} must be between walls for a transmission coefficient, but its axis is "
@@ -184,9 +184,11 @@ def _axis(hop):
 
 def _followed(experiment, scene, hop, blocks, seed, first, on_surface=True):
     """Follow the hops of an ``experiment`` and return the number of wall hits and collisions."""
-    sampler = StartSampler(None, prism_of(scene))
+    sampler = StartSampler(None, rejection_sampler(scene))
     if on_surface:
-        sampler = StartSampler(None, prism_of(scene, hop, 0.0), surface="xy".index(AXIS[hop]))
+        sampler = StartSampler(
+            None, rejection_sampler(scene, hop, 0.0), surface="xy".index(AXIS[hop])
+        )
     stop, shape = first + blocks, (HOPS_OF_BLOCK, LANES, SHORT_SWEEPS)
     follow(experiment, scene, sampler, seed, first, stop, *shape)
     return int(experiment.events.sum())

@@ -11,7 +11,7 @@ from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
 
-from twodiscs.analysis.tables import Cost, MeanTimes, shortfall
+from twodiscs.analysis.tables import CostTable, MeanTimesTable, shortfall
 from twodiscs.model.checks import format_number, format_seconds
 from twodiscs.theory import exact
 from twodiscs_paper.catalogue import STUDIES
@@ -87,7 +87,7 @@ def _events(scene, radius):
     every, most = exact.event_rate(one), 0.0
     for event, error in scene.target.items():
         if one.is_possible(event):
-            rate = exact.rate(one, event) * one.copies(event)
+            rate = exact.rate(one, event) * one.multiplicity(event)
             most = max(most, (2 * every / rate + 256 / 6) / error**2)
     return most
 
@@ -210,7 +210,7 @@ def taken(results, scene):
     speed is that of the fastest job: the first jobs compile.
     """
     path, found = Path(results, scene["name"], "cost.csv"), {}
-    for row in Cost.read(path) if path.exists() else ():
+    for row in CostTable.read(path) if path.exists() else ():
         jobs = found.setdefault(row["stage"], {})
         jobs[row["radius"]] = row["events"], row["seconds"]
     return {
@@ -226,7 +226,7 @@ def missed(results, scene):
     """
     path, found = Path(results, scene["name"], "mean_times.csv"), []
     jobs, speed = taken(results, scene).get("dynamics", ({}, None))
-    table = MeanTimes.read(path) if path.exists() else ()
+    table = MeanTimesTable.read(path) if path.exists() else ()
     for radius, rows in groupby(table, itemgetter("radius")):
         events, _ = jobs.get(radius, (None, None))
         seconds = events / speed if events and speed else None

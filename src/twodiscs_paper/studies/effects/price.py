@@ -74,7 +74,7 @@ def lockstep(blocks=BLOCKS, scene=SCENE, events=EVENTS, bare=None):
     engine = runs.engine_of(scene)
     duration, run_blocks = engine.replica_duration(scene), engine.run_blocks
     if bare:
-        run_blocks = import_module(f"{bare}.dynamics.two.lockstep").run_blocks
+        run_blocks = import_module(f"{bare}.dynamics.two.event_counts").run_blocks
     counted, seconds = timed(lambda: run_blocks(scene, events, 1, 0, blocks, duration))
     return runs.simulated_events(counted[0]), seconds
 
@@ -136,7 +136,7 @@ def package_without_effects():
         sys.path.insert(0, folder)
         try:
             import_module(f"{name}.dynamics.runs")
-            import_module(f"{name}.dynamics.two.lockstep")
+            import_module(f"{name}.dynamics.two.event_counts")
         finally:
             sys.path.remove(folder)
     return name
@@ -150,7 +150,9 @@ def instructions(work, package):
     loop_of = import_module(f"{package}.dynamics.two.follow").loop_of
     loop_of.cache_clear()
     work()
-    (kernel,) = loop_of(import_module(f"{package}.dynamics.two.lockstep").Counts).overloads.values()
+    (kernel,) = loop_of(
+        import_module(f"{package}.dynamics.two.event_counts").Counts
+    ).overloads.values()
     library = kernel.library
     module = library._get_module_for_linking()
     return len(re.findall(r"^\t[a-z]", library._codegen._tm.emit_assembly(module), re.MULTILINE))

@@ -6,9 +6,9 @@ import numpy as np
 
 from twodiscs.dynamics.two import path
 from twodiscs.model.checks import InputError, check_length, format_number
-from twodiscs.model.two import ENERGY
-from twodiscs.sampling.rounds import in_threads
-from twodiscs.sampling.starts import MOST_NUMBERS, ROUNDING, components, given_state, states
+from twodiscs.model.two_geometry import ENERGY
+from twodiscs.sampling.initial_states import MOST_NUMBERS, ROUNDING, components, given_state, states
+from twodiscs.sampling.rounds import map_in_threads
 
 #: The most events of a trajectory, because all its rows are kept. Those of many discs have at most
 #: ``MOST_NUMBERS``.
@@ -112,7 +112,7 @@ def followed(scene, seed, start=None, duration=None, progress=None):
     else:
         start = state_of(scene, start)
     rows, events = [], events_of(scene, start, float(duration), seed)
-    for some in in_threads(lambda: [*islice(events, ROWS)], repeat(())):
+    for some in map_in_threads(lambda: [*islice(events, ROWS)], repeat(())):
         rows += some
         if progress is not None:
             progress(rows[-1][0], float(duration))

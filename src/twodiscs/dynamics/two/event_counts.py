@@ -13,8 +13,8 @@ from twodiscs.dynamics.law import DISC, END_OF_TIME, WALL_X1, WALL_X2, WALL_Y1, 
 from twodiscs.dynamics.two import strip
 from twodiscs.dynamics.two.follow import follow
 from twodiscs.model.events import DECLARED, EVENTS, HOPS, WALLS, by_kind
+from twodiscs.sampling.initial_states import start_sampler
 from twodiscs.sampling.jit import inlined, optional
-from twodiscs.sampling.starts import start_sampler
 from twodiscs.theory import exact
 
 #: Sweeps between two unpackings of the counts: a packed count must be below 256.
@@ -29,12 +29,12 @@ EVENTS_BETWEEN_RARE_HOPS = 64
 # How events are counted --------------------------------------------------------------------------
 
 # Functions that say whether a flight has an event. They take the code of its end, the states before
-# and after, ``identical`` (None for discs that differ) and ``gravity`` (None without a field).
+# and after, ``identical`` (None for discs that differ) and ``field`` (None without a field).
 
 
 def _hop_seen(event):
     k = "xy".index(event.axis)
-    return lambda code, a, b, identical, gravity: crosses(a[k] - a[k + 2], b[k] - b[k + 2])
+    return lambda code, a, b, identical, field: crosses(a[k] - a[k + 2], b[k] - b[k + 2])
 
 
 @optional(lambda code, first, second, identical: code == first)
@@ -43,33 +43,33 @@ def hit(code, first, second, identical):
     return (code == first) | (code == second)
 
 
-@optional(lambda position, side, gravity: True)
-def facing(position, side, gravity):
+@optional(lambda position, side, field: True)
+def facing(position, side, field):
     """Say whether a disc is on the wall of a ``side``, which matters in a field."""
     return position * side > 0.0
 
 
-# A wall event counts the hits of all pairs of a disc and a wall in ``Scene.copies``.
+# A wall event counts the hits of all pairs of a disc and a wall in ``Scene.multiplicity``.
 
 
 def _wall_seen(event):
     if event.axis == "x":
-        return lambda code, a, b, identical, gravity: hit(code, WALL_X1, WALL_X2, identical)
+        return lambda code, a, b, identical, field: hit(code, WALL_X1, WALL_X2, identical)
     side = float(event.side)
-    return lambda code, a, b, identical, gravity: (
+    return lambda code, a, b, identical, field: (
         hit(code, WALL_Y1, WALL_Y2, identical)
-        & facing(b[1] if code == WALL_Y1 else b[3], side, gravity)
+        & facing(b[1] if code == WALL_Y1 else b[3], side, field)
     )
 
 
 SEEN = by_kind(
-    "dynamics/two/lockstep.py",
+    "dynamics/two/event_counts.py",
     {
         "hop": _hop_seen,
-        "collision": lambda event: lambda code, a, b, identical, gravity: code == DISC,
+        "collision": lambda event: lambda code, a, b, identical, field: code == DISC,
         "wall": _wall_seen,
         # Collisions of the discs count, too; see ``all_walls``.
-        "walls": lambda event: lambda code, a, b, identical, gravity: code > END_OF_TIME,
+        "walls": lambda event: lambda code, a, b, identical, field: code > END_OF_TIME,
     },
 )
 
@@ -85,28 +85,28 @@ BESIDE, ABOVE = EVENTS.index("right_wall"), EVENTS.index("top_wall")
 #: the events that the first one has no room for.
 FIELDS = 6
 if N > 2 * FIELDS:
-    raise TypeError(f"dynamics/two/lockstep.py has room for {2 * FIELDS} events, not for {N}")
+    raise TypeError(f"dynamics/two/event_counts.py has room for {2 * FIELDS} events, not for {N}")
 
 
 def _and(add, event, unit):
     """Return ``add`` extended by an ``event``: a flight with it adds a ``unit`` to the count."""
     seen, k = inlined(SEEN[event]), TRACKED[DECLARED[event].kind]
 
-    @optional(lambda count, code, before, after, identical, gravity, tracked: count)
-    def add_one(count, code, before, after, identical, gravity, tracked):
-        return count + (unit if seen(code, before, after, identical, gravity) else 0.0)
+    @optional(lambda count, code, before, after, identical, field, tracked: count)
+    def add_one(count, code, before, after, identical, field, tracked):
+        return count + (unit if seen(code, before, after, identical, field) else 0.0)
 
     @inlined
-    def add_all(count, code, before, after, identical, gravity, tracked):
-        count = add(count, code, before, after, identical, gravity, tracked)
-        return add_one(count, code, before, after, identical, gravity, tracked[k])
+    def add_all(count, code, before, after, identical, field, tracked):
+        count = add(count, code, before, after, identical, field, tracked)
+        return add_one(count, code, before, after, identical, field, tracked[k])
 
     return add_all
 
 
 def _word(events):
     """Return a function that adds the ``events`` of a flight to a packed ``count``."""
-    add = inlined(lambda count, code, before, after, identical, gravity, tracked: count)
+    add = inlined(lambda count, code, before, after, identical, field, tracked: count)
     for field, event in enumerate(events):
         add = _and(add, event, 256.0**field)
     return add
@@ -125,14 +125,14 @@ class Counts(NamedTuple):
     """The experiment: how often each event happens in a ``duration``.
 
     ``tracked`` says which events are detected (see ``TRACKED``). ``identical`` discs and
-    ``gravity`` are as in ``_wall_seen``. ``sums`` are Σ N_e over all replicas (n, int64), in the
+    ``field`` are as in ``_wall_seen``. ``sums`` are Σ N_e over all replicas (n, int64), in the
     order of EVENTS, and ``products`` Σ N_e N_f for e ≤ f (n, n).
     """
 
     duration: float
     tracked: tuple
     identical: bool | None
-    gravity: float | None
+    field: float | None
     packed: np.ndarray  # (lanes,), the first events
     more: np.ndarray  # (lanes,), the others
     counts: np.ndarray  # (n, lanes), what was unpacked
@@ -148,7 +148,7 @@ class Counts(NamedTuple):
     def note(self, i, before, after, code, time, left):
         """Add the events of a flight to the packed counts."""
         first_count, second_count = self.packed[i], self.more[i] if N > FIELDS else 0.0
-        flight = code, before, after, self.identical, self.gravity, self.tracked
+        flight = code, before, after, self.identical, self.field, self.tracked
         self.packed[i] = first_word(first_count, *flight)
         if N > FIELDS:
             self.more[i] = second_word(second_count, *flight)
@@ -185,7 +185,7 @@ def unpack(counting, i):
 
 def expected_rate(scene, event):
     """Return the exact rate of all events that count as ``event``."""
-    return exact.rate(scene, event) * scene.copies(event)
+    return exact.rate(scene, event) * scene.multiplicity(event)
 
 
 def replica_duration(scene):
@@ -233,7 +233,7 @@ def run_blocks(
         duration=float(duration),
         tracked=(hops, walls, rest, True),
         identical=scene.identical or None,
-        gravity=scene.field or None,
+        field=scene.field or None,
         packed=np.zeros(lanes),
         more=np.zeros(lanes),
         counts=np.zeros((N, lanes), np.int64),

@@ -17,7 +17,7 @@ from twodiscs_paper.configuration.model import (
     Model,
 )
 from twodiscs_paper.configuration.request import Configuration
-from twodiscs_paper.configuration.scene import scene_request
+from twodiscs_paper.configuration.scene_block import scene_request
 from twodiscs_paper.configuration.schema import keys
 
 #: The range of sides that the study of stability can take: lengths end at 1e-60 and 1e60.

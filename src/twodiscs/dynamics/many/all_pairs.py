@@ -31,7 +31,7 @@ from twodiscs.dynamics.law import (
     wall_quotient,
 )
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.many import initial
+from twodiscs.sampling.many import many_initial_states
 
 #: A flight on a ring that ends without an event.
 LOOK_AGAIN = -1.0
@@ -84,14 +84,15 @@ def lanes_of(states, remaining, law):
     n, lanes = discs_in(states, law.rough), remaining.size
     return Lanes(
         states[:n], states[n : 2 * n], states[2 * n : 3 * n], states[3 * n : 4 * n],
-        initial.spins_in(states, n, law.rough), np.zeros((n, lanes)), np.zeros((n, lanes)),
+        many_initial_states.spins_in(states, n, law.rough),
+        np.zeros((n, lanes)), np.zeros((n, lanes)),
         remaining, np.zeros(lanes), np.zeros(lanes), np.zeros(lanes), np.zeros((N, lanes)),
     )  # fmt: skip
 
 
 def law_of(scene):
     """Return the ``ManyLaw`` of a ``Scene``."""
-    half_x, ring, rough, spin = scene.range_x / 2, None, None, initial.spin_of(scene)
+    half_x, ring, rough, spin = scene.range_x / 2, None, None, many_initial_states.spin_of(scene)
     if scene.periodic:
         half_x, half = None, scene.width / 2
         ring = scene.width, half, half / math.sqrt(2)
@@ -107,7 +108,7 @@ def new_kicks(scene, lanes):
     """
     if not scene.friction:
         return None
-    velocities, cuts = initial.velocity_memory(scene.discs, scene.moment_of_inertia)
+    velocities, cuts = many_initial_states.velocity_memory(scene.discs, scene.moment_of_inertia)
     return ensemble.idle_kicks(lanes, scene.friction, cuts, velocities)
 
 
@@ -128,8 +129,10 @@ def redraw(u, v, spins, l, lane, law, kicks):
     ``spins`` of rough discs are drawn with them.
     """
     discs, mean, velocity = u.shape[0], drift(u, l, law.spin, law.ring), kicks.velocity
-    initial.draw_velocities(kicks.streams[lane], velocity, kicks.direction, law.ring, law.spin)
-    initial.put_spins(velocity, spins, l, law.rough)
+    many_initial_states.draw_velocities(
+        kicks.streams[lane], velocity, kicks.direction, law.ring, law.spin
+    )
+    many_initial_states.put_spins(velocity, spins, l, law.rough)
     scale = math.sqrt(max(1.0 - discs * mean * mean, 0.0))
     for i in range(discs):
         u[i, l], v[i, l] = mean + scale * velocity[0, i], scale * velocity[1, i]

@@ -70,8 +70,8 @@ class Figure:
     an effect in ``without``; ``discs`` counts as an effect if there are more than two.
 
     A figure of a study, of no scene, also reads the ``main_tables`` of the first scene without
-    effects, if there are any. ``kept`` are the long runs that it reads, {name: path of a table from
-    the root of the sources}.
+    effects, if there are any. ``long_runs`` are the long runs that it reads, {name: path of a table
+    from the root of the sources}.
     """
 
     title: str
@@ -83,7 +83,7 @@ class Figure:
     curves: Curves | None = None
     without: frozenset = frozenset()
     main_tables: tuple = ()
-    kept: dict = field(default_factory=dict)
+    long_runs: dict = field(default_factory=dict)
 
     def is_called(self, quantities, effects=()):
         """Return whether a scene that computes the ``quantities`` has the figure.

@@ -11,16 +11,21 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.model.checks import InputError, quote
-from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.prism import PrismSampler, draw_in_prism, draw_velocities, prism_of
-from twodiscs.sampling.rounds import draw_in_calls, in_a_thread
-from twodiscs.sampling.separations import (
-    SeparationSampler,
+from twodiscs.sampling.conditioned import (
+    ConditionedSampler,
+    conditioned_sampler,
     draw_configuration,
     draw_crossing,
     draw_velocity,
-    separation_sampler,
 )
+from twodiscs.sampling.jit import compiled, inlined, optional
+from twodiscs.sampling.rejection import (
+    RejectionSampler,
+    draw_in_prism,
+    draw_velocities,
+    rejection_sampler,
+)
+from twodiscs.sampling.rounds import call_in_thread, draw_in_calls
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 
@@ -40,7 +45,7 @@ COMPONENTS = 12
 ROUNDING = 1e-9
 
 
-def require_room(scene):
+def require_initial_states(scene):
     """Raise ``InputError`` for a ``Scene`` whose initial states cannot be drawn or followed."""
     scene.require_followable()
     require_free_fraction(scene)
@@ -98,8 +103,8 @@ class StartSampler(NamedTuple):
     they are of the invariant measure. Plain scenes have the surface y1 = y2 only.
     """
 
-    separations: SeparationSampler | None
-    prism: PrismSampler | None
+    separations: ConditionedSampler | None
+    prism: RejectionSampler | None
     order: tuple = (0, 0)
     surface: int | None = None
 
@@ -109,11 +114,11 @@ def start_sampler(scene, hop=None, within=None, order=(0, 0), surface=None):
 
     With a ``hop`` their states are ``within`` a distance of its surface, at most √2 times the
     smaller radius; in a plain scene the hop is horizontal. For a scene with effects call
-    ``require_room`` first, because draws from its prism may hardly ever be accepted.
+    ``require_initial_states`` first, because draws from its prism may hardly ever be accepted.
     """
     if scene.is_plain:
-        return StartSampler(separation_sampler(scene, within), None, order, surface)
-    return StartSampler(None, prism_of(scene, hop, within), order, surface)
+        return StartSampler(conditioned_sampler(scene, within), None, order, surface)
+    return StartSampler(None, rejection_sampler(scene, hop, within), order, surface)
 
 
 @inlined
@@ -188,14 +193,14 @@ def states(scene, number, seed, block=0, order=(0, 0), progress=None):
     ``draw_configuration``). N > 2 discs have the rows of ``components``. ``progress``, if given, is
     called repeatedly with the number of drawn states, and ``number``.
     """
-    require_room(scene)
+    require_initial_states(scene)
     if scene.discs > 2:
-        from twodiscs.sampling.many.initial import labelled
+        from twodiscs.sampling.many.many_initial_states import labelled
 
         return labelled(scene, number, seed, block, progress)
     filled = np.zeros((COMPONENTS, number))
     sampler = start_sampler(scene, order=order)
-    stream = in_a_thread(open_stream, np.uint64(seed), block)
+    stream = call_in_thread(open_stream, np.uint64(seed), block)
 
     # The kernel fills whole arrays, continues the stream, and does not use all rows.
     used, buffer = len(components(scene)), np.zeros((COMPONENTS, min(number, PIECE)))

@@ -101,7 +101,7 @@ def _confined(scene, axis):
     return _lowest_potential(scene, scene.squared_reaches(axis, "y") + behind) >= ENERGY
 
 
-def copies(scene, event):
+def multiplicity(scene, event):
     """Return the number of events with the rate of ``event``, an ``Event``, see ``Scene``."""
     if event.kind != "wall":
         return 1

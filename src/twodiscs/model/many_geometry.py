@@ -72,7 +72,7 @@ def confined(scene):
     return False, False
 
 
-def copies(scene, event):
+def multiplicity(scene, event):
     """Return the number of events with the rate of ``event``, an ``Event``, see ``Scene``."""
     return 2 * scene.discs if event.kind == "wall" else 1
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.many import LEAST_SIDE
+from twodiscs.model.many_geometry import LEAST_SIDE
 from twodiscs.sampling.jit import compiled, inlined, optional
 
 #: The least side of a cell over the root of the area per disc.

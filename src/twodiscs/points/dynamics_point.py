@@ -43,18 +43,18 @@ class Count:
         """Σ N, Σ N² and the number of replicas."""
         return self.count, self.squares, self.replicas
 
-    def time(self, copies=1):
-        """Return the time T · copies/share; over ⟨N⟩ it is the mean time between events.
+    def time(self, multiplicity=1):
+        """Return the time T · multiplicity/share; over ⟨N⟩ it is the mean time between events.
 
-        ``copies`` is the number of events that count as one (``Scene.copies``).
+        ``multiplicity`` is the number of events that count as one (``Scene.multiplicity``).
         """
-        return self.duration * copies / self.share
+        return self.duration * multiplicity / self.share
 
-    def estimate(self, copies=1):
+    def estimate(self, multiplicity=1):
         """Return the mean time between events as an ``Estimate``, None if none was counted."""
         if not self.count:
             return None
-        return estimates.mean_time(*self.sums, self.time(copies), self.mean)
+        return estimates.mean_time(*self.sums, self.time(multiplicity), self.mean)
 
     def bound(self):
         """Return a lower bound on the mean time, valid if no event was counted."""
@@ -156,9 +156,9 @@ class DynamicsPoint(Point):
         """Return the best ``Count`` of an event, from its strip if there is one."""
         return self.strips.get(event) or self.everywhere(event)
 
-    def estimate(self, event, copies=1):
+    def estimate(self, event, multiplicity=1):
         """Return the mean time of ``event`` as an ``Estimate`` (see ``Count.estimate``)."""
-        return self.count(event).estimate(copies)
+        return self.count(event).estimate(multiplicity)
 
     def sums_of_others(self):
         """Return the set of events whose number is the sum of other events' in every replica."""

@@ -1,6 +1,6 @@
 """Counts of events of many equal discs: one trajectory at a time, with local updates at events.
 
-The law of one event is the law of ``lockstep``. Each disc has its own time: it moves straight from
+The law of one event is the law of ``all_pairs``. Each disc has its own time: it moves straight from
 its last event on, and is not updated before its next one. The box is divided into cells whose sides
 are longer than σ. Only discs in the same cell or in neighbouring cells can meet. A disc keeps its
 soonest contact with them, and the time at which it comes to a border of its cell. The outermost
@@ -26,11 +26,11 @@ import numpy as np
 
 from twodiscs.dynamics.ensemble import before_kick, open_kicks
 from twodiscs.dynamics.law import NEVER, VANISHING, contact_quotient, crosses, crossing_time
-from twodiscs.dynamics.many import lockstep
-from twodiscs.dynamics.many.lockstep import ABOVE, BESIDE, COLLISIONS, HORIZONTAL, VERTICAL, N
+from twodiscs.dynamics.many import all_pairs
+from twodiscs.dynamics.many.all_pairs import ABOVE, BESIDE, COLLISIONS, HORIZONTAL, VERTICAL, N
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.many import cells as grids
-from twodiscs.sampling.many.initial import spins_in
+from twodiscs.sampling.many import cell_grid as grids
+from twodiscs.sampling.many.many_initial_states import spins_in
 
 #: The class of the entries of a log that a kick makes, one for each disc.
 KICKS = N
@@ -146,7 +146,7 @@ def new_motion(discs, grid, rough=None):
         np.zeros(discs), np.zeros(discs), np.zeros(discs, np.bool_),
         np.zeros(discs, np.int64), np.zeros(discs, np.int64), np.zeros(discs, np.int64),
         np.full(2 * leaves, NEVER), grids.new_places(discs, grid),
-        lockstep.new_spins(1, discs, rough),
+        all_pairs.new_spins(1, discs, rough),
     )  # fmt: skip
 
 
@@ -308,7 +308,7 @@ def fly(i, now, motion, counts, ring, log, hops, hops_x):
 @inlined
 def collide(i, j, motion, law):
     """Exchange the velocities of two discs along the line of their centres."""
-    dx, dy = lockstep.nearest(motion.x[i] - motion.x[j], law.ring), motion.y[i] - motion.y[j]
+    dx, dy = all_pairs.nearest(motion.x[i] - motion.x[j], law.ring), motion.y[i] - motion.y[j]
     du, dv = motion.u[i] - motion.u[j], motion.v[i] - motion.v[j]
     square = dx * dx + dy * dy
     exchange = (dx * du + dy * dv) / square if square > VANISHING else 0.0
@@ -316,8 +316,8 @@ def collide(i, j, motion, law):
     motion.v[i] -= exchange * dy
     motion.u[j] += exchange * dx
     motion.v[j] += exchange * dy
-    discs = motion.u, motion.v, lockstep.only_lane(motion.s)
-    lockstep.rub_discs(discs, i, discs, j, dx, dy, square > VANISHING, law.rough)
+    discs = motion.u, motion.v, all_pairs.only_lane(motion.s)
+    all_pairs.rub_discs(discs, i, discs, j, dx, dy, square > VANISHING, law.rough)
 
 
 @optional(lambda i, column, columns, motion, laps, ring: column)
@@ -347,7 +347,7 @@ def start_from(states, replica, motion, grid, law):
         motion.time[i] = 0.0
         column = grids.interval_of(motion.x[i], grid.x)
         grids.enter(i, column, grids.interval_of(motion.y[i], grid.y), motion.places, grid)
-    lockstep.copy_spins(spins_in(states, discs, law.rough), replica, 0, motion.s)
+    all_pairs.copy_spins(spins_in(states, discs, law.rough), replica, 0, motion.s)
     look_for_all(motion, grid, law)
 
 
@@ -372,7 +372,7 @@ def kick_discs(motion, laps, grid, law, log, lane, kicks):
     """Draw the velocities of all discs anew, at the time 0 that all have come to."""
     discs = motion.x.size
     u, v = motion.u.reshape((discs, 1)), motion.v.reshape((discs, 1))
-    lockstep.redraw(u, v, motion.s, 0, lane, law, kicks)
+    all_pairs.redraw(u, v, motion.s, 0, lane, law, kicks)
     look_for_all(motion, grid, law)
     for i in range(discs):
         note_event(0.0, KICKS, i, i, motion, laps, law.ring, log)
@@ -428,8 +428,8 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
                 else:
                     x = grid.x[columns if step > 0 else 0]
                 put(i, x, y, now, motion, counts, law.ring, log, hops, hops_x)
-                s = lockstep.only_lane(motion.s)
-                lockstep.rub_walls(motion.u, motion.v, i, not upwards, upwards, s, law.rough)
+                s = all_pairs.only_lane(motion.s)
+                all_pairs.rub_walls(motion.u, motion.v, i, not upwards, upwards, s, law.rough)
                 kind, velocities = (ABOVE, motion.v) if upwards else (BESIDE, motion.u)
                 velocities[i] = -velocities[i]
                 counts[kind] += 1
@@ -475,10 +475,10 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
 def count_events(states, seed, first, duration, epoch, law, grid, hops, hops_x, kicks):
     """Follow the columns of ``states`` (rows, replicas) for a ``duration`` and add up their counts.
 
-    Returns (sums, products) as ``lockstep.count_events`` does. ``hops`` and ``hops_x`` are None
+    Returns (sums, products) as ``all_pairs.count_events`` does. ``hops`` and ``hops_x`` are None
     where hops in y or in x are not counted. ``kicks`` are those of one lane, None without friction.
     """
-    discs = lockstep.discs_in(states, law.rough)
+    discs = all_pairs.discs_in(states, law.rough)
     laps = np.zeros(discs)
     motion, count = new_motion(discs, grid, law.rough), np.zeros(N, np.int64)
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
@@ -490,7 +490,7 @@ def count_events(states, seed, first, duration, epoch, law, grid, hops, hops_x, 
         follow_discs(
             duration, epoch, motion, laps, grid, law, count, lane, kicks, None, hops, hops_x
         )
-        lockstep.add_counts(count, sums, products)
+        all_pairs.add_counts(count, sums, products)
     return sums, products
 
 
@@ -512,10 +512,10 @@ def advance_all(states, laps, time, epoch, law, grid, kicks, hops_x):
             time, epoch, motion, rounds, grid, law, counts[:, 0], replica, kicks, None, None,
             hops_x,
         )  # fmt: skip
-        lockstep.add_hops(counts, replica, hops_x)
+        all_pairs.add_hops(counts, replica, hops_x)
         for i in range(discs):
             states[i, replica], states[discs + i, replica] = motion.x[i], motion.y[i]
             states[2 * discs + i, replica] = motion.u[i]
             states[3 * discs + i, replica] = motion.v[i]
             laps[i, replica] += rounds[i]
-        lockstep.copy_spins(motion.s, 0, replica, spins)
+        all_pairs.copy_spins(motion.s, 0, replica, spins)
