@@ -52,13 +52,13 @@ PARTS = {name: study.parts(CONFIGURATION) for name, study in ALLOWED.items()}
 MADE_BY = {table.name(): study for study in ALLOWED.values() for table in study.tables}
 
 # Jobs read this file, too, and need no forecast.
-if workflow.is_main_process and (days := cost.days(CONFIGURATION.scenes)) > 1:
+if workflow.is_main_process and (days := job_cost.days(CONFIGURATION.scenes)) > 1:
     logger.warning(
         f"This configuration takes about {float(f'{days:.2g}'):g} days of processor time."
     )
 
 if any(re.fullmatch("--dry-?run|-[a-z]*n[a-z]*", word) for word in sys.argv):
-    for sentence in cost.shortfalls(CONFIGURATION.scenes):
+    for sentence in job_cost.shortfalls(CONFIGURATION.scenes):
         logger.warning(sentence)
 
 # The folder of the Python packages.
@@ -137,13 +137,13 @@ def box(w):
 
 def minutes(w, attempt):
     """Return the limit of time of a job at one radius, longer with each retry."""
-    return attempt * cost.minutes(SCENES[w.scene], w.stage)
+    return attempt * job_cost.minutes(SCENES[w.scene], w.stage)
 
 
 def shards(w):
     """Return the shards of a point, none if one job does all its work."""
     folder = f"{RESULTS}/{w.scene}/shards/{w.stage}/{w.radius}"
-    pieces = cost.shards(SCENES[w.scene], w.stage, float(w.radius))
+    pieces = job_cost.shards(SCENES[w.scene], w.stage, float(w.radius))
     return [f"{folder}/{part}-{first}-{stop}.json" for part, first, stop in pieces]
 
 

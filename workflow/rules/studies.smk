@@ -18,7 +18,7 @@ rule study_table:
         table="|".join(MADE_BY),
     threads: lambda w: ALL_CORES if w.table in MADE_BY[w.table].timed else 1
     resources:
-        runtime=lambda w: cost.study_minutes(MADE_BY[w.table], CONFIGURATION),
+        runtime=lambda w: job_cost.study_minutes(MADE_BY[w.table], CONFIGURATION),
     params:
         names=lambda w: [*study_reads(w)],
         given=lambda w: MADE_BY[w.table].parameters(CONFIGURATION),
