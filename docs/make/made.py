@@ -18,7 +18,7 @@ from twodiscs.figures import style
 from twodiscs_paper.catalogue import ALL_FIGURES, STUDIES, STUDY_FIGURES, TABLES
 from twodiscs_paper.configuration.schema import described_keys
 from twodiscs_paper.pipeline.documents import explorer
-from twodiscs_paper.pipeline.documents.manuscript import PaperNumbers
+from twodiscs_paper.pipeline.documents.manuscript import PaperNumbersTable
 
 ROOT = Path(__file__).resolve().parents[2]
 EXPECTED = ROOT / "paper" / "expected"
@@ -93,7 +93,7 @@ def _described(line):
 
 def tables(text, site):
     """Return the page about results with all columns of all tables."""
-    return text + "".join(map(described_table, [*TABLES.values(), PaperNumbers]))
+    return text + "".join(map(described_table, [*TABLES.values(), PaperNumbersTable]))
 
 
 def described_table(table):

@@ -148,7 +148,7 @@ def shards(w):
 
 
 # The long runs that figures read: their paths are known only while this file is read.
-LONG_RUNS = {
+FIGURE_LONG_RUNS = {
     figure: {name: source(path) for name, path in entry.long_runs.items()}
     for figure, entry in ALL_FIGURES.items()
 }
@@ -156,7 +156,10 @@ LONG_RUNS = {
 
 def figure_reads(w):
     """Return {name: path} of the tables that a figure reads, long runs that are kept among them."""
-    return CONFIGURATION.figure_reads(ALL_FIGURES[w.figure], w.get("scene")) | LONG_RUNS[w.figure]
+    return (
+        CONFIGURATION.figure_reads(ALL_FIGURES[w.figure], w.get("scene"))
+        | FIGURE_LONG_RUNS[w.figure]
+    )
 
 
 def radius(w):

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from twodiscs_paper.pipeline.documents.manuscript import PaperNumbers, typeset
+from twodiscs_paper.pipeline.documents.manuscript import PaperNumbersTable, typeset
 from twodiscs_paper.pipeline.job import start
 
 start(snakemake.log[0])
@@ -15,4 +15,4 @@ numbers = typeset(
     params.seed,
     params.configuration,
 )
-PaperNumbers.write(snakemake.output.numbers, numbers)
+PaperNumbersTable.write(snakemake.output.numbers, numbers)

@@ -42,7 +42,7 @@ def captions(scene):
 def typeset(template, output, scenes, figures, seed, configuration):
     """Compile the Typst file ``template`` to the PDF file ``output``; return its numbers.
 
-    The numbers are rows of ``PaperNumbers``, from numbers.typ beside the template. Typst reads the
+    The numbers are rows of ``PaperNumbersTable``, from numbers.typ beside the template. Typst reads the
     tables and figures below the folder of ``output``. ``scenes`` are [{"name", "width", "height",
     "tables": [names], "figures": [names]}], and the manuscript is about the first of them. The
     ``figures`` of studies are names, too. ``configuration`` is its hash. The template finds all
