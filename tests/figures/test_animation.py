@@ -47,6 +47,20 @@ def at(*events, end=1000.0):
     return [{"time": time, "event": event} for time, event in rows]
 
 
+def drawn(box, radius, rows):
+    """Return the motion of a trajectory, the circles and the other moving parts of its picture."""
+    motion = animation.Motion(box, radius, rows)
+    with style.context():
+        _, circles, others = animation.draw(motion)
+    return motion, circles, others
+
+
+def show(time, circles, others):
+    """Move all parts to their places at a ``time``."""
+    for _, move in [*others.values(), *(part for parts in circles.values() for part in parts)]:
+        move(time)
+
+
 # Which moments are shown -------------------------------------------------------------------------
 
 
@@ -88,7 +102,7 @@ def test_the_hop_is_a_frame_and_the_only_one_that_stops(rows, tmp_path, monkeypa
     paths = [tmp_path / f"a.{kind}" for kind in ("gif", "png", "html")]
     with style.context():
         animation.animate(BOX, RADIUS, rows, paths)
-        stage = animation.Stage(BOX, RADIUS, rows)
+    motion = animation.Motion(BOX, RADIUS, rows)
     frames, png = map(unpacked, paths[:2])
     text = paths[2].read_text(encoding="utf-8")
     assert "http" not in text
@@ -100,10 +114,11 @@ def test_the_hop_is_a_frame_and_the_only_one_that_stops(rows, tmp_path, monkeypa
             assert ours[0] == theirs[0]
             np.testing.assert_array_equal(ours[1], theirs[1])
 
-    assert stage.hop == "horizontal_hop"
-    assert stage.centre in [row["time"] for row in rows if row["event"] == stage.hop]
-    assert abs(stage.apart([stage.centre])[0]) < 1e-12
-    assert stage.apart([stage.times[0]])[0] * stage.apart([stage.times[-1]])[0] < 0
+    assert motion.hop == "horizontal_hop"
+    assert motion.centre in [row["time"] for row in rows if row["event"] == motion.hop]
+    before, now, after = motion.separation([motion.frames[0], motion.centre, motion.frames[-1]])
+    assert abs(now) < 1e-12
+    assert before * after < 0
     shown = [milliseconds for milliseconds, _ in frames]
     assert shown == [*([FRAME] * FEW), HOP, *([FRAME] * (FEW - 1)), LAST]
     orange = np.array([0xE6, 0x9F, 0x00])
@@ -124,22 +139,22 @@ def test_discs_are_where_the_trajectory_has_them(scene):
     Marks turn by the spins, whose times are those between two rows.
     """
     path = td.trajectory(scene, duration=60)
-    with style.context():
-        stage = animation.Stage(Box.of(scene), scene.radius, path.to_dict("records"))
+    motion, circles, others = drawn(Box.of(scene), scene.radius, path.to_dict("records"))
     times = np.linspace(0, 60, 50)
     states = path.states_at(times)
     for disc in (1, 2):
         due = np.column_stack([states[f"x{disc}"], states[f"y{disc}"]])
-        places = stage.places(disc, times)
+        places = motion.places(disc, times)
         np.testing.assert_allclose(places, due, atol=1e-12)
-        assert (np.abs(stage.folded(places)) <= [0.7501, 0.5001]).all()
-    for time in stage.times[::20]:
-        stage.show(time)
+        assert (np.abs(motion.fold(places)) <= [0.7501, 0.5001]).all()
+    for time in motion.frames[::20]:
+        show(time, circles, others)
         for disc, radius in enumerate(scene.radii, 1):
-            (due,) = stage.folded(stage.places(disc, [time]))
-            assert stage.moving[f"disc {disc}"].center == pytest.approx(tuple(due))
+            (due,) = motion.fold(motion.places(disc, [time]))
+            assert circles[disc][0][0].center == pytest.approx(tuple(due))
+            assert (f"mark {disc}" in others) == bool(scene.moment_of_inertia)
             if scene.moment_of_inertia:
-                (x1, x2), (y1, y2) = stage.moving[f"spin {disc}"].get_data()
+                (x1, x2), (y1, y2) = others[f"mark {disc}"][0].get_data()
                 after = np.append(path["time"].to_numpy()[1:], np.inf)
                 elapsed = np.clip(np.minimum(after, time) - path["time"], 0, None)
                 angle = (path[f"s{disc}"] * elapsed).sum() / radius
@@ -162,11 +177,12 @@ def test_discs_are_where_the_trajectory_has_them(scene):
 def test_headings_numbers_and_the_sign_of_a_hop_stand_clear(box, radius):
     """Discs are where they are: beside each other their numbers may meet."""
     rows = TrajectoryTable.rows(box, radius, 1908)
+    motion, circles, others = drawn(box, radius, rows)
     with style.context():
-        stage = animation.Stage(box, radius, rows)
-        for time in [*stage.times[::80], stage.centre]:
-            stage.show(time)
-            assert [pair for pair in unclear(stage.figure) if {*pair} != {"1", "2"}] == []
+        for time in [*motion.frames[::80], motion.centre]:
+            show(time, circles, others)
+            figure = others["sign"][0].figure
+            assert [pair for pair in unclear(figure) if {*pair} != {"1", "2"}] == []
 
 
 # Files -------------------------------------------------------------------------------------------
@@ -176,19 +192,17 @@ def test_what_leaves_a_ring_comes_in_at_the_other_end():
     """Four discs: all in the box, an image of each a period away, no trace across the box."""
     box = Box(1.5, 1.0, {"periodic": "x"}, discs=4)
     rows = TrajectoryTable.rows(box, 0.15, 1)
-    with style.context():
-        stage = animation.StageOfMany(box, 0.15, rows)
+    motion, circles, others = drawn(box, 0.15, rows)
     beyond = 0
-    for time in stage.times[::4]:
-        stage.show(time)
-        for disc in range(1, 5):
-            x, y = stage.moving[f"disc {disc}"].center
+    for time in motion.frames[::4]:
+        show(time, circles, others)
+        for disc, ((circle, _), (image, _)) in circles.items():
+            x, y = circle.center
             assert abs(x) <= 0.75
             assert abs(y) <= 0.35 + 1e-12
-            image = x - np.copysign(1.5, x), y
-            assert stage.moving[f"disc {disc} x"].center == pytest.approx(image)
-            beyond += abs(stage.places(disc, [time])[0, 0]) > 0.75
-            for (x1, _), (x2, _) in stage.moving[f"trace {disc}"].get_segments():
+            assert image.center == pytest.approx((x - np.copysign(1.5, x), y))
+            beyond += abs(motion.places(disc, [time])[0, 0]) > 0.75
+            for (x1, _), (x2, _) in others[f"trace {disc}"][0].get_segments():
                 assert abs(x1 - x2) < 0.5
     assert beyond
 
@@ -198,15 +212,15 @@ def test_what_leaves_a_ring_comes_in_at_the_other_end():
 
 def test_the_nearer_ball_is_in_front():
     path = td.trajectory(SCENES["combination"], seed=2)
-    with style.context():
-        stage = animation.Stage(Box.of(path.scene), path.scene.radius, path.to_dict("records"))
+    box, radius = Box.of(path.scene), path.scene.radius
+    motion, circles, others = drawn(box, radius, path.to_dict("records"))
     nearer = set()
-    for time in stage.times:
+    for time in motion.frames:
         (state,) = path.states_at(time)
-        drawn = stage.artists(time)
-        first, second = (drawn.index(stage.moving[f"disc {disc}"]) for disc in (1, 2))
+        parts = animation.moving_parts(motion, circles, others, time)
+        first, second = (parts.index(circles[disc][0]) for disc in (1, 2))
         assert (first > second) == (state["z1"] > state["z2"])
-        assert len(drawn) == len(stage.moving)
+        assert len(parts) == len(others) + sum(map(len, circles.values()))
         nearer.add(first > second)
     assert nearer == {True, False}
 

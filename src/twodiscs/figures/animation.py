@@ -23,7 +23,8 @@ from matplotlib.colors import to_rgba
 from matplotlib.patches import Circle
 from PIL import Image
 
-from twodiscs.figures import drawing, motion, panels
+from twodiscs.figures import drawing, panels
+from twodiscs.figures.motion import disc_colours, longer_axis
 from twodiscs.figures.style import BLACK, BLUE, GREY, ORANGE, VERMILLION, new_figure
 from twodiscs.model.checks import InputError, check_length, writing_to
 from twodiscs.model.events import HOPS
@@ -85,255 +86,326 @@ def frame_times(rows, step, discs=2):
     return frames, hop, centre
 
 
-class Stage:
-    """The panels and their moving parts, for one stretch of a trajectory."""
+class Motion:
+    """The discs of a trajectory at any time, and the times of the frames that show them.
 
-    #: Points: what the sign of the hop takes above the box.
-    above = SIGN
+    ``columns`` are the values of the ``rows`` of trajectory.csv, {name: array}. ``frames`` are the
+    times of the frames, ``step`` apart. ``hop`` is the hop that they show, or None, ``centre`` its
+    time, and ``axis`` the axis along which it changes the order of the discs.
+    """
 
     def __init__(self, box, radius, rows):
-        self.scene = scene = box.scene(check_length("radius", radius))
-        width, height = box.width, box.height
-        step = (width + height) / CROSSING
-        self.of = box
-        places = [f"{axis}{disc}" for disc in range(1, box.discs + 1) for axis in "xy"]
-        names = ("time", *places, "event")
-        self.rows = {name: np.array([row[name] for row in rows]) for name in names}
-        self.rows |= self._more(rows)
-        self.sides = {"x": width, "y": height}
-        self.times, self.hop, self.centre = frame_times(rows, step, box.discs)
-        self.trace, self.marked = TRACE * step, MARKED * step
+        self.box, self.scene = box, box.scene(check_length("radius", radius))
+        self.sides = {"x": box.width, "y": box.height}
+        self.periodic = [axis for axis in self.scene.periodic if axis in self.sides]
+        known = [name for name, value in rows[0].items() if value is not None]
+        self.columns = {name: np.array([row[name] for row in rows]) for name in known}
+        self.step = (box.width + box.height) / CROSSING
+        self.frames, self.hop, self.centre = frame_times(rows, self.step, box.discs)
         self.axis = "y" if self.hop == "vertical_hop" else "x"
 
-        inches, spare = drawing.scale(width, height, ACROSS - LEFT - RIGHT, TALLEST)
-        beneath = BOTTOM + STRIP + GAP
-        more = panels.of_radius(radius)
-        up = 0 if panels.is_short(box, radius) else self.above
-        lines = panels.heading(box, more)
-        heading = LARGER * panels.LINE * (len(lines) - 1) + up / 72
-        self.figure = new_figure(beneath + inches * height + TOP + heading, ACROSS)
-        self.figure.set_dpi(DPI)
-        self.spare = spare
-        x, y = width / 2, height / 2
-        self.box = drawing.add_axes(self.figure, LEFT + spare, beneath, inches, (-x, x, -y, y))
-        if scene.periodic:
-            self._draw_walls(x, y)
-        else:
-            drawing.rectangle(self.box, -x, x, -y, y, width=1.2)
-        above = {"xycoords": "axes fraction", "ha": "left", "va": "bottom", "fontsize": 9}
-        drawing.label(self.box, ",\n".join(lines), (0, 1), (-72 * spare, 5 + up), **above)
-        self.strip = panels.add_panel(self.figure, BOTTOM, STRIP, LEFT, ACROSS - LEFT - RIGHT)
-        times = self.path(self.times[0], self.times[-1])
-        self.strip.set(xlim=(times[0], times[-1]), xlabel="time $t$")
-        self._draw_strip(times)
-        self.moving = self._moving((-x, x, -y, y))
-
-    def _more(self, rows):
-        """Return the angles of rough discs and the heights of balls, if the rows have them.
-
-        A table of the workflow has no spins. Between two events spins are constant.
-        """
-        more, times = {}, self.rows["time"]
-        for disc in range(1, self.of.discs + 1):
-            if self.scene.moment_of_inertia is not None and rows[0].get(f"s{disc}") is not None:
-                spins = np.array([row[f"s{disc}"] for row in rows]) / self.scene.radii[disc - 1]
-                turned = np.cumsum(spins[:-1] * np.diff(times))
-                more[f"angle{disc}"] = np.concatenate([[0.0], turned])
-            if self.scene.depth is not None and rows[0].get(f"z{disc}") is not None:
-                more[f"z{disc}"] = np.array([row[f"z{disc}"] for row in rows])
-        return more
-
-    def artists(self, time):
-        """Return the artists at a ``time``, in the order of drawing: nearer balls come later."""
-        if "z2" not in self.rows:
-            return [*self.moving.values()]
-        heights = [np.interp(time, self.rows["time"], self.rows[f"z{disc}"]) for disc in (1, 2)]
-        if "z" in self.scene.periodic:
-            heights = [z - self.scene.depth * np.round(z / self.scene.depth) for z in heights]
-        nearer = "disc 1" if heights[0] > heights[1] else "disc 2"
-        circles = [name for name in self.moving if name.startswith("disc ")]
-        circles.sort(key=lambda name: name.startswith(nearer))
-        others = [name for name in self.moving if name not in circles]
-        return [self.moving[name] for name in (*circles, *others)]
-
-    def _draw_walls(self, x, y):
-        """Draw the walls; the ends of a periodic axis are dotted."""
-        for axis, ends in (
-            ("x", [([s * x, s * x], [-y, y]) for s in (-1, 1)]),
-            ("y", [([-x, x], [s * y, s * y]) for s in (-1, 1)]),
-        ):
-            style = {"lw": 0.8, "ls": (0, (1, 2))} if axis in self.scene.periodic else {"lw": 1.2}
-            for end in ends:
-                self.box.plot(*end, color=BLACK, clip_on=False, **style)
+    def interpolate(self, name, times):
+        """Return the values of a column at ``times``, on straight lines between the rows."""
+        return np.interp(times, self.columns["time"], self.columns[name])
 
     def places(self, disc, times):
         """Return the centres (n, 2) of a disc at ``times``."""
-        rows = self.rows["time"]
-        places = np.column_stack([np.interp(times, rows, self.rows[f"{q}{disc}"]) for q in "xy"])
+        places = np.column_stack([self.interpolate(f"{axis}{disc}", times) for axis in "xy"])
         if self.scene.field:
+            rows = self.columns["time"]
             after = np.clip(np.searchsorted(rows, times), 1, len(rows) - 1)
             fall = (times - rows[after - 1]) * (rows[after] - times)
             places[:, 1] += self.scene.field / 2 * fall
         return places
 
-    def folded(self, places):
+    def fold(self, places):
         """Return ``places`` moved by whole periods into the box."""
         places = places.copy()
-        for axis in self.scene.periodic:
-            if axis in self.sides:
-                column, side = "xy".index(axis), self.sides[axis]
-                places[:, column] -= side * np.round(places[:, column] / side)
+        for axis in self.periodic:
+            column, side = "xy".index(axis), self.sides[axis]
+            places[:, column] -= side * np.round(places[:, column] / side)
         return places
 
-    def path(self, start, end):
+    def folded_place(self, disc, time):
+        """Return the centre of a disc at one ``time``, in the box."""
+        return self.fold(self.places(disc, np.array([time])))[0]
+
+    def separation(self, times):
+        """Return the separation of two discs along the axis of the hop."""
+        places = self.places(2, times) - self.places(1, times)
+        return self.fold(places)[:, "xy".index(self.axis)]
+
+    def height(self, disc, time):
+        """Return the height z of a ball, in the box; all discs have the same."""
+        if f"z{disc}" not in self.columns:
+            return 0.0
+        z = self.interpolate(f"z{disc}", time)
+        if "z" in self.scene.periodic:
+            z -= self.scene.depth * np.round(z / self.scene.depth)
+        return z
+
+    def path_times(self, start, end):
         """Return the times of all rows between two moments, and these two.
 
         If paths are curved or folded, there are more times between them, for a smooth line.
         """
-        times = self.rows["time"]
+        times = self.columns["time"]
         path = np.array([start, *times[(times > start) & (times < end)], end])
         if self.scene.field or self.scene.periodic:
-            between = np.arange(start, end, self.trace / 100)
+            between = np.arange(start, end, TRACE * self.step / 100)
             path = np.union1d(path, between[between < end])  # by rounding the last may be > end
         return path
 
-    def apart(self, times):
-        """Return the separation of the discs along the axis of the hop."""
-        axis = "xy".index(self.axis)
-        return self.folded(self.places(2, times) - self.places(1, times))[:, axis]
 
-    def _draw_strip(self, times):
-        """Draw the separation over the whole time, below the box."""
-        apart = self.apart(times)
-        most = 1.1 * np.abs(apart).max()
-        self.strip.set(ylim=(-most, most), ylabel=f"${self.axis}_2-{self.axis}_1$")
-        self.strip.axhline(0, color=GREY, lw=0.5)
-        self.strip.plot(times, apart, color="#C8C8C8", lw=0.8)
+# What stands still --------------------------------------------------------------------------------
 
-    def _moving(self, extent):
-        """Return {name: artist} of all that changes between frames, in the order of drawing."""
-        x0, x1, y0, y1 = extent
-        artists = {}
-        for disc, (face, edge) in enumerate(drawing.DISCS, 1):
-            artists |= self._circles(disc, self.scene.radii[disc - 1], face, edge)
-        for disc, (_, edge) in enumerate(drawing.DISCS, 1):
-            artists[f"trace {disc}"] = self.box.add_collection(LineCollection([], linewidths=1.3))
-            artists |= self._mark(disc)
-            (artists[f"centre {disc}"],) = self.box.plot([], [], "o", color=edge, ms=3.5, mew=0)
-            artists[f"number {disc}"] = drawing.label(
-                self.box, f"{disc}", (0, 0), (-BESIDE, BESIDE), color=edge, fontsize=11
-            )
-        middle = self.folded(self.places(1, np.array([self.centre])))[0]
-        line = ([middle[0]] * 2, [y0, y1]) if self.axis == "x" else ([x0, x1], [middle[1]] * 2)
-        (artists["line"],) = self.box.plot(*line, color=BLACK, lw=1.2, ls=(0, (4, 2)))
-        artists["text"] = self.box.annotate(
-            rf"hop:  ${self.axis}_1={self.axis}_2$", (1, 1), (72 * self.spare, 5), "axes fraction",
-            "offset points", ha="right", va="bottom", fontsize=10,
-            bbox={"boxstyle": "round,pad=0.2", "facecolor": ORANGE, "edgecolor": "none"},
-        )  # fmt: skip
-        (artists["past"],) = self.strip.plot([], [], color=BLUE, lw=0.9)
-        (artists["hops"],) = self.strip.plot([], [], "o", color=VERMILLION, ms=6, mew=0)
-        (artists["now"],) = self.strip.plot([], [], "o", color=BLACK, ms=3.5, mew=0)
-        return artists
 
-    def _circles(self, disc, radius, face, edge):
-        """Return the artists of a disc: on a periodic axis there is one at both ends of the box."""
-        images = [""] + [f" {axis}" for axis in self.scene.periodic if axis in self.sides]
-        return {
-            f"disc {disc}{image}": self.box.add_patch(
-                Circle((0, 0), radius, fc=face, ec=edge, lw=1.2)
-            )
-            for image in images
-        }
+def draw_panels(motion):
+    """Return new axes of the box, with its walls and heading, and of the strip beneath it."""
+    box, radius = motion.box, motion.scene.radius
+    inches, margin = drawing.scale(box.width, box.height, ACROSS - LEFT - RIGHT, TALLEST)
+    lines, beneath = panels.heading(box, panels.of_radius(radius)), BOTTOM + STRIP + GAP
+    up = SIGN if box.discs == 2 and not panels.is_short(box, radius) else 0
+    heading = LARGER * panels.LINE * (len(lines) - 1) + up / 72
+    figure = new_figure(beneath + inches * box.height + TOP + heading, ACROSS)
+    figure.set_dpi(DPI)
+    x, y = box.width / 2, box.height / 2
+    axes = drawing.add_axes(figure, LEFT + margin, beneath, inches, (-x, x, -y, y))
+    draw_walls(axes, motion.scene)
+    above = {"xycoords": "axes fraction", "ha": "left", "va": "bottom", "fontsize": 9}
+    drawing.label(axes, ",\n".join(lines), (0, 1), (-72 * margin, 5 + up), **above)
+    strip = panels.add_panel(figure, BOTTOM, STRIP, LEFT, ACROSS - LEFT - RIGHT)
+    strip.set(xlim=(motion.frames[0], motion.frames[-1]), xlabel="time $t$")
+    return axes, strip
 
-    def _mark(self, disc):
-        """Return the mark of a rough disc, nothing for a smooth one."""
-        if f"angle{disc}" not in self.rows:
-            return {}
-        return {f"spin {disc}": self.box.plot([], [], color=BLACK, lw=1.5)[0]}
 
-    def _show_disc(self, disc, edge, past, time):
-        """Move a disc, its mark, trace over the times ``past`` and number; return its place."""
-        moving = self.moving
-        places = self.folded(self.places(disc, past))
+def draw_walls(axes, scene):
+    """Draw the walls of the box; the ends of a periodic axis are dotted."""
+    (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
+    if not scene.periodic:
+        drawing.rectangle(axes, x0, x1, y0, y1, width=1.2)
+        return
+    wall, opening = {"lw": 1.2}, {"lw": 0.8, "ls": (0, (1, 2))}
+    for axis, ends in (
+        ("x", [([x, x], [y0, y1]) for x in (x0, x1)]),
+        ("y", [([x0, x1], [y, y]) for y in (y0, y1)]),
+    ):
+        for end in ends:
+            style = opening if axis in scene.periodic else wall
+            axes.plot(*end, color=BLACK, clip_on=False, **style)
+
+
+def draw_separation(strip, motion):
+    """Draw the separation of two discs over the whole time."""
+    times = motion.path_times(motion.frames[0], motion.frames[-1])
+    separation = motion.separation(times)
+    most = 1.1 * np.abs(separation).max()
+    strip.set(ylim=(-most, most), ylabel=f"${motion.axis}_2-{motion.axis}_1$")
+    strip.axhline(0, color=GREY, lw=0.5)
+    strip.plot(times, separation, color="#C8C8C8", lw=0.8)
+
+
+def draw_positions(strip, motion, colours):
+    """Draw the positions of many discs along the longer side over the whole time."""
+    axis = longer_axis(motion.box)
+    times, side = motion.path_times(motion.frames[0], motion.frames[-1]), motion.sides[axis]
+    strip.set_ylabel(f"${axis}$")
+    if axis not in motion.periodic:  # on it positions go on beyond the box
+        strip.set_ylim(-side / 2, side / 2)
+    for disc, colour in enumerate(colours, 1):
+        places = motion.places(disc, times)[:, "xy".index(axis)]
+        strip.plot(times, places, color=colour, lw=0.8)
+
+
+# What moves ---------------------------------------------------------------------------------------
+#
+# Each function draws one artist, and returns it with the function that moves it to its place at a
+# time.
+
+
+def draw_circle(axes, motion, disc, face, edge):
+    """Draw a disc."""
+    circle = axes.add_patch(Circle((0, 0), motion.scene.radii[disc - 1], fc=face, ec=edge, lw=1.2))
+
+    def move(time):
+        circle.center = motion.folded_place(disc, time)
+
+    return circle, move
+
+
+def draw_image(axes, motion, disc, face, edge, axis):
+    """Draw the image of a disc at the other end of a periodic ``axis``."""
+    circle, _ = draw_circle(axes, motion, disc, face, edge)
+
+    def move(time):
+        place, column = motion.folded_place(disc, time), "xy".index(axis)
+        place[column] -= np.copysign(motion.sides[axis], place[column])
+        circle.center = place
+
+    return circle, move
+
+
+def draw_trace(axes, motion, disc, colour):
+    """Draw the latest path of a disc, which fades with age."""
+    trace, longest = axes.add_collection(LineCollection([], linewidths=1.3)), TRACE * motion.step
+
+    def move(time):
+        times = motion.path_times(max(time - longest, motion.frames[0]), time)
+        places = motion.fold(motion.places(disc, times))
         segments = np.stack([places[:-1], places[1:]], axis=1)
-        fading = np.array([to_rgba(edge, 1 - (time - t) / self.trace) for t in past[1:]])
-        if self.scene.periodic:  # the jump from one end to the other is no part of the path
-            near = np.abs(places[1:] - places[:-1]).max(axis=1) < min(self.sides.values()) / 2
+        fading = np.array([to_rgba(colour, 1 - (time - t) / longest) for t in times[1:]])
+        if motion.scene.periodic:  # the jump from one end to the other is no part of the path
+            near = np.abs(places[1:] - places[:-1]).max(axis=1) < min(motion.sides.values()) / 2
             segments, fading = segments[near], fading[near]
-        moving[f"trace {disc}"].set(segments=segments, colors=fading)
-        moving[f"disc {disc}"].center = places[-1]
-        for axis in filter(self.sides.get, self.scene.periodic):
-            image = places[-1].copy()
-            column = "xy".index(axis)
-            image[column] -= np.copysign(self.sides[axis], image[column])
-            moving[f"disc {disc} {axis}"].center = image
-        moving[f"number {disc}"].xy = places[-1]
-        if f"angle{disc}" in self.rows:
-            angle = np.interp(time, self.rows["time"], self.rows[f"angle{disc}"])
-            ends = self.scene.radii[disc - 1] * np.array([MARK, 1.0])
-            x, y = places[-1]
-            moving[f"spin {disc}"].set_data(x + ends * np.cos(angle), y + ends * np.sin(angle))
-        return places[-1]
+        trace.set(segments=segments, colors=fading)
 
-    def show(self, time):
-        """Move everything to its position at ``time``."""
-        moving = self.moving
-        past = self.path(max(time - self.trace, self.times[0]), time)
-        for disc, (_, edge) in enumerate(drawing.DISCS, 1):
-            place = self._show_disc(disc, edge, past, time)
-            moving[f"centre {disc}"].set_data(*place[:, None])
-            above = (self.of.height / 2 - place[1]) / drawing.points(self.box)
-            moving[f"number {disc}"].xyann = (-BESIDE, min(BESIDE, above - HALF))
-        since = time - self.centre if self.hop else -1
-        moving["line"].set_visible(since == 0)
-        moving["text"].set_visible(0 <= since < self.marked)
-        past = self.path(self.times[0], time)
-        moving["past"].set_data(past, self.apart(past))
-        moving["now"].set_data([time], self.apart(np.array([time])))
-        kinds, times = self.rows["event"], self.rows["time"]
-        hops = times[(kinds == self.hop) & (times >= self.times[0]) & (times <= time)]
-        moving["hops"].set_data(hops, 0 * hops)
+    return trace, move
 
 
-class StageOfMany(Stage):
-    """The panels of more than two discs: all discs, and beneath their positions over time."""
+def draw_mark(axes, motion, disc):
+    """Draw the mark at the edge of a rough disc. Between two events its spin is constant."""
+    (mark,), radius = axes.plot([], [], color=BLACK, lw=1.5), motion.scene.radii[disc - 1]
+    times, spins = motion.columns["time"], motion.columns[f"s{disc}"] / radius
+    angles = np.concatenate([[0.0], np.cumsum(spins[:-1] * np.diff(times))])
 
-    above = 0
+    def move(time):
+        (x, y), angle = motion.folded_place(disc, time), np.interp(time, times, angles)
+        ends = radius * np.array([MARK, 1.0])
+        mark.set_data(x + ends * np.cos(angle), y + ends * np.sin(angle))
 
-    def __init__(self, box, radius, rows):
-        self.colours = motion.colours(box, rows[0])
-        super().__init__(box, radius, rows)
+    return mark, move
 
-    def _draw_strip(self, times):
-        axis, side = motion.along(self.of), max(self.of.width, self.of.height)
-        self.strip.set_ylabel(f"${axis}$")
-        if axis not in self.scene.periodic:  # on it positions go on beyond the box
-            self.strip.set_ylim(-side / 2, side / 2)
-        for disc, colour in enumerate(self.colours, 1):
-            places = self.places(disc, times)[:, "xy".index(axis)]
-            self.strip.plot(times, places, color=colour, lw=0.8)
 
-    def _moving(self, extent):
-        artists = {}
-        for disc, colour in enumerate(self.colours, 1):
-            face = tuple(0.45 * part + 0.55 for part in colour)
-            artists |= self._circles(disc, self.scene.radius, face, colour)
-        for disc in range(1, self.of.discs + 1):
-            artists[f"trace {disc}"] = self.box.add_collection(LineCollection([], linewidths=1.3))
-            artists |= self._mark(disc)
-            artists[f"number {disc}"] = drawing.label(
-                self.box, f"{disc}", (0, 0), (0, 0), ha="center", va="center", fontsize=9
-            )
-        (artists["now"],) = self.strip.plot([], [], color=BLACK, lw=1.0)
-        return artists
+def draw_centre(axes, motion, disc, colour):
+    """Draw the centre of a disc."""
+    (dot,) = axes.plot([], [], "o", color=colour, ms=3.5, mew=0)
+    return dot, lambda time: dot.set_data(*motion.folded_place(disc, time)[:, None])
 
-    def show(self, time):
-        """Move everything to where it is at ``time``."""
-        past = self.path(max(time - self.trace, self.times[0]), time)
-        for disc, colour in enumerate(self.colours, 1):
-            self._show_disc(disc, colour, past, time)
-        self.moving["now"].set_data([time, time], self.strip.get_ylim())
+
+def draw_number_beside(axes, motion, disc, colour):
+    """Draw the number of a disc beside its centre, and below the upper end of the box."""
+    number = drawing.label(axes, f"{disc}", (0, 0), (0, 0), color=colour, fontsize=11)
+
+    def move(time):
+        number.xy = motion.folded_place(disc, time)
+        above = (motion.box.height / 2 - number.xy[1]) / drawing.points(axes)
+        number.xyann = (-BESIDE, min(BESIDE, above - HALF))
+
+    return number, move
+
+
+def draw_number_within(axes, motion, disc):
+    """Draw the number of a disc at its centre."""
+    number = drawing.label(axes, f"{disc}", (0, 0), fontsize=9)
+
+    def move(time):
+        number.xy = motion.folded_place(disc, time)
+
+    return number, move
+
+
+def draw_surface(axes, motion):
+    """Draw the line that disc 2 crosses at the hop; only the frame of the hop shows it."""
+    x, y = motion.folded_place(1, motion.centre)
+    ends = ([x, x], axes.get_ylim()) if motion.axis == "x" else (axes.get_xlim(), [y, y])
+    (line,) = axes.plot(*ends, color=BLACK, lw=1.2, ls=(0, (4, 2)))
+    return line, lambda time: line.set_visible(bool(motion.hop) and time == motion.centre)
+
+
+def draw_sign(axes, motion):
+    """Draw the sign of the hop, which stays for ``MARKED`` frames."""
+    _, margin = drawing.scale(*motion.sides.values(), ACROSS - LEFT - RIGHT, TALLEST)
+    sign = axes.annotate(
+        rf"hop:  ${motion.axis}_1={motion.axis}_2$", (1, 1), (72 * margin, 5), "axes fraction",
+        "offset points", ha="right", va="bottom", fontsize=10,
+        bbox={"boxstyle": "round,pad=0.2", "facecolor": ORANGE, "edgecolor": "none"},
+    )  # fmt: skip
+
+    def move(time):
+        elapsed = time - motion.centre
+        sign.set_visible(bool(motion.hop) and 0 <= elapsed < MARKED * motion.step)
+
+    return sign, move
+
+
+def draw_past(strip, motion):
+    """Draw the separation until now."""
+    (line,) = strip.plot([], [], color=BLUE, lw=0.9)
+
+    def move(time):
+        times = motion.path_times(motion.frames[0], time)
+        line.set_data(times, motion.separation(times))
+
+    return line, move
+
+
+def draw_hops(strip, motion):
+    """Draw a dot for each hop until now."""
+    (dots,) = strip.plot([], [], "o", color=VERMILLION, ms=6, mew=0)
+    hops = motion.columns["time"][motion.columns["event"] == motion.hop]
+    hops = hops[hops >= motion.frames[0]]
+
+    def move(time):
+        past = hops[hops <= time]
+        dots.set_data(past, 0 * past)
+
+    return dots, move
+
+
+def draw_present_separation(strip, motion):
+    """Draw the separation now, as a dot."""
+    (dot,) = strip.plot([], [], "o", color=BLACK, ms=3.5, mew=0)
+    return dot, lambda time: dot.set_data([time], motion.separation(np.array([time])))
+
+
+def draw_present(strip, motion):
+    """Draw the present as a vertical line."""
+    (line,) = strip.plot([], [], color=BLACK, lw=1.0)
+    return line, lambda time: line.set_data([time, time], strip.get_ylim())
+
+
+def draw(motion):
+    """Draw the panels; return the figure, its circles and its other moving parts.
+
+    A part is (artist, the function that moves it to its place at a time). The circles are {disc:
+    parts}, the others {name: part}, in the order of drawing. Two discs have the colours of all
+    figures, and their hop is shown. Many discs are coloured by their order at the start.
+    """
+    axes, strip = draw_panels(motion)
+    if many := motion.box.discs > 2:
+        first = {name: values[0] for name, values in motion.columns.items()}
+        colours = disc_colours(motion.box, first)
+        looks = [(tuple(0.45 * part + 0.55 for part in colour), colour) for colour in colours]
+        draw_positions(strip, motion, colours)
+    else:
+        looks = drawing.DISCS
+        draw_separation(strip, motion)
+    circles, others = {}, {}
+    for disc, look in enumerate(looks, 1):
+        images = [draw_image(axes, motion, disc, *look, axis) for axis in motion.periodic]
+        circles[disc] = [draw_circle(axes, motion, disc, *look), *images]
+    for disc, (_, colour) in enumerate(looks, 1):
+        others[f"trace {disc}"] = draw_trace(axes, motion, disc, colour)
+        if f"s{disc}" in motion.columns:
+            others[f"mark {disc}"] = draw_mark(axes, motion, disc)
+        if many:
+            others[f"number {disc}"] = draw_number_within(axes, motion, disc)
+        else:
+            others[f"centre {disc}"] = draw_centre(axes, motion, disc, colour)
+            others[f"number {disc}"] = draw_number_beside(axes, motion, disc, colour)
+    if many:
+        others["present"] = draw_present(strip, motion)
+    else:
+        others |= {"surface": draw_surface(axes, motion), "sign": draw_sign(axes, motion)}
+        others |= {"past": draw_past(strip, motion), "hops": draw_hops(strip, motion)}
+        others["present"] = draw_present_separation(strip, motion)
+    return axes.figure, circles, others
+
+
+def moving_parts(motion, circles, others, time):
+    """Return the moving parts at a ``time`` in the order of drawing: nearer balls come later."""
+    discs = sorted(circles, key=lambda disc: motion.height(disc, time))
+    return [*(part for disc in discs for part in circles[disc]), *others.values()]
 
 
 def animate(box, radius, rows, paths):
@@ -350,39 +422,39 @@ def animate(box, radius, rows, paths):
             ffmpeg()
         with writing_to(path):
             os.stat(Path(path).parent)  # raises for a folder that does not exist
-    stage = (StageOfMany if box.family == "many" else Stage)(box, radius, rows)
-    canvas = stage.figure.canvas
-    for artist in stage.moving.values():
+    motion = Motion(box, radius, rows)
+    figure, circles, others = draw(motion)
+    for artist, _ in moving_parts(motion, circles, others, motion.centre):
         artist.set_animated(True)
-    canvas.draw()
-    still = canvas.copy_from_bbox(stage.figure.bbox)
+    figure.canvas.draw()
+    still = figure.canvas.copy_from_bbox(figure.bbox)
 
     def image(time):
-        canvas.restore_region(still)
-        stage.show(time)
-        for artist in stage.artists(time):
-            stage.figure.draw_artist(artist)
-        return Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+        figure.canvas.restore_region(still)
+        for artist, move in moving_parts(motion, circles, others, time):
+            move(time)
+            figure.draw_artist(artist)
+        return Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB")
 
     fills = {
-        tuple(round(255 * part) for part in artist.get_facecolor()[:3])
-        for artist in stage.moving.values()
-        if isinstance(artist, Circle)
+        tuple(round(255 * part) for part in circle.get_facecolor()[:3])
+        for parts in circles.values()
+        for circle, _ in parts
     }
     # The frame of the hop shows everything.
-    palette = _palette(image(stage.centre), sorted(fills))
-    true = [image(t) for t in stage.times]
-    first, *others = images = [one.quantize(palette=palette, dither=0) for one in true]
-    shown = [HOP if stage.hop and t == stage.centre else FRAME for t in stage.times]
+    palette = _palette(image(motion.centre), sorted(fills))
+    true = [image(time) for time in motion.frames]
+    first, *later = images = [one.quantize(palette=palette, dither=0) for one in true]
+    shown = [HOP if motion.hop and time == motion.centre else FRAME for time in motion.frames]
     shown[-1] = LAST
     for path in paths:
         if str(path).endswith(".html"):
-            write_page(path, images, shown, str(stage.scene))
+            write_page(path, images, shown, str(motion.scene))
         elif str(path).endswith(".mp4"):
             write_mp4(path, true, shown)
         else:
             with writing_to(path):
-                first.save(path, save_all=True, append_images=others, duration=shown, loop=0)
+                first.save(path, save_all=True, append_images=later, duration=shown, loop=0)
 
 
 def _palette(image, kept):

@@ -132,14 +132,14 @@ BENDS, CLOSE_BENDS = 75, 15
 NAMED, LINES = 8, 24
 
 
-def along(box):
+def longer_axis(box):
     """Return "x" in a box at least as wide as high, else "y"."""
     return "x" if box.width >= box.height else "y"
 
 
-def colours(box, first):
+def disc_colours(box, first):
     """Return a colour for each disc, by its rank along the longer side in the row ``first``."""
-    places = [first[f"{along(box)}{disc}"] for disc in range(1, box.discs + 1)]
+    places = [first[f"{longer_axis(box)}{disc}"] for disc in range(1, box.discs + 1)]
     ranks = np.argsort(np.argsort(places))
     if box.discs <= len(FEW):
         return [to_rgb(FEW[rank]) for rank in ranks]
@@ -154,11 +154,11 @@ def world_lines(box, rows, radius=None):
     them. If there are more than ``LINES`` discs, this number is drawn, at equal distances in their
     order at the start. The ``radius``, if given, is written above.
     """
-    axis, side = along(box), max(box.width, box.height)
+    axis, side = longer_axis(box), max(box.width, box.height)
     rows = [row for row in rows if row["event"] not in HOPS][: BENDS * box.discs + 1]
     times = np.array([row["time"] for row in rows])
     figure, (whole, close) = panels.stacked(whole=LINES_PANEL, close=LINES_PANEL)
-    shades = colours(box, rows[0])
+    shades = disc_colours(box, rows[0])
     whole.set_xlim(times[0], times[-1])
     # A short trajectory has fewer rows than either panel could show.
     close.set_xlim(times[0], times[min(CLOSE_BENDS * box.discs, len(times) * CLOSE_BENDS // BENDS)])
