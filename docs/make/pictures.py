@@ -13,7 +13,7 @@ from twodiscs.figures import style
 from twodiscs.figures.draw import draw as draw_figure
 from twodiscs.model.box import Box
 from twodiscs_paper.catalogue import ALL_FIGURES, TABLES, read_table
-from twodiscs_paper.drawings import DRAW
+from twodiscs_paper.draw import DRAW
 
 #: The box of the pictures and its scene, the first of config/config.yaml.
 BOX = Box(1.5, 1.0)

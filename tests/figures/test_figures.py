@@ -117,7 +117,7 @@ def series(name, box, rows):
                 due = of_quantity(rows, f"{event}_time", lambda row, of=of: of(row["radius"]))
                 yield panel, panel == "main" and "residuals", event, due, np.array(curve)
     else:
-        shown = radius.OVER_RADIUS[name]
+        shown = radius.CURVES[name]
         for quantity in shown.names:
             curve = columns[quantity] ** (0.5 if shown.rooted else 1)
             due = of_quantity(rows, quantity, rooted=shown.rooted)
@@ -125,7 +125,7 @@ def series(name, box, rows):
                 yield "main", "residuals", quantity, due, curve
 
 
-OVER_RADIUS = {*radius.OVER_RADIUS, "all_areas", "pressure"}
+OVER_RADIUS = {*radius.CURVES, "all_areas", "pressure"}
 
 
 @pytest.mark.parametrize(("name", "box"), cases(QUICK, OVER_RADIUS))
@@ -285,7 +285,7 @@ def test_every_status_has_its_symbol():
         }.items()
     ]
     with style.context():
-        _, main, lower, _ = panels.over_radius(PAPER, "")
+        _, main, lower, _ = panels.radius_panels(PAPER, "")
         one = panels.Series("", rows, np.array([1.0, 1.0]))
         panels.draw_series(main, lower, np.array([0.1, 0.2]), [one])
     assert points(main, *look) == {(0.1, 1.0), (0.3, 2.0), (0.35, 2.0)}
@@ -301,7 +301,7 @@ def test_every_status_has_its_symbol():
     ("number", "text"), [(100.0, "100"), (3e-6, r"3\times10^{-6}"), (1e-5, "10^{-5}")]
 )
 def test_small_and_large_numbers_are_written_with_powers_of_ten(number, text):
-    assert panels.math_of(number) == text
+    assert panels.mathtext(number) == text
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ from twodiscs.measure.transmission import box_time
 from twodiscs.model.events import HOPS, SHELLS
 from twodiscs.theory import exact
 from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES, read_table
-from twodiscs_paper.drawings import DRAW
+from twodiscs_paper.draw import DRAW
 from twodiscs_paper.studies.effects import figure as effects
 from twodiscs_paper.studies.passages import figure as passages
 from twodiscs_paper.studies.passages import figure_brownian as brownian

@@ -10,7 +10,7 @@ import pytest
 from twodiscs.model.effects import EFFECTS
 from twodiscs_paper.catalogue import STUDIES, STUDY_TABLES
 from twodiscs_paper.configuration.yaml_files import load, read
-from twodiscs_paper.drawings import DRAW
+from twodiscs_paper.draw import DRAW
 
 CONFIG = Path(__file__).parents[2] / "config"
 every_study = pytest.mark.parametrize("study", STUDIES.values(), ids=STUDIES)

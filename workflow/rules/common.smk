@@ -90,7 +90,7 @@ CODE = {
     "tables": modules("twodiscs/analysis/*.py", "twodiscs/measure/*.py"),
     "figures": modules(
         *(f"twodiscs/figures/*.{kind}" for kind in ("py", "mplstyle", "html")),
-        "twodiscs_paper/drawings.py",
+        "twodiscs_paper/draw.py",
     ),
     "documents": modules("twodiscs/figures/scene_figures.py", "twodiscs_paper/pipeline/**/*.py"),
     "benchmark": modules("twodiscs_paper/benchmark.py"),

@@ -18,7 +18,7 @@ with style.context():
         animation.animate(box, radius, tables["trajectory"], list(snakemake.output))
     else:
         if name in STUDY_FIGURES:
-            from twodiscs_paper.drawings import DRAW  # which imports what studies measure with
+            from twodiscs_paper.draw import DRAW  # which imports what studies measure with
 
             figure = DRAW[name](box, tables)
         else:

@@ -164,7 +164,7 @@ def draw_panels(motion):
     """Return new axes of the box, with its walls and heading, and of the strip beneath it."""
     box, radius = motion.box, motion.scene.radius
     inches, margin = drawing.scale(box.width, box.height, ACROSS - LEFT - RIGHT, TALLEST)
-    lines, beneath = panels.heading(box, panels.of_radius(radius)), BOTTOM + STRIP + GAP
+    lines, beneath = panels.heading(box, panels.radius_text(radius)), BOTTOM + STRIP + GAP
     up = SIGN if box.discs == 2 and not panels.is_short(box, radius) else 0
     heading = LARGER * panels.LINE * (len(lines) - 1) + up / 72
     figure = new_figure(beneath + inches * box.height + TOP + heading, ACROSS)

@@ -117,7 +117,7 @@ def _cylinder(axes, half_length, radius):
     """Draw the cylinder around the diagonal, ``half_length`` long to either side."""
     angles = np.linspace(0, 2 * pi, STRIPS + 1)
 
-    def at(angle, end):
+    def rim(angle, end):
         across = radius * cos(angle)
         along = end * (half_length - abs(across))
         return _seen((*_turned(across, along), radius * sin(angle)))
@@ -127,13 +127,13 @@ def _cylinder(axes, half_length, radius):
         middle = (angle + later) / 2
         facing = _towards((*_turned(cos(middle), 0), sin(middle)))
         if facing > 0:
-            corners = [at(angle, -1), at(later, -1), at(later, 1), at(angle, 1)]
+            corners = [rim(angle, -1), rim(later, -1), rim(later, 1), rim(angle, 1)]
             colour = tuple(dark + (light - dark) * facing)
             axes.add_patch(Polygon(corners, color=colour, lw=0.3, clip_on=False))
     for end in (-1, 1):
         # The two halves of an end lie in two faces of the prism.
         for first, normal in ((-pi / 2, _end_normal(end, True)), (pi / 2, _end_normal(end, False))):
-            half = [at(angle, end) for angle in np.linspace(first, first + pi, STRIPS)]
+            half = [rim(angle, end) for angle in np.linspace(first, first + pi, STRIPS)]
             if _towards(normal) > 0:
                 axes.add_patch(Polygon(half, facecolor=CUT, edgecolor=BLACK, lw=0.6, clip_on=False))
             else:

@@ -5,7 +5,7 @@ from functools import partial
 from twodiscs.figures import configuration_space, geometry, motion, radius
 
 #: {figure: function of a ``Box`` and of the rows of its table}
-FROM_ROWS = {name: partial(radius.draw, name) for name in radius.OVER_RADIUS} | {
+TABLE_FIGURES = {name: partial(radius.draw, name) for name in radius.CURVES} | {
     "all_areas": radius.draw_areas,
     "pressure": radius.draw_pressure,
     "hop_histogram": motion.draw_hop_histogram,
@@ -13,7 +13,7 @@ FROM_ROWS = {name: partial(radius.draw, name) for name in radius.OVER_RADIUS} | 
 }
 
 #: {drawing: function of a ``Box``}
-OF_A_BOX = {
+BOX_DRAWINGS = {
     "model": geometry.draw_model,
     "configuration_space": configuration_space.draw,
     "largest_radius": geometry.draw_largest_radius,
@@ -29,7 +29,7 @@ def draw(name, box, rows=None, radius=None):
     these tables in one panel. The ``radius`` of a trajectory, if given, is written above it. Raises
     ``InputError`` if no row is about the figure.
     """
-    if name in OF_A_BOX:
-        return OF_A_BOX[name](box)
+    if name in BOX_DRAWINGS:
+        return BOX_DRAWINGS[name](box)
     more = {"radius": radius} if name == "hopping_trajectory" else {}
-    return FROM_ROWS[name](box, rows, **more)
+    return TABLE_FIGURES[name](box, rows, **more)

@@ -8,7 +8,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.ticker import MaxNLocator
 
 from twodiscs.figures import panels, style
-from twodiscs.figures.style import BLACK, BLUE, GREY, LOOKS, SERIES, VERMILLION, name_of, new_figure
+from twodiscs.figures.style import BLACK, BLUE, GREY, LOOKS, SERIES, VERMILLION, new_figure
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.theory import laws
 
@@ -72,7 +72,7 @@ def draw_trajectory(box, rows, radius=None):
     if hops.size:
         panel["a"].plot([], [], ls="", marker="o", markersize=2.2, color=VERMILLION, label="hops")
     figure.legend(loc="outside lower center", ncols=3)
-    panels.title(panel["a"], "a", box, panels.of_radius(radius))
+    panels.title(panel["a"], "a", box, panels.radius_text(radius))
     return figure
 
 
@@ -178,7 +178,7 @@ def world_lines(box, rows, radius=None):
         names = ["disc 1", *map(str, range(2, box.discs + 1))]
         place = {"loc": "outside lower center", "ncols": box.discs}
         figure.legend(close.get_lines(), names, handlelength=1, **place)
-    panels.title(whole, "a", box, panels.of_radius(radius))
+    panels.title(whole, "a", box, panels.radius_text(radius))
     if box.discs > LINES:
         close.set_title(f"{LINES} of the discs", loc="right", pad=3)
     return figure
@@ -236,7 +236,7 @@ def draw_hop_histogram(box, rows):
     whole.set(yscale="log", ylim=(low / 3, None))
     short.set_ylim(0, None)
     whole.legend(loc="upper right")
-    panels.title(whole, "a", box, f",  {name_of(rows[0]['event'])}")
+    panels.title(whole, "a", box, f",  {style.event_name(rows[0]['event'])}")
     return figure
 
 

@@ -67,7 +67,7 @@ class Series:
         return bool(np.any(self.exact > 0)) or any(drawn)
 
 
-def over_radius(box, label, judged=True, beneath=False):
+def radius_panels(box, label, judged=True, beneath=False):
     """Return (figure, main axes, axes of residuals, axes beneath) for curves over the radius.
 
     ``label`` is the label of the main ordinate. The axes of residuals are None unless the estimates
@@ -158,7 +158,7 @@ def add_panel(figure, bottom, height, left, width, name=""):
     return axes
 
 
-def math_of(value):
+def mathtext(value):
     """Return a ``value`` in mathtext: 0.25, or 3 × 10⁻⁶ if it is very small or large."""
     return powers(f"{value:g}")
 
@@ -184,18 +184,18 @@ def powers(text):
 
 def sides(box):
     """Return the sides of a ``Box`` in mathtext."""
-    numbers = map(math_of, (box.width, box.height))
+    numbers = map(mathtext, (box.width, box.height))
     return r"\times".join(f"({side})" if "times" in side else side for side in numbers)
 
 
-def of_radius(radius):
+def radius_text(radius):
     """Return the text of a ``radius`` that follows the sides of a box, empty if it is None."""
-    return f",  $r={math_of(radius)}$" if radius else ""
+    return f",  $r={mathtext(radius)}$" if radius else ""
 
 
 def is_short(box, radius=0):
     """Return whether the ``heading``, maybe with a ``radius``, leaves space beside it."""
-    digits = sum(len(math_of(value)) for value in (box.width, box.height, radius or 0))
+    digits = sum(len(mathtext(value)) for value in (box.width, box.height, radius or 0))
     return box.is_plain and digits <= BESIDE
 
 
@@ -211,7 +211,7 @@ def effects(box):
     return [powers(text.format(named[name])) for name, text in SYMBOLS.items() if named.get(name)]
 
 
-def with_looks(series):
+def assign_looks(series):
     """Return ((colour, marker), ``Series``) for each of the ``series``."""
     return [(part.look or look, part) for look, part in zip(cycle(SERIES), series, strict=False)]
 
@@ -221,7 +221,7 @@ def draw_series(main, lower, radii, series, single=False):
 
     ``lower`` is None if there are no residuals.
     """
-    for (colour, marker), part in with_looks(series):
+    for (colour, marker), part in assign_looks(series):
         main.plot(radii, part.exact, color=BLACK if single else colour, zorder=5)
         draw_estimates(main, part.rows, colour, marker)
         if lower:
@@ -242,7 +242,7 @@ def draw_estimates(axes, rows, colour, marker):
     known = [row for row in rows if row["estimate"] is not None and row["stderr"] is not None]
     rough = [row for row in rows if row["estimate"] is not None and row["stderr"] is None]
     bound = [row for row in rows if row["estimate"] is None and row.get("bound") is not None]
-    for shown, style in by_start(known, open_symbol(colour, marker)):
+    for shown, style in split_by_start(known, open_symbol(colour, marker)):
         r, y, s = _column(shown, "radius", "estimate", "stderr")
         axes.errorbar(r, y, s, ls="", elinewidth=0.6, **style, zorder=3)
     axes.plot(*_column(rough, "radius", "estimate"), "x", color=colour, zorder=3)
@@ -250,7 +250,7 @@ def draw_estimates(axes, rows, colour, marker):
     axes.errorbar(r, y, [0.4 * b for b in y], lolims=True, ls="", color=colour, elinewidth=0.6)
 
 
-def by_start(rows, style):
+def split_by_start(rows, style):
     """Yield (rows, style of symbols); rows from a strip, if there are any, have full symbols."""
     strips = [row for row in rows if row.get("starts") == "strip"]
     yield [row for row in rows if row not in strips], style
@@ -264,7 +264,7 @@ def open_symbol(colour, marker, scale=1):
     return {"color": colour, "marker": marker, "markersize": size, "markerfacecolor": "white"}
 
 
-def look_of(series, colour, marker):
+def legend_style(series, colour, marker):
     """Return the settings of a ``Series`` in a legend: a symbol only if it has estimates."""
     return open_symbol(colour, marker) if series.rows else {"color": colour}
 
@@ -299,8 +299,8 @@ def legend(axes, series, single=None, more=()):
     are left out.
     """
     entries = []
-    for (colour, marker), part in with_looks(series):
-        style = look_of(part, colour, marker)
+    for (colour, marker), part in assign_looks(series):
+        style = legend_style(part, colour, marker)
         if single and (not part.rows or np.any(np.isfinite(part.exact))):
             entries.append(("exact", {"color": BLACK}))
         if single and part.rows:

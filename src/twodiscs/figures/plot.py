@@ -7,19 +7,22 @@ import warnings
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
+import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.backends import backend_registry
 
 from twodiscs.analysis.tables import SCENE_TABLES, quantity_of
 from twodiscs.figures import panels, style
-from twodiscs.figures.draw import OF_A_BOX, draw
-from twodiscs.figures.radius import OVER_RADIUS, add
+from twodiscs.figures.draw import BOX_DRAWINGS, draw
+from twodiscs.figures.radius import CURVES, add
 from twodiscs.figures.scene_figures import FIGURES
-from twodiscs.figures.style import BLACK, LOOKS, SERIES, name_of, new_figure
+from twodiscs.figures.style import BLACK, LOOKS, SERIES, event_name, new_figure
 from twodiscs.measure.intervals import Intervals
 from twodiscs.measure.measurements import Measurements
 from twodiscs.measure.observe import Observed
 from twodiscs.measure.scan import Scan
+from twodiscs.measure.trajectory import require_all_rows
 from twodiscs.measure.transmission import Transmission, box_time
 from twodiscs.model.box import Box, scene_of
 from twodiscs.model.checks import InputError, check_choice, checked_call
@@ -117,7 +120,7 @@ def _draw(result, figure):
     if isinstance(result, Transmission):
         check_choice("figure", figure or "transmission", ["transmission"])
         return _draw_transmission(result)
-    box, rows, fitting, radius = _rows_and_figures(result)
+    box, rows, fitting, radius = _read(result)
     if not fitting:
         table = getattr(result, "attrs", {}).get("table")
         if table is not None and table not in SCENE_TABLES:
@@ -129,7 +132,7 @@ def _draw(result, figure):
             )
         raise InputError(f"result must be {DRAWN}, with a quantity of a figure, not {result!r:.80}")
     name = _chosen(figure, fitting, rows)
-    if not box.is_plain and name in OF_A_BOX:
+    if not box.is_plain and name in BOX_DRAWINGS:
         more = ", ".join(f"{name} {value}" for name, value in box.calls_for.items())
         raise InputError(
             f"scene must be two plain discs for a drawing, but it has {more}; plot a trajectory"
@@ -144,8 +147,8 @@ def _chosen(figure, fitting, rows):
     """
     if figure is not None:
         return check_choice("figure", figure, fitting)
-    if fitting[0] in OVER_RADIUS:
-        shown = OVER_RADIUS[fitting[0]].names
+    if fitting[0] in CURVES:
+        shown = CURVES[fitting[0]].names
         measured = [quantity_of(row) for row in rows if "estimate" in row]
         others = dict.fromkeys(q for q in measured if q not in shown)
         if others:
@@ -161,11 +164,11 @@ def _beside(result, path, name, axes):
     """Draw quantities over the radius into ``axes`` of another figure, which is returned."""
     if not isinstance(axes, Axes) or axes.name != "rectilinear":
         raise InputError(f"ax must be one plane Axes of matplotlib, not {axes!r:.80}")
-    box, rows, fitting, _ = _rows_and_figures(result)
-    fitting = [name for name in fitting if name in OVER_RADIUS]
+    box, rows, fitting, _ = _read(result)
+    fitting = [name for name in fitting if name in CURVES]
     if not fitting:
         raise InputError(f"result must be over the radius to be drawn in ax, not {result!r:.80}")
-    add(axes, box, rows, OVER_RADIUS[_chosen(name, fitting, rows)].names)
+    add(axes, box, rows, CURVES[_chosen(name, fitting, rows)].names)
     figure = axes.get_figure(root=True)
     if path is not None:
         style.save(figure, path)
@@ -174,51 +177,74 @@ def _beside(result, path, name, axes):
 
 def _show(figure):
     """Show a ``figure`` in a window, if matplotlib has any here."""
-    import matplotlib
-    from matplotlib.backends import backend_registry
-
     backend = backend_registry.load_backend_module(matplotlib.get_backend())
     if backend.FigureCanvas.required_interactive_framework is not None:
         backend.FigureCanvas.new_manager(figure, 1).show()
 
 
-def _rows_and_figures(result):
-    """Return (box, rows, names of the figures that show them, radius of a trajectory)."""
-    scene = scene_or_none(result)
-    if isinstance(result, Box) or result is scene is not None:
-        return result if isinstance(result, Box) else Box.of(scene), [], [*OF_A_BOX], None
+def _read(result):
+    """Return (box, rows, names of the figures that show them, radius of a trajectory).
+
+    There are no names if no figure shows the ``result``. A scene and a box have no rows.
+    """
+    for read in (_read_scene, _read_measurements, _read_table, _read_trajectory):
+        found = read(result)
+        if found is not None:
+            return found
+    return None, [], [], None
+
+
+def _read_scene(result):
+    """Return what ``_read`` returns for a ``Scene`` or a ``Box``, else None."""
+    if isinstance(result, Box):
+        return result, [], [*BOX_DRAWINGS], None
+    return (Box.of(result), [], [*BOX_DRAWINGS], None) if isinstance(result, Scene) else None
+
+
+def _read_measurements(result):
+    """Return what ``_read`` returns for results of one kind, each at one radius, else None."""
     results = [*result] if isinstance(result, list | tuple | Scan) else [result]
     results = [one for item in results for one in (item if isinstance(item, Scan) else [item])]
-    for kind in (Measurements, Intervals):
-        if results and all(isinstance(item, kind) for item in results):
-            boxes = {Box.of(item.scene) for item in results}
-            if len(boxes) > 1:
-                raise InputError(
-                    "result must be of one box, with the same effects; for several boxes call plot "
-                    "with the same ax for each"
-                )
-            hops = sorted({item.hop for item in results if isinstance(item, Intervals)})
-            if len(hops) > 1:
-                raise InputError(f"result must be of one kind of hop, not {' and '.join(hops)}")
-            results = sorted(results, key=attrgetter("scene.radius"))
-            rows = [row for item in results for row in item.rows]
-            (box,) = boxes
-            return box, rows, _figures_of(rows, box), None
-    if (box := box_or_none(result)) is not None:
-        table = result.attrs.get("table")
-        # None stands for an empty cell.
-        rows = result.astype(object).where(result.notna(), None)
-        rows = _exact_rows(rows) if table is None else rows.to_dict("records")
-        fitting = [name for name, entry in FIGURES.items() if entry.tables == (table,)]
-        if rows and table in ("volume", "areas", "mean_times"):
-            fitting = _figures_of(rows, box)
-        if rows and table in ("theory", None):
-            fitting = [name for name in _figures_of(rows, box) if name in OVER_RADIUS]
-        if rows and fitting:
-            return box, rows, fitting, None
-    if scene is not None and hasattr(result, "iterrows"):
-        return Box.of(scene), rows_of(result), ["hopping_trajectory"], scene.radius
-    return None, [], [], None
+    kinds = (Measurements, Intervals)
+    if not results or not any(all(isinstance(one, kind) for one in results) for kind in kinds):
+        return None
+    boxes = {Box.of(item.scene) for item in results}
+    if len(boxes) > 1:
+        raise InputError(
+            "result must be of one box, with the same effects; for several boxes call plot with "
+            "the same ax for each"
+        )
+    hops = sorted({item.hop for item in results if isinstance(item, Intervals)})
+    if len(hops) > 1:
+        raise InputError(f"result must be of one kind of hop, not {' and '.join(hops)}")
+    rows = [row for item in sorted(results, key=attrgetter("scene.radius")) for row in item.rows]
+    (box,) = boxes
+    return box, rows, _fitting_figures(rows, box), None
+
+
+def _read_table(result):
+    """Return what ``_read`` returns for a table of exact values or a loaded table, else None."""
+    box = box_or_none(result)
+    if box is None:
+        return None
+    table = result.attrs.get("table")
+    # None stands for an empty cell.
+    rows = result.astype(object).where(result.notna(), None)
+    rows = _exact_rows(rows) if table is None else rows.to_dict("records")
+    fitting = [name for name, entry in FIGURES.items() if entry.tables == (table,)]
+    if rows and table in ("volume", "areas", "mean_times"):
+        fitting = _fitting_figures(rows, box)
+    if rows and table in ("theory", None):
+        fitting = [name for name in _fitting_figures(rows, box) if name in CURVES]
+    return (box, rows, fitting, None) if rows and fitting else None
+
+
+def _read_trajectory(result):
+    """Return what ``_read`` returns for a trajectory, else None."""
+    scene = scene_or_none(result)
+    if scene is None or not hasattr(result, "iterrows"):
+        return None
+    return Box.of(scene), trajectory_rows(result), ["hopping_trajectory"], scene.radius
 
 
 def _exact_rows(table):
@@ -232,7 +258,7 @@ def _exact_rows(table):
     ]
 
 
-def _figures_of(rows, box):
+def _fitting_figures(rows, box):
     """Return the names of the figures that show quantities of these rows for a ``Box``."""
     if "left" in rows[0]:
         return ["hop_histogram"]
@@ -240,17 +266,15 @@ def _figures_of(rows, box):
     for table in ("mean_times", "volume", "areas"):
         entries = ((name, one) for name, one in FIGURES.items() if one.tables == (table,))
         own = [name for name, one in entries if one.is_called(shown, box.calls_for)]
-        if own and table in OVER_RADIUS and table != "volume":
-            several = sum(name in OVER_RADIUS for name in own) > 1
+        if own and table in CURVES and table != "volume":
+            several = sum(name in CURVES for name in own) > 1
             own.insert(0 if several else len(own), table)
         names += own
     return names
 
 
-def rows_of(trajectory):
+def trajectory_rows(trajectory):
     """Return the rows of a trajectory, at least two; ``scene_or_none`` must find its scene."""
-    from twodiscs.measure.trajectory import require_all_rows
-
     if "event" not in trajectory or len(trajectory) < 2:
         raise InputError(
             "trajectory must have at least two rows and the column event, but has "
@@ -291,7 +315,7 @@ def animate(trajectory: pd.DataFrame, path: str | PathLike[str]) -> None:
     if scene is None or not hasattr(trajectory, "iterrows"):
         raise InputError(f"trajectory must be a result of trajectory(), not {trajectory!r:.80}")
     with style.context():
-        animation.animate(Box.of(scene), scene.radius, rows_of(trajectory), [path])
+        animation.animate(Box.of(scene), scene.radius, trajectory_rows(trajectory), [path])
 
 
 # Curves over time ---------------------------------------------------------------------------------
@@ -305,7 +329,7 @@ def _panel(scene, more=""):
     """Return (figure, axes); the heading has the box, the radius, ``more`` and effects."""
     figure = new_figure(HEIGHT, layout="constrained")
     axes = figure.subplots()
-    panels.title(axes, "", Box.of(scene), panels.of_radius(scene.radius) + more)
+    panels.title(axes, "", Box.of(scene), panels.radius_text(scene.radius) + more)
     return figure, axes
 
 
@@ -346,7 +370,7 @@ def _draw_transmission(result):
     two neighbours.
     """
     scene, hop = result.scene, result.hop
-    figure, axes = _panel(scene, f",  {name_of(hop)}")
+    figure, axes = _panel(scene, f",  {event_name(hop)}")
     times, values, errors = result.frame().reset_index().to_numpy().T
     known = np.isfinite(errors)
     _points(axes, times[known], values[known], errors[known], LOOKS[hop])

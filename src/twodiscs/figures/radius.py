@@ -9,7 +9,7 @@ from twodiscs.analysis.tables import quantity_of
 from twodiscs.figures import curves, panels
 from twodiscs.figures.curves import hop_ends, limits
 from twodiscs.figures.scene_figures import FIGURES, Curves
-from twodiscs.figures.style import BLACK, LOOKS, SERIES, name_of, new_figure
+from twodiscs.figures.style import BLACK, LOOKS, SERIES, event_name, new_figure
 from twodiscs.model.checks import InputError
 from twodiscs.theory import virial
 from twodiscs.theory.exact import mean_times, rate
@@ -24,25 +24,25 @@ CLOSEST, LAW = 1e-5, 0.3
 
 def _every(kind, label):
     """Return the ``Curves`` of one kind of quantity, "time" or "area", for all events."""
-    names = {f"{event}_{kind}": name_of(event) for event in LOOKS}
+    names = {f"{event}_{kind}": event_name(event) for event in LOOKS}
     return Curves(names, label, looks={f"{event}_{kind}": look for event, look in LOOKS.items()})
 
 
 #: The figures by their names. ``mean_times`` and ``areas`` show all events in one panel.
-OVER_RADIUS = {name: entry.curves for name, entry in FIGURES.items() if entry.curves} | {
+CURVES = {name: entry.curves for name, entry in FIGURES.items() if entry.curves} | {
     "mean_times": _every("time", r"mean time $\tau$"),
     "areas": _every("area", "area $S$"),
 }
 
 
 def draw(name, box, rows):
-    """Draw one of ``OVER_RADIUS`` for a ``Box``, with the ``rows`` of its table.
+    """Draw one of ``CURVES`` for a ``Box``, with the ``rows`` of its table.
 
     There is a panel of residuals if there are any, and no curve if no exact value is known. Raises
     ``InputError`` if no row has one of the quantities.
     """
-    shown = OVER_RADIUS[name]
-    radii, by_quantity = series_of(box, rows, shown.names, shown.looks or {})
+    shown = CURVES[name]
+    radii, by_quantity = select_series(box, rows, shown.names, shown.looks or {})
     if not by_quantity:
         raise InputError(f"the table of {name} has no row of {', '.join(shown.names)}")
     drawn = [row for part in by_quantity.values() for row in part.rows]
@@ -50,7 +50,7 @@ def draw(name, box, rows):
     measured = [row for row in drawn if row.get("estimate") is not None]
     known = not measured or any(row.get("exact") is not None for row in measured)
     beneath = shown.approach and known
-    figure, main, residuals, approach = panels.over_radius(
+    figure, main, residuals, approach = panels.radius_panels(
         box, shown.label, any(map(panels.is_judged, drawn)), beneath
     )
     for quantity in by_quantity:
@@ -87,8 +87,8 @@ def draw_areas(box, rows):
     The panels are those of the figures of single areas. Raises ``InputError`` if the table has no
     areas.
     """
-    names = {q: name for figure in AREAS for q, name in OVER_RADIUS[figure].names.items()}
-    radii, by_quantity = series_of(box, rows, names, {})
+    names = {q: name for figure in AREAS for q, name in CURVES[figure].names.items()}
+    radii, by_quantity = select_series(box, rows, names, {})
     if not by_quantity:
         raise InputError("the table of all_areas has no row of an area")
     figure = new_figure(TALL, WIDE, layout="constrained")
@@ -96,7 +96,7 @@ def draw_areas(box, rows):
     axes = figure.subplots(4, 2, height_ratios=heights * 2, squeeze=False)
     for i, name in enumerate(AREAS):
         main, lower = axes[2 * (i // 2) : 2 * (i // 2) + 2, i % 2]
-        shown = OVER_RADIUS[name]
+        shown = CURVES[name]
         main.set_label(name)
         lower.set_label(f"residuals of {name}")
         series = _draw_series(main, lower, radii, shown, by_quantity)
@@ -117,18 +117,18 @@ def add(axes, box, rows, names):
     Every call takes unused colours and markers. Names in the legend include the box, because
     ``axes`` may show several.
     """
-    kinds = [OVER_RADIUS["volume"], OVER_RADIUS["mean_times"], OVER_RADIUS["areas"]]
+    kinds = [CURVES["volume"], CURVES["mean_times"], CURVES["areas"]]
     present = {*map(quantity_of, rows)} & {*names}
     kind = next(one for one in kinds if present & {*one.names})
     before, looks = len(axes.get_legend_handles_labels()[1]), [*LOOKS.values()]
     texts = {q: text for one in kinds for q, text in one.names.items() if q in present}
     names = {q: ", ".join([text, *panels.heading(box)]) for q, text in texts.items()}
     looks = {q: looks[(before + i) % len(looks)] for i, q in enumerate(texts)}
-    radii, by_quantity = series_of(box, rows, names, looks)
+    radii, by_quantity = select_series(box, rows, names, looks)
     series, ends = [*by_quantity.values()], axes.get_ylim()
     panels.draw_series(axes, None, radii, series)
     for part in series:
-        axes.plot([], [], label=part.name, **panels.look_of(part, *part.look))
+        axes.plot([], [], label=part.name, **panels.legend_style(part, *part.look))
     panels.logarithmic(axes, radii, series)
     if before:
         low, high = zip(ends, axes.get_ylim(), strict=True)
@@ -138,7 +138,7 @@ def add(axes, box, rows, names):
     axes.legend()
 
 
-def series_of(box, rows, names, looks):
+def select_series(box, rows, names, looks):
     """Return (radii of the curves, {quantity: ``Series``}) of the quantities in ``rows``.
 
     Rows of exact values alone have a curve, but no symbol.
@@ -233,13 +233,13 @@ def draw_pressure(box, rows):
     events = [event for event in WALLS if any(row["event"] == event for row in rows)]
     series = [
         _pressure_series(
-            f"disc 1, {name_of(event)}", box, event, rows, radii, virial.pressure_factor
+            f"disc 1, {event_name(event)}", box, event, rows, radii, virial.pressure_factor
         )
         for event in events
     ]
     label = "pressure over that of an ideal gas"
     judged = any(panels.is_judged(row) for part in series for row in part.rows)
-    figure, main, lower, beneath = panels.over_radius(box, label, judged, summed)
+    figure, main, lower, beneath = panels.radius_panels(box, label, judged, summed)
     panels.draw_series(main, lower, radii, series)
     ideal = {"color": BLACK, "lw": 0.7, "ls": (0, (1, 1.5))}
     main.axhline(1, **ideal)

@@ -49,7 +49,7 @@ class Caption:
     field: str = ""
     periodic: str = ""
 
-    def of(self, box=None):
+    def full_text(self, box=None):
         """Return the text for the scenes in a ``Box``, for plain ones if it is None."""
         called = box.calls_for if box else {}
         parts = [self.text, self.other if called else self.plain]
@@ -96,7 +96,7 @@ class Figure:
 
     def caption(self, box=None):
         """Return the whole caption for the scenes in a ``Box``, for plain ones if it is None."""
-        return " ".join(text.of(box) for text in (self.own, self.note) if text)
+        return " ".join(part.full_text(box) for part in (self.own, self.note) if part)
 
 
 # The notes of figures over the radius -------------------------------------------------------------
@@ -145,7 +145,7 @@ SIMULATED = Caption(
 # The figures --------------------------------------------------------------------------------------
 
 
-def _over_radius(table, names, label, **options):
+def _radius_fields(table, names, label, **options):
     """Return the fields of a figure over the radius, with ``options`` of its ``Curves``."""
     curves = Curves(names, label, **options)
     return {"tables": (table,), "needs": frozenset(names), "curves": curves}
@@ -175,7 +175,7 @@ def _hop_area(hop, q):
     )
     label = rf"root of the {hop}-hop area, $\sqrt{{S_{{\mathrm{{{hop[0]}}}}}}}$"
     names = {f"{hop}_hop_area": f"{hop} hops"}
-    curves = _over_radius("areas", names, label, single=SAMPLING, rooted=True)
+    curves = _radius_fields("areas", names, label, single=SAMPLING, rooted=True)
     return Figure(f"Area of {hop} hops", SPACE, own, SHELLS, **curves)
 
 
@@ -239,7 +239,7 @@ FIGURES = {
             """
         ),
         SAMPLED,
-        **_over_radius("volume", {"volume": "volume"}, "volume $V$", single=SAMPLING),
+        **_radius_fields("volume", {"volume": "volume"}, "volume $V$", single=SAMPLING),
     ),
     "vertical_hop_area": _hop_area("vertical", "y"),
     "horizontal_hop_area": _hop_area("horizontal", "x"),
@@ -254,7 +254,7 @@ FIGURES = {
             many="It is the sum over all pairs of discs.",
         ),
         SHELLS,
-        **_over_radius(
+        **_radius_fields(
             "areas",
             {"disc_collision_area": "disc collisions"},
             r"collision area $S_{\mathrm{coll}}$",
@@ -275,7 +275,7 @@ FIGURES = {
             """,
         ),
         SHELLS,
-        **_over_radius(
+        **_radius_fields(
             "areas", {f"{event}_area": name for event, name in WALL_NAMES.items()}, "wall area $S$"
         ),
     ),
@@ -313,7 +313,7 @@ FIGURES = {
             many="Hops are those of any pair of discs. There is no (b) if no exact value is known.",
         ),
         SIMULATED,
-        **_over_radius(
+        **_radius_fields(
             "mean_times",
             {"vertical_hop_time": "vertical hops", "horizontal_hop_time": "horizontal hops"},
             r"mean time between hops $\tau$",
@@ -336,7 +336,7 @@ FIGURES = {
             many="Collisions are those of any pair.",
         ),
         SIMULATED,
-        **_over_radius(
+        **_radius_fields(
             "mean_times",
             {"disc_collision_time": "disc collisions"},
             r"mean time between collisions $\tau_{\mathrm{coll}}$",
@@ -365,7 +365,7 @@ FIGURES = {
             """,
         ),
         SIMULATED,
-        **_over_radius(
+        **_radius_fields(
             "mean_times",
             {f"{event}_time": name for event, name in WALL_NAMES.items()},
             r"mean time between wall hits $\tau$",

@@ -135,7 +135,7 @@ if len(EVENTS) > len(_LOOKS):
 LOOKS = dict(zip(EVENTS, _LOOKS, strict=False))
 
 
-def name_of(event):
+def event_name(event):
     """Return the name of an event for people: "vertical hops", "disc collisions", "right wall"."""
     words = event.replace("_", " ")
     return words if words.endswith("wall") else f"{words}s"

@@ -34,7 +34,7 @@ def captions(scene):
     """
     box = Box(scene["width"], scene["height"])
     return {
-        name: (entry.own.of(box), entry.note.of(box) if entry.note else "")
+        name: (entry.own.full_text(box), entry.note.full_text(box) if entry.note else "")
         for name, entry in (FIGURES | STUDY_FIGURES).items()
     }
 

@@ -39,7 +39,7 @@ THINNED = 2
 FEW = 64
 
 
-class Series(NamedTuple):
+class MethodCurve(NamedTuple):
     """A method at one radius: what the legend calls it, and its look."""
 
     method: str
@@ -52,19 +52,19 @@ class Series(NamedTuple):
 
 HOP, AREA = "horizontal_hop_time", "disc_collision_area"
 TIMES = (
-    Series("time_step", HOP, False, "time steps $\\Delta t$", VERMILLION, "s"),
-    Series("scalar", HOP, False, "one trajectory after another", ORANGE, "D"),
-    Series("lockstep", HOP, False, "many in lock step", BLUE, "o"),
-    Series("lockstep", HOP, True, "many in lock step", SKY, "o"),
-    Series("strip", HOP, True, "many from a strip", GREEN, "^"),
+    MethodCurve("time_step", HOP, False, "time steps $\\Delta t$", VERMILLION, "s"),
+    MethodCurve("scalar", HOP, False, "one trajectory after another", ORANGE, "D"),
+    MethodCurve("lockstep", HOP, False, "many in lock step", BLUE, "o"),
+    MethodCurve("lockstep", HOP, True, "many in lock step", SKY, "o"),
+    MethodCurve("strip", HOP, True, "many from a strip", GREEN, "^"),
 )
 SAMPLES = (
-    Series("shell", AREA, False, "area, shells $\\varepsilon$", VERMILLION, "s"),
-    Series("surface", AREA, False, "area, on the surface", GREEN, "^"),
-    Series("conditioned", "volume", False, "volume, conditioned", PURPLE, "v"),
-    Series("rejection", "volume", False, "volume, rejection", BLUE, "o"),
-    Series("shell", AREA, True, "area, shells $\\varepsilon$", ORANGE, "D"),
-    Series("rejection", "volume", True, "volume, rejection", SKY, "o"),
+    MethodCurve("shell", AREA, False, "area, shells $\\varepsilon$", VERMILLION, "s"),
+    MethodCurve("surface", AREA, False, "area, on the surface", GREEN, "^"),
+    MethodCurve("conditioned", "volume", False, "volume, conditioned", PURPLE, "v"),
+    MethodCurve("rejection", "volume", False, "volume, rejection", BLUE, "o"),
+    MethodCurve("shell", AREA, True, "area, shells $\\varepsilon$", ORANGE, "D"),
+    MethodCurve("rejection", "volume", True, "volume, rejection", SKY, "o"),
 )
 
 #: The symbol of the setting of a method.
@@ -105,7 +105,7 @@ def draw(box, tables):
 
 
 def select(rows, one, radii):
-    """Return {setting: rows} of a ``Series``, the largest setting first."""
+    """Return {setting: rows} of a ``MethodCurve``, the largest setting first."""
     found = {}
     for row in rows:
         own = row["part"] == "error" and row["radius"] == radii[one.is_hard]
@@ -116,7 +116,7 @@ def select(rows, one, radii):
 
 def _draw_series(axes, kept, rows, one, radii):
     """Draw measured errors, full for the long run and open for this build, and c/error²."""
-    where = "near $h/4$" if one.is_hard else f"$r={panels.math_of(radii[0])}$"
+    where = "near $h/4$" if one.is_hard else f"$r={panels.mathtext(radii[0])}$"
     full = panels.open_symbol(one.colour, one.marker) | {"markerfacecolor": one.colour}
     axes.plot([], [], ls="", label=f"{one.name}, {where}", **full)
     for setting, own in select(kept, one, radii).items():

@@ -3,7 +3,7 @@
 from matplotlib.ticker import LogLocator, NullLocator
 
 from twodiscs.figures import panels
-from twodiscs.figures.style import BLACK, COLUMN, LOOKS, name_of, new_figure
+from twodiscs.figures.style import BLACK, COLUMN, LOOKS, event_name, new_figure
 
 #: The methods of each panel, and its name.
 PANELS = {
@@ -39,7 +39,7 @@ def draw(box, tables):
     for axis, number in ((axes[0].xaxis, 4), (axes[0].yaxis, 9)):
         axis.set_major_locator(LogLocator(numticks=number))
         axis.set_minor_locator(NullLocator())
-    names = [name_of(event) for event in LOOKS] + ["volume"]
+    names = [event_name(event) for event in LOOKS] + ["volume"]
     handles = [
         axes[0].plot([], [], lw=0.7, **panels.open_symbol(*look, 0.8))[0]
         for look in (*LOOKS.values(), VOLUME)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from twodiscs.figures import panels
-from twodiscs.figures.style import BLACK, GREY, SERIES, SIZES, name_of
+from twodiscs.figures.style import BLACK, GREY, SERIES, SIZES, event_name
 from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
 from twodiscs.theory import laws
@@ -38,7 +38,7 @@ def draw(box, tables):
     _passages(passages, rows)
     first = rows[0]
     box = Box(first["width"], first["height"])
-    panels.title(rates, "a", box, f",  {name_of(first['event'])}")
+    panels.title(rates, "a", box, f",  {event_name(first['event'])}")
     return figure
 
 
@@ -63,7 +63,7 @@ def _rates(axes, rows):
         first, last, value, error = np.array(points).T
         middle = (first + last) / 2
         style = panels.open_symbol(colour, marker, 0.8) | {"lw": 0.4, "elinewidth": 0.6}
-        name = f"$r={panels.math_of(radius)}$"
+        name = f"$r={panels.mathtext(radius)}$"
         axes.errorbar(middle, value, error, ls="-", label=name, **style)
         tests = [row for row in own if row["quantity"] in ("rate", "trend")]
         constant = all(row["p"] > SMALLEST_P for row in tests)
@@ -101,7 +101,7 @@ def _passages(axes, rows):
         radius, mean, value, error, other, spread = np.array(columns)
         style = panels.open_symbol(colour, marker)
         axes.errorbar(
-            radius, value / mean, error / mean, ls="", label=name_of(hop), zorder=3, **style
+            radius, value / mean, error / mean, ls="", label=event_name(hop), zorder=3, **style
         )
         style |= {"markerfacecolor": colour, "markersize": 0.4 * SIZES[marker]}
         axes.errorbar(radius, other / mean, spread / mean, ls="", elinewidth=0.5, zorder=4, **style)

@@ -15,7 +15,7 @@ from twodiscs.figures.style import (
     ORANGE,
     PURPLE,
     VERMILLION,
-    name_of,
+    event_name,
     new_figure,
 )
 from twodiscs.model.box import Box
@@ -28,7 +28,7 @@ WIDTH, HEIGHTS = 7.0, (2.6, 1.1)
 WIDTHS = (1.5, 1.5, 1.5, 1.2)
 
 #: Names of events in this figure, if they differ from those in other figures.
-NAMES_OF = {"any_wall": "wall hits"}
+EVENT_NAMES = {"any_wall": "wall hits"}
 
 #: The quantity that is no mean time, and is not drawn.
 SHARE = "never_met_share"
@@ -70,7 +70,7 @@ def draw(box, tables):
         panels.scale_residuals(lower)
         panels.mark((main, lower), ends)
         panels.label_decades(main.yaxis, 10)
-        title = f"({letter})  {NAMES_OF.get(event, name_of(event))}"
+        title = f"({letter})  {EVENT_NAMES.get(event, event_name(event))}"
         main.set_title(title, loc="left", pad=panels.ABOVE)
     axes["a"].set_ylabel(r"mean time / that of plain discs")
     axes["z of a"].set_ylabel("residual $z$")

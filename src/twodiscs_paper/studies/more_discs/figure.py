@@ -1,7 +1,7 @@
 """Mean times against the number of discs: theory, Monte Carlo and dynamics."""
 
 from twodiscs.figures import panels
-from twodiscs.figures.style import BLACK, GREY, LOOKS, name_of
+from twodiscs.figures.style import BLACK, GREY, LOOKS, event_name
 
 #: Inches: heights of a panel of one radius and of the residuals.
 PANEL, RESIDUALS = 1.5, 1.3
@@ -34,7 +34,7 @@ def draw(box, tables):
     figure, (*upper, lower) = panels.stacked(**heights, residuals=RESIDUALS)
     for axes, radius in zip(upper, radii, strict=True):
         _times(axes, [row for row in rows if row["radius"] == radius])
-        axes.set(yscale="log", ylabel=f"time, $r={panels.math_of(radius)}$")
+        axes.set(yscale="log", ylabel=f"time, $r={panels.mathtext(radius)}$")
         low, high = axes.get_ylim()
         axes.set_ylim(low / 1.05, high * 1.05)
         panels.label_decades(axes.yaxis, high / low)
@@ -69,7 +69,7 @@ def _times(axes, rows):
                 axes.plot(*zip(*known, strict=True), color=colour, **style)
         axes.errorbar(
             numbers, times["dynamics"], times["dynamics_stderr"], ls="", elinewidth=0.6,
-            label=f"{name_of(event)} {name}".strip(), **panels.open_symbol(colour, marker),
+            label=f"{event_name(event)} {name}".strip(), **panels.open_symbol(colour, marker),
         )  # fmt: skip
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from twodiscs.figures import drawing, panels
-from twodiscs.figures.style import BLACK, BLUE, GREEN, PURPLE, SIZES, SKY, VERMILLION, name_of
+from twodiscs.figures.style import BLACK, BLUE, GREEN, PURPLE, SIZES, SKY, VERMILLION, event_name
 from twodiscs.measure.transmission import box_time
 from twodiscs.model.box import Box
 from twodiscs.theory import exact, laws
@@ -29,7 +29,7 @@ def draw(box, tables):
     main, hop, limit, ours = measured(rows, box)
     _curves(curves, main, hop, limit, ours)
     _times(times, main, hop, limit, ours)
-    panels.title(curves, "a", main, f",  {name_of(hop)}")
+    panels.title(curves, "a", main, f",  {event_name(hop)}")
     return figure
 
 

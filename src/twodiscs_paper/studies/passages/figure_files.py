@@ -50,7 +50,7 @@ def _thermal(row):
     return file.thermal_speed(_scene(row)) / row["height"]
 
 
-def _of(rows, quantity, **wanted):
+def _scaled_columns(rows, quantity, **wanted):
     """Return (times in units of h over the thermal speed, values, errors) of a ``quantity``."""
     own = select(rows, quantity=quantity, **wanted)
     time, value, error = columns(own, "time", "estimate", "stderr")
@@ -71,7 +71,7 @@ def _moved(axes, rows):
             look, kind = (SMOOTH_FILE, "smooth") if friction is None else (KICKED_FILE, "friction")
             if inertia is not None:
                 look, kind = ROUGH_FILE, "rough"
-            x, y, error = _of(own, "displacement")
+            x, y, error = _scaled_columns(own, "displacement")
             points(axes, x, y, error, look, None, blocked)
             name = f"{kind}, {'blocked' if blocked else 'open'}"
             ends.append((x[-1], y[-1], name, look[0]))
@@ -83,8 +83,8 @@ def _moved(axes, rows):
                 rises = np.append(np.diff(due) > 0, True).cumprod() > 0
                 axes.plot(time[rises], due[rises], color=BLACK, lw=0.8, zorder=5)
             elif not blocked:
-                _, place, _ = _of(own, "file")
-                _, walk, _ = _of(own, "order")
+                _, place, _ = _scaled_columns(own, "file")
+                _, walk, _ = _scaled_columns(own, "order")
                 axes.plot(x, place + walk, color=GREY, lw=0.8, zorder=2)
     height = 0.0
     for x, y, name, colour in sorted(ends, key=lambda end: end[1]):

@@ -16,7 +16,7 @@ from twodiscs.figures.style import (
     ORANGE,
     SERIES,
     VERMILLION,
-    name_of,
+    event_name,
     new_figure,
 )
 from twodiscs_paper.studies.stability.figure import BOUND, HEIGHT, NOTHING, WIDTH
@@ -42,7 +42,7 @@ def draw(box, tables):
     figure = new_figure(2 * HEIGHT + LOWEST, WIDTH, layout="constrained")
     upper, middle, lower = figure.subfigures(3, height_ratios=(HEIGHT, HEIGHT, LOWEST))
     axes = iter((*upper.subplots(1, 2), *middle.subplots(1, 2), lower.subplots()))
-    for letter, part, of_part in (
+    for letter, part, draw_part in (
         ("a", "dynamics", _runs),
         ("b", "times", _times),
         ("c", "reversal", _reversal),
@@ -52,7 +52,7 @@ def draw(box, tables):
         one = next(axes)
         one.set_label(letter)
         panels.title(one, letter, box if letter == "c" else None)
-        of_part(one, select(rows, part=part))
+        draw_part(one, select(rows, part=part))
     return figure
 
 
@@ -68,7 +68,7 @@ def _power(distance):
     return f"(1{'+' if distance > 0 else '-'}{rounded(abs(distance))})"
 
 
-def radii_of(rows):
+def name_radii(rows):
     """Return {(case, radius): name in mathtext}, ascending in the radius."""
     names = {"h/4": "h/4", "w/4": "w/4", "largest radius": r"r_{\mathrm{max}}"}
     texts = {}
@@ -79,7 +79,7 @@ def radii_of(rows):
         else:
             tiny = f"$r={rounded(row['radius'])}$"
             texts[key] = (
-                f"$r={panels.math_of(row['radius'])}$" if row["case"] == "ordinary" else tiny
+                f"$r={panels.mathtext(row['radius'])}$" if row["case"] == "ordinary" else tiny
             )
     return texts
 
@@ -96,7 +96,7 @@ def lines(axes, names):
 
 def _runs(axes, rows):
     """Draw the worst errors of the runs of many events, with their bounds."""
-    radii = radii_of(rows)
+    radii = name_radii(rows)
     places = {key: i for i, key in enumerate(radii)}
     lines(axes, list(radii.values()))
     names = {"energy_error": "$|E-1/2|$", "smallest_gap": "overlap", "excess": "beyond wall"}
@@ -156,7 +156,7 @@ def _extremes(axes, rows):
         own = [row for row in rows if row["quantity"] in (event, f"{event}_time")]
         own = [row for row in own if row["z"] is not None]
         x, y = [row["z"] for row in own], [cases.index(row["case"]) for row in own]
-        name = "virial theorem" if event == "virial" else name_of(event)
+        name = "virial theorem" if event == "virial" else event_name(event)
         axes.plot(x, y, ls="", label=name, **panels.open_symbol(*look))
     axes.set(xlim=(-6.5, 6.5), xlabel="residual $z$ of mean times")
     for z in (-5, 5):
@@ -181,7 +181,9 @@ def _reversal(axes, rows):
         returns = select(here, quantity="return_error")
         x = [rate * row["count"] / math.log(2) for row in returns]
         y = [row["value"] for row in returns]
-        name = f"$r={panels.math_of(radius)}$: {number['value']:.0f} events ({number['exact']:.0f})"
+        name = (
+            f"$r={panels.mathtext(radius)}$: {number['value']:.0f} events ({number['exact']:.0f})"
+        )
         axes.plot(x, y, ls="", label=name, zorder=2, **panels.open_symbol(*look, 0.9))
     axes.axhline(2.0**-26, **BOUND)
     axes.set(yscale="log", xlim=(0, 36), ylim=(1e-16, 1e-4))
@@ -202,7 +204,7 @@ def _coverage(axes, rows):
         points = [(x, r["value"], r["stderr"]) for x, r in placed if r["value"] is not None]
         x, y, error = zip(*points, strict=True) if points else ([], [], [])
         symbol = panels.open_symbol(*look)
-        axes.errorbar(x, y, error, ls="", elinewidth=0.6, label=name_of(event), **symbol)
+        axes.errorbar(x, y, error, ls="", elinewidth=0.6, label=event_name(event), **symbol)
         few = [x for x, row in placed if row["value"] is None]
         axes.plot(few, [0.905] * len(few), "x", color=look[0])
     for row in [row for row in rows if row["low"] is not None][:1]:
@@ -213,6 +215,6 @@ def _coverage(axes, rows):
         xlim=(-0.5, max(len(radii), 1) - 0.5), ylim=(0.9, 1.0), ylabel="coverage of 95 % intervals"
     )
     axes.xaxis.set_major_locator(FixedLocator(range(len(radii))))
-    axes.set_xticklabels([f"$r={panels.math_of(radius)}$" for radius in radii])
+    axes.set_xticklabels([f"$r={panels.mathtext(radius)}$" for radius in radii])
     axes.tick_params(axis="x", length=0)
     axes.legend(loc="upper center", ncols=3, columnspacing=1.0)

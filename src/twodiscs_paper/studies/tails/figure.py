@@ -3,7 +3,7 @@
 import numpy as np
 
 from twodiscs.figures import panels
-from twodiscs.figures.style import BLACK, BLUE, GREEN, VERMILLION, name_of
+from twodiscs.figures.style import BLACK, BLUE, GREEN, VERMILLION, event_name
 
 #: Colour and marker of the cases, in the order of the table.
 LOOKS = ((BLUE, "o"), (VERMILLION, "s"), (GREEN, "^"))
@@ -41,7 +41,7 @@ def draw(box, tables):
 
 
 def _name(row):
-    return f"{name_of(row['event'])}, $r={panels.math_of(row['radius'])}$"
+    return f"{event_name(row['event'])}, $r={panels.mathtext(row['radius'])}$"
 
 
 def _values(rows):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from twodiscs.figures import drawing, panels
-from twodiscs.figures.style import BLACK, GREY, LOOKS, name_of
+from twodiscs.figures.style import BLACK, GREY, LOOKS, event_name
 from twodiscs.model.events import HOPS, SHELLS
 from twodiscs.theory.exact import mean_times
 from twodiscs_paper.studies.thresholds.measure import leading_law, near, passages, start
@@ -26,7 +26,7 @@ def draw(box, tables):
         radii = law.limit * (1 - distances)
         exact = np.array([mean_times(box.scene(r))[event] for r in radii])
         style = panels.open_symbol(colour, marker)
-        name = name_of(event)
+        name = event_name(event)
         _points(ratios, law, rows, name, style, law)
         ratios.plot(distances, exact / law(radii), color=colour, zorder=2)
         if event in HOPS and law.power < 0:
@@ -67,7 +67,7 @@ def _mean_times(tables):
 
 def _points(axes, law, rows, name, style, unit=np.ones_like):
     """Draw measured times over ``unit`` of the radius; times from a strip have full symbols."""
-    for group, look in panels.by_start(rows, style):
+    for group, look in panels.split_by_start(rows, style):
         columns = [[row[c] for row in group] for c in ("radius", "estimate", "stderr")]
         radius, value, error = np.array(columns, float)
         scale = unit(radius)
