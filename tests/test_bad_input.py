@@ -120,7 +120,7 @@ td.load_result('\\0') → path must be the path of a file, not '\\x00'
 td.load_result('absent.json') → path must be a file to read
 td.load('nothere') → tables of results, but 'nothere' does not exist
 td.load('src') → folder must hold tables of results, but 'src' has none
-td.scan(1.5, 1, [0.1], field=1) → field is no effect; effects must be some of
+td.scan(1.5, 1, [0.1], gravity=1) → gravity is no effect; effects must be some of
 td.scan(1.5, 1, [0.2, 0.2]) → radii must differ, because one radius has the same
 td.sample(PAPER, 1).more(budget=1e7) → to go on, give samples=
 td.simulate(PAPER, 0.5, budget=1).more(duration=10) → duration must be left out for a result of …
@@ -382,7 +382,7 @@ COUNT = [0, 1.5, 2**64, "1", True]
 PART = [0.0, 1.0, -0.1, "0.1", True]
 EVENT = ["", "hop", b"any_wall", PAPER]
 EFFECTS = [
-    "field", {"field": 1}, {1: 2}, {"field": -1.0}, {"periodic": "xx"}, {"radius_ratio": 1e9},
+    "field", {"gravity": 1}, {1: 2}, {"field": -1.0}, {"periodic": "xx"}, {"radius_ratio": 1e9},
 ]  # fmt: skip
 TARGET = [{}, "any_wall", {"hop": 0.1}, {None: 0.1}, {"any_wall": 0.0}, {"any_wall": True}]
 WRONG = (

@@ -2,6 +2,8 @@
 
 import json
 import math
+import resource
+import stat
 import sys
 from dataclasses import replace
 from types import ModuleType
@@ -111,6 +113,34 @@ def test_a_point_of_the_pipeline_goes_on_and_a_saved_result_adds_up(stage, tmp_p
     whole = run.point({name: joined(part, pieces[name]) for name, part in run.parts.items()})
     alone = {n: {(0, p.planned): p.work(0, p.planned)} for n, p in run.parts.items()}
     assert whole == run.point(alone)
+
+
+@pytest.mark.parametrize("name", ["json", "xyz", "png", "pdf", "svg", "gif", "html"])
+def test_a_file_is_replaced_whole_or_not_at_all(name, tmp_path):
+    """A limit on the size of files stands for a full disk."""
+    path, link = tmp_path / f"old.{name}", tmp_path / f"link.{name}"
+    path.write_text("old")
+    path.chmod(0o640)
+    link.symlink_to(path)
+    write = {
+        "json": td.sample(SCENE, 1).save,
+        "xyz": lambda path: td.trajectory(SCENE, 9).to_xyz(path),
+        "gif": lambda path: td.animate(td.trajectory(SCENE, 9), path),
+        "html": lambda path: td.animate(td.trajectory(SCENE, 9), path),
+    }.get(name, lambda path: td.plot(SCENE, path))
+    usual = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (100, usual[1]))
+    try:
+        with pytest.raises(td.InputError, match=r"path must be a file to write, .*File too large"):
+            write(link)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, usual)
+    assert path.read_text() == "old"
+    write(link)
+    assert path.stat().st_size > 1000
+    assert stat.filemode(path.stat().st_mode) == "-rw-r-----"
+    assert link.is_symlink()
+    assert {*tmp_path.iterdir()} == {path, link}
 
 
 def test_files_of_something_else_are_refused(tmp_path):

@@ -229,7 +229,7 @@ def test_the_nearer_ball_is_in_front():
 RECORDER = """#!{python}
 import json, sys
 open(sys.argv[-1], "wb").write(sys.stdin.buffer.read())
-json.dump(sys.argv, open(sys.argv[-1] + ".json", "w"))
+json.dump(sys.argv, open(sys.argv[0] + ".json", "w"))
 if {status}:
     print("no encoder", file=sys.stderr)
 sys.exit({status})
@@ -248,7 +248,7 @@ def test_an_mp4_is_written_by_ffmpeg(rows, tmp_path, monkeypatch):
     with style.context():
         animation.animate(BOX, RADIUS, rows[:3], [tmp_path / "a.gif", path])
     frames = unpacked(tmp_path / "a.gif")
-    words = json.loads((tmp_path / "a.mp4.json").read_text())
+    words = json.loads((folder / "ffmpeg.json").read_text())
     assert words[words.index("-framerate") + 1] == "20"
     width, height = map(int, words[words.index("-video_size") + 1].split("x"))
     pixels = np.fromfile(path, np.uint8).reshape(-1, height, width, 3).astype(int)
@@ -259,10 +259,12 @@ def test_an_mp4_is_written_by_ffmpeg(rows, tmp_path, monkeypatch):
     program.write_text(RECORDER.format(python=sys.executable, status=1))
     with pytest.raises(td.InputError, match=r"that ffmpeg can write, .*: no encoder"):
         animation.write_mp4(path, [image], [50])
+    assert path.stat().st_size == pixels.size
     with pytest.raises(td.InputError, match="path must be a file to write"):
         animation.animate(BOX, RADIUS, rows, [tmp_path / "absent" / "a.mp4"])
-    # ffmpeg reads file:b.mp4 as the file b.mp4, which it would overwrite.
+    # ffmpeg reads file:b.mp4 as the file b.mp4, but not behind a folder.
     program.write_text(RECORDER.format(python=sys.executable, status=0))
     monkeypatch.chdir(tmp_path)
     animation.write_mp4("file:b.mp4", [image], [50])
-    assert json.loads((tmp_path / "file:b.mp4.json").read_text())[-1] == f"{tmp_path}/file:b.mp4"
+    assert json.loads((folder / "ffmpeg.json").read_text())[-1].startswith(f"{tmp_path}/")
+    assert (tmp_path / "file:b.mp4").stat().st_size == 18

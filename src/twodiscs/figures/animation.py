@@ -9,7 +9,6 @@ equal steps of time, and one of them shows the moment of the hop.
 
 import io
 import json
-import os
 import shutil
 import subprocess
 from base64 import b64encode
@@ -420,8 +419,9 @@ def animate(box, radius, rows, paths):
             raise InputError(f"path must be a .gif, .png, .html or .mp4 file, not {str(path)!r}")
         if str(path).endswith(".mp4"):
             ffmpeg()
-        with writing_to(path):
-            os.stat(Path(path).parent)  # raises for a folder that does not exist
+        if not Path(path).parent.is_dir():
+            with writing_to(path):  # raises before all frames are drawn
+                pass
     motion = Motion(box, radius, rows)
     figure, circles, others = draw(motion)
     for artist, _ in moving_parts(motion, circles, others, motion.centre):
@@ -453,8 +453,8 @@ def animate(box, radius, rows, paths):
         elif str(path).endswith(".mp4"):
             write_mp4(path, true, shown)
         else:
-            with writing_to(path):
-                first.save(path, save_all=True, append_images=later, duration=shown, loop=0)
+            with writing_to(path) as new:
+                first.save(new, save_all=True, append_images=later, duration=shown, loop=0)
 
 
 def _palette(image, kept):
@@ -489,8 +489,8 @@ def write_page(path, images, durations, title):
         title=title, last=len(pictures) - 1, pictures=json.dumps(pictures),
         milliseconds=json.dumps(durations),
     )  # fmt: skip
-    with writing_to(path), open(path, "w", encoding="utf-8", newline="\n") as file:
-        file.write(text)
+    with writing_to(path) as new:
+        Path(new).write_text(text, encoding="utf-8", newline="\n")
 
 
 def ffmpeg():
@@ -517,13 +517,14 @@ def write_mp4(path, images, durations):
         # Every player knows this pixel format, whose encoders need even numbers of pixels.
         "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p",
         "-movflags", "+faststart",
-        os.path.abspath(path),  # else a colon in the name begins a protocol
     ]  # fmt: skip
     frames = b"".join(
         image.convert("RGB").tobytes() * round(duration / step)
         for image, duration in zip(images, durations, strict=True)
     )
-    done = subprocess.run(command, input=frames, capture_output=True, check=False)
-    if done.returncode:
-        said = done.stderr.decode(errors="replace").strip().split("\n")[-1]
-        raise InputError(f"path must be a file that ffmpeg can write, not {str(path)!r}: {said}")
+    with writing_to(path) as new:  # an absolute path, in which a colon begins no protocol
+        done = subprocess.run([*command, new], input=frames, capture_output=True, check=False)
+        if done.returncode:
+            said = done.stderr.decode(errors="replace").strip().split("\n")[-1]
+            refused = f"path must be a file that ffmpeg can write, not {str(path)!r}"
+            raise InputError(f"{refused}: {said}")

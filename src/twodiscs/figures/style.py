@@ -122,8 +122,10 @@ def save(figure, path, origin=None):
         raise InputError(f"path must be a .pdf, .png or .svg file, not {str(path)!r}")
     if isinstance(figure, StyledFigure):
         figure.settle()
-    with writing_to(path):
-        figure.savefig(path, format=kind, metadata=metadata[kind])
+    stream = BytesIO()  # a full disk ends savefig() of a PDF by an error of zlib
+    figure.savefig(stream, format=kind, metadata=metadata[kind])
+    with writing_to(path) as new:
+        Path(new).write_bytes(stream.getvalue())
 
 
 #: (colour, marker) of the events in their order; all colours differ, and all markers.

@@ -10,7 +10,7 @@ from typing import ClassVar, Self
 
 import twodiscs
 from twodiscs.model.box import Box, key, parameters_of, stream_seed
-from twodiscs.model.checks import InputError, quote, writing_to
+from twodiscs.model.checks import InputError, quote
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.points.base import content_of, write_json
 
@@ -143,8 +143,7 @@ class Result(Printed):
         >>> td.load_result("md.json") == md
         True
         """
-        with writing_to(path):
-            write_json(path, self.to_dict())
+        write_json(path, self.to_dict())
 
 
 def note_of_number(what, asked, done):

@@ -211,7 +211,7 @@ class Trajectory(pd.DataFrame):
         lattice = " ".join(repr(float(side)) for side in np.diag(sides).flat)
         periodic = " ".join("T" if axis in scene.periodic else "F" for axis in "xyz")
         properties = "species:S:1:pos:R:3:masses:R:1:momenta:R:3:radius:R:1:id:I:1"
-        with writing_to(path), open(path, "w", encoding="utf-8", newline="\n") as file:
+        with writing_to(path) as new, open(new, "w", encoding="utf-8", newline="\n") as file:
             for time, places, speeds in zip(at, centres, velocities, strict=True):
                 file.write(
                     f'{discs}\nLattice="{lattice}" Properties={properties} pbc="{periodic}" '

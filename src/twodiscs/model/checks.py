@@ -2,6 +2,7 @@
 
 import math
 import numbers
+import os
 import re
 import reprlib
 from collections.abc import Iterable
@@ -86,12 +87,27 @@ def quote(value):
 
 @contextmanager
 def writing_to(path):
-    """Raise ``InputError`` if the file ``path`` cannot be written in the block."""
+    """Give a path beside the file ``path``, which replaces that file when the block has ended.
+
+    If the block fails, an old file stays as it was. Raises ``InputError`` if it cannot be written.
+    """
+    from shutil import copymode
+    from tempfile import TemporaryDirectory  # which take long to import
+
     refused = f"path must be a file to write, not {str(path)!r}"
     if "\0" in str(path):
         raise InputError(f"{refused}: it has a null character")
     try:
-        yield
+        if (old := os.path.isfile(path)) or not os.path.exists(path):
+            folder, name = os.path.split(whole := os.path.realpath(path))  # a link stays a link
+            with TemporaryDirectory(prefix=".", dir=folder) as beside:
+                yield (new := os.path.join(beside, name))
+                if old:
+                    with open(whole, "ab"):  # raises if it must not be changed
+                        copymode(whole, new)
+                os.replace(new, whole)
+        else:  # a device
+            yield path
     except (OSError, TypeError) as error:
         raise InputError(f"{refused}: {getattr(error, 'strerror', None) or error}") from None
 

@@ -16,7 +16,7 @@ from typing import ClassVar
 import numpy as np
 
 import twodiscs
-from twodiscs.model.checks import InputError
+from twodiscs.model.checks import InputError, writing_to
 from twodiscs.model.scene import Scene
 
 # Files --------------------------------------------------------------------------------------------
@@ -42,7 +42,8 @@ def write_json(path, content, seconds=None):
     if seconds is not None:
         content[SECONDS] = seconds
     text = json.dumps(content, sort_keys=True, indent=1, allow_nan=False)
-    Path(path).write_text(f"{text}\n", encoding="utf-8", newline="\n")
+    with writing_to(path) as new:
+        Path(new).write_text(f"{text}\n", encoding="utf-8", newline="\n")
 
 
 def read_json(path):

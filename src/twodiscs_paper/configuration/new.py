@@ -1,8 +1,10 @@
 """``twodiscs new``: a commented configuration. It needs the standard library only."""
 
+import os
 import shlex
+from pathlib import Path
 
-from twodiscs.model.checks import InputError
+from twodiscs.model.checks import InputError, writing_to
 
 #: The file that ``twodiscs new`` writes: keys with a default are comments, RUN is the command.
 NEW = """\
@@ -41,9 +43,8 @@ scenes:
 def new(path):
     """Write a commented configuration to ``path``; raise ``InputError`` if there is a file."""
     run = f"twodiscs run {shlex.quote(str(path))}"
-    try:
-        with open(path, "x", encoding="utf-8", newline="\n") as file:
-            file.write(NEW.replace("RUN", run))
-    except FileExistsError:
-        raise InputError(f"{path} exists already and is not overwritten") from None
+    if os.path.lexists(path):
+        raise InputError(f"{path} exists already and is not overwritten")
+    with writing_to(path) as new_path:
+        Path(new_path).write_text(NEW.replace("RUN", run), encoding="utf-8", newline="\n")
     print(f"{path} is written. To build it: {run}")
