@@ -1,4 +1,4 @@
-"""The animation: without it discs could be drawn where they never were, or a hop be missed."""
+"""The animation: discs are where the trajectory has them, and the picture stops at a lone hop."""
 
 import json
 import re

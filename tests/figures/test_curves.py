@@ -1,4 +1,4 @@
-"""Exact curves: without it one could run through a jump, or end far from its limit."""
+"""Exact curves: they break where times jump, and end close to the limits of a regime."""
 
 import re
 from itertools import pairwise

@@ -1,7 +1,4 @@
-"""Drawings: without it discs that should touch would not, or a hidden edge be drawn as one in view.
-
-They are to scale: lines end and shells are as wide as the theory says.
-"""
+"""Drawings are to scale: discs touch, lines end and shells are as wide as the theory says."""
 
 import math
 

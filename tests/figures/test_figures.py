@@ -1,7 +1,6 @@
-"""Figures of a scene: without it a symbol, an error bar or a curve could differ from its table.
+"""Figures of a scene: symbols, error bars and curves are those of the tables; texts stand clear.
 
-Every figure is drawn for many boxes; the numbers in its artists are compared with the rows, and
-texts upon each other are found.
+Every figure is drawn for many boxes. The numbers in its artists are compared with the rows.
 """
 
 from functools import cache
@@ -70,7 +69,7 @@ def test_texts_stand_clear(name, box):
     assert figure.get_size_inches()[0] == (radius.WIDE if name == "all_areas" else style.COLUMN)
 
 
-def of_quantity(rows, quantity, factor=None, rooted=False):
+def select_numbers(rows, quantity, factor=None, rooted=False):
     """Return (x, y, standard error, residual) of the rows of a quantity that have an error.
 
     A ``factor`` of each row turns mean times to rates times this factor.
@@ -95,8 +94,8 @@ def series(name, box, rows):
     radii, columns = curves.exact_curves(box)
     if name == "all_areas":
         for part in radius.AREAS:
-            for _, _, *of_part in series(part, box, rows):
-                yield part, f"residuals of {part}", *of_part
+            for _, _, *numbers in series(part, box, rows):
+                yield part, f"residuals of {part}", *numbers
     elif name == "pressure":
         for panel, events, factor in (
             ("main", ("right_wall", "top_wall"), virial.pressure_factor),
@@ -105,22 +104,24 @@ def series(name, box, rows):
             known = panel == "main" or virial.weights(box.tiny) is not None
             for event in [e for e in events if known and e in box.tiny.events]:
 
-                def of(r, factor=factor, event=event):
+                def scale(r, factor=factor, event=event):
                     scene = box.scene(float(r))
                     return factor(scene, event) * scene.accessible_fraction(event)
 
                 times = columns[f"{event}_time"]
                 curve = [
-                    np.nan if np.isnan(time) else of(r) / time
+                    np.nan if np.isnan(time) else scale(r) / time
                     for r, time in zip(radii, times, strict=True)
                 ]
-                due = of_quantity(rows, f"{event}_time", lambda row, of=of: of(row["radius"]))
+                due = select_numbers(
+                    rows, f"{event}_time", lambda row, scale=scale: scale(row["radius"])
+                )
                 yield panel, panel == "main" and "residuals", event, due, np.array(curve)
     else:
         shown = radius.CURVES[name]
         for quantity in shown.names:
             curve = columns[quantity] ** (0.5 if shown.rooted else 1)
-            due = of_quantity(rows, quantity, rooted=shown.rooted)
+            due = select_numbers(rows, quantity, rooted=shown.rooted)
             if any(quantity_of(row) == quantity for row in rows):
                 yield "main", "residuals", quantity, due, curve
 

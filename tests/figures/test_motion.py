@@ -1,4 +1,4 @@
-"""Figures of the motion: without it other hops, lines or bins could be shown than the table has."""
+"""Figures of the motion: hops, lines and bins are those of the table."""
 
 import numpy as np
 import pytest
@@ -14,13 +14,15 @@ BOX = Box(1.5, 1.0)
 
 def test_the_panels_beneath_show_most_hops_and_a_hop_that_is_not_undone():
     hops = np.array([3.0, 40.0, 41.0, 42.0, 90.0])
-    assert motion._crowded(hops, 10.0, 0.0, 100.0) == (37.0, 47.0)
-    assert motion._crowded(hops[:1], 10.0, 0.0, 100.0) == (0.0, 10.0)
-    assert motion._crowded(hops[:0], 10.0, 0.0, 100.0) == (0.0, 10.0)
-    assert motion._lone(hops, 10.0, 0.0, 100.0) == 90
-    assert motion._lone(hops, 10.0, 0.0, 92.0) is None  # its stretch would go beyond the end
-    assert motion._lone(hops[1:4], 10.0, 0.0, 100.0) is None
-    assert motion._lone(hops[:1], 10.0, 0.0, 100.0) is None
+    assert motion._densest_stretch(hops, 10.0, 0.0, 100.0) == (37.0, 47.0)
+    assert motion._densest_stretch(hops[:1], 10.0, 0.0, 100.0) == (0.0, 10.0)
+    assert motion._densest_stretch(hops[:0], 10.0, 0.0, 100.0) == (0.0, 10.0)
+    assert motion._loneliest_hop(hops, 10.0, 0.0, 100.0) == 90
+    assert (
+        motion._loneliest_hop(hops, 10.0, 0.0, 92.0) is None
+    )  # its stretch would go beyond the end
+    assert motion._loneliest_hop(hops[1:4], 10.0, 0.0, 100.0) is None
+    assert motion._loneliest_hop(hops[:1], 10.0, 0.0, 100.0) is None
 
 
 @pytest.mark.parametrize(

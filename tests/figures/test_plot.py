@@ -1,4 +1,4 @@
-"""Plots of the face: without it a measured value could be lost, or the user's settings changed."""
+"""Plots of the face: they show every measured value, and leave the user's settings alone."""
 
 import copy
 import pickle

@@ -1,4 +1,4 @@
-"""Files of figures: without it their bytes could depend on the machine, its settings or the day."""
+"""Files of figures: their bytes are the same on every machine, with any settings, on any day."""
 
 import os
 import re

@@ -1,7 +1,4 @@
-"""Figures of studies: without it a symbol, an error bar or a law could differ from its table.
-
-They are drawn from the committed results.
-"""
+"""Figures of studies: symbols, error bars and laws are those of the committed tables."""
 
 import math
 from functools import cache

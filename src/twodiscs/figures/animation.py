@@ -445,16 +445,16 @@ def animate(box, radius, rows, paths):
     palette = _palette(image(motion.centre), sorted(fills))
     true = [image(time) for time in motion.frames]
     first, *later = images = [one.quantize(palette=palette, dither=0) for one in true]
-    shown = [HOP if motion.hop and time == motion.centre else FRAME for time in motion.frames]
-    shown[-1] = LAST
+    durations = [HOP if motion.hop and time == motion.centre else FRAME for time in motion.frames]
+    durations[-1] = LAST
     for path in paths:
         if str(path).endswith(".html"):
-            write_page(path, images, shown, str(motion.scene))
+            write_page(path, images, durations, str(motion.scene))
         elif str(path).endswith(".mp4"):
-            write_mp4(path, true, shown)
+            write_mp4(path, true, durations)
         else:
             with writing_to(path) as new:
-                first.save(new, save_all=True, append_images=later, duration=shown, loop=0)
+                first.save(new, save_all=True, append_images=later, duration=durations, loop=0)
 
 
 def _palette(image, kept):
@@ -525,6 +525,6 @@ def write_mp4(path, images, durations):
     with writing_to(path) as new:  # an absolute path, in which a colon begins no protocol
         done = subprocess.run([*command, new], input=frames, capture_output=True, check=False)
         if done.returncode:
-            said = done.stderr.decode(errors="replace").strip().split("\n")[-1]
+            message = done.stderr.decode(errors="replace").strip().split("\n")[-1]
             refused = f"path must be a file that ffmpeg can write, not {str(path)!r}"
-            raise InputError(f"{refused}: {said}")
+            raise InputError(f"{refused}: {message}")

@@ -74,7 +74,7 @@ def _seen(point):
 
 
 def _towards(direction):
-    """Return how far a ``direction`` points to who looks at the prism."""
+    """Return the component of a ``direction`` towards the viewer."""
     a, e = radians(AZIMUTH), radians(ELEVATION)
     return cos(e) * (cos(a) * direction[0] + sin(a) * direction[1]) + sin(e) * direction[2]
 

@@ -1,4 +1,4 @@
-"""The functions that draw the figures of the catalogue, by name."""
+"""``draw`` returns a figure of a scene by its name. Each figure is a function of another module."""
 
 from functools import partial
 
@@ -25,7 +25,7 @@ BOX_DRAWINGS = {
 def draw(name, box, rows=None, radius=None):
     """Return the figure ``name`` of a ``Box``, with the ``rows`` of its table if it has one.
 
-    ``FIGURES`` of the catalogue has the names; ``mean_times`` and ``areas`` show all events of
+    ``FIGURES`` of ``scene_figures`` has the names; ``mean_times`` and ``areas`` show all events of
     these tables in one panel. The ``radius`` of a trajectory, if given, is written above it. Raises
     ``InputError`` if no row is about the figure.
     """

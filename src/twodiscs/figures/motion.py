@@ -26,26 +26,17 @@ def draw_trajectory(box, rows, radius=None):
     In a box higher than wide, or if x is periodic, it is y2 − y1. The ``radius``, if given, is
     written above. Between events the discs move freely, or fall with the same acceleration, so
     straight lines through the rows are the trajectory itself. More than two discs are drawn by
-    ``world_lines``.
+    ``draw_world_lines``.
     """
     if box.family == "many":
-        return world_lines(box, rows, radius)
+        return draw_world_lines(box, rows, radius)
     hop = shown_hop(box)
     axis = AXIS[hop]
     times = np.array([row["time"] for row in rows])
     apart = np.array([row[f"{axis}2"] - row[f"{axis}1"] for row in rows])
     hops = times[[row["event"] == hop for row in rows]]
 
-    length = (times[-1] - times[0]) * min(MOST, CLOSE / len(rows))
-    start, end = _crowded(hops, length, times[0], times[-1])
-    gaps = np.diff(hops[(hops > start) & (hops < end)])
-    if gaps.size and gaps.min() < APART * length:
-        length = max(gaps.min() / APART, length / 10)
-        start, end = _crowded(hops, length, times[0], times[-1])
-    stretches = [(start, end)]
-    lone = _lone(hops, length, times[0], times[-1])
-    if lone is not None:
-        stretches.append((lone - length / 2, lone + length / 2))
+    stretches = _stretches(times, hops)
     letters = "bc"[: len(stretches)]
 
     figure = new_figure(2 * PANEL, layout="constrained")
@@ -64,7 +55,7 @@ def draw_trajectory(box, rows, radius=None):
         label = f"stretch in ({name})"
         panel["a"].axvspan(first, last, color=colour, alpha=0.45, lw=0, zorder=0, label=label)
         panels.title(panel[name], name)
-    if lone is not None:
+    if len(stretches) > 1:
         panel["c"].set_ylabel("")
         panel["c"].tick_params(labelleft=False)
         for name in letters:
@@ -76,7 +67,24 @@ def draw_trajectory(box, rows, radius=None):
     return figure
 
 
-def _lone(hops, length, start, end):
+def _stretches(times, hops):
+    """Return (start, end) of the stretches that the panels beneath enlarge, one or two.
+
+    The first has the most ``hops``. The second, as long, is around a hop far from all others.
+    """
+    start, end = times[0], times[-1]
+    length = (end - start) * min(MOST, CLOSE / len(times))
+    first, last = _densest_stretch(hops, length, start, end)
+    gaps = np.diff(hops[(hops > first) & (hops < last)])
+    if gaps.size and gaps.min() < APART * length:
+        length = max(gaps.min() / APART, length / 10)
+        first, last = _densest_stretch(hops, length, start, end)
+    lone = _loneliest_hop(hops, length, start, end)
+    second = [] if lone is None else [(lone - length / 2, lone + length / 2)]
+    return [(first, last), *second]
+
+
+def _loneliest_hop(hops, length, start, end):
     """Return the time of the hop farthest from all others, None if another is within ``length``.
 
     The stretch of ``length`` around it is between ``start`` and ``end``.
@@ -100,7 +108,7 @@ def shown_hop(box):
     return "horizontal_hop" if along_x else "vertical_hop"
 
 
-def _crowded(hops, length, start, end):
+def _densest_stretch(hops, length, start, end):
     """Return the ends of the stretch of ``length`` with the most ``hops``."""
     first = start
     if len(hops):
@@ -147,7 +155,7 @@ def disc_colours(box, first):
     return [to_rgb(colormaps["turbo"](shade)) for shade in shades]
 
 
-def world_lines(box, rows, radius=None):
+def draw_world_lines(box, rows, radius=None):
     """Draw the positions of the discs of a ``Box`` along its longer side, against time.
 
     ``rows`` are the rows of trajectory.csv; the first ones are shown, and discs move freely between

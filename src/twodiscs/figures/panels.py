@@ -322,13 +322,13 @@ LEAST = 3
 
 def logarithmic(axes, radii, series):
     """Make the ordinate logarithmic, with a range for all estimates and most of the curves."""
-    seen = [row["estimate"] or row.get("bound") for part in series for row in part.rows]
+    estimates = [row["estimate"] or row.get("bound") for part in series for row in part.rows]
     ends = radii[np.flatnonzero(np.isnan(radii)) - 1]
     largest = ends[-1]
     clear = (np.abs(radii[:, None] - ends) > 0.05 * largest).all(axis=1) & (radii > 0.1 * largest)
-    shown = [value for part in series for value in part.exact[clear] if value > 0]
-    shown += [value for value in seen if value]
-    low, high = min(shown, default=1.0), max(shown, default=1.0)
+    values = [value for part in series for value in part.exact[clear] if value > 0]
+    values += [value for value in estimates if value]
+    low, high = min(values, default=1.0), max(values, default=1.0)
     margin = max((high / low) ** 0.06, (LEAST * low / high) ** 0.5)
     axes.set_yscale("log")
     axes.set_ylim(low / margin, high * margin)

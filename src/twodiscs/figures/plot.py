@@ -1,4 +1,4 @@
-"""Figures and animations of results of the face, the same as those of the workflow."""
+"""Figures and animations of results, the same as those of the workflow."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends import backend_registry
 
 from twodiscs.analysis.tables import SCENE_TABLES, quantity_of
-from twodiscs.figures import panels, style
+from twodiscs.figures import animation, panels, style
 from twodiscs.figures.draw import BOX_DRAWINGS, draw
 from twodiscs.figures.radius import CURVES, add
 from twodiscs.figures.scene_figures import FIGURES
@@ -309,8 +309,6 @@ def animate(trajectory: pd.DataFrame, path: str | PathLike[str]) -> None:
     --------
     >>> td.animate(td.trajectory(scene, 2, seed=1), "two.gif")
     """
-    from twodiscs.figures import animation
-
     scene = scene_or_none(trajectory)
     if scene is None or not hasattr(trajectory, "iterrows"):
         raise InputError(f"trajectory must be a result of trajectory(), not {trajectory!r:.80}")

@@ -41,35 +41,35 @@ def draw(name, box, rows):
     There is a panel of residuals if there are any, and no curve if no exact value is known. Raises
     ``InputError`` if no row has one of the quantities.
     """
-    shown = CURVES[name]
-    radii, by_quantity = select_series(box, rows, shown.names, shown.looks or {})
+    kind = CURVES[name]
+    radii, by_quantity = select_series(box, rows, kind.names, kind.looks or {})
     if not by_quantity:
-        raise InputError(f"the table of {name} has no row of {', '.join(shown.names)}")
+        raise InputError(f"the table of {name} has no row of {', '.join(kind.names)}")
     drawn = [row for part in by_quantity.values() for row in part.rows]
     # Without any exact value nothing approaches an end.
     measured = [row for row in drawn if row.get("estimate") is not None]
     known = not measured or any(row.get("exact") is not None for row in measured)
-    beneath = shown.approach and known
+    beneath = kind.approach and known
     figure, main, residuals, approach = panels.radius_panels(
-        box, shown.label, any(map(panels.is_judged, drawn)), beneath
+        box, kind.label, any(map(panels.is_judged, drawn)), beneath
     )
     for quantity in by_quantity:
-        _laws(main, box, quantity.removesuffix("_time"), shown.laws)
-    series = _draw_series(main, residuals, radii, shown, by_quantity)
-    laws = [(panels.LAW_NAME, panels.LAW)] if shown.laws and box.is_plain else []
-    panels.legend(main, series, shown.single, laws)
+        _laws(main, box, quantity.removesuffix("_time"), kind.laws)
+    series = _draw_series(main, residuals, radii, kind, by_quantity)
+    laws = [(panels.LAW_NAME, panels.LAW)] if kind.laws and box.is_plain else []
+    panels.legend(main, series, kind.single, laws)
     if beneath:
         _approach(approach, box, by_quantity)
     return figure
 
 
-def _draw_series(main, lower, radii, shown, by_quantity):
-    """Draw the ``Series`` {quantity: series} that the ``Curves`` ``shown`` name; return them."""
-    series = [part for quantity, part in by_quantity.items() if quantity in shown.names]
-    if shown.rooted:
+def _draw_series(main, lower, radii, kind, by_quantity):
+    """Draw the ``Series`` {quantity: series} that ``kind``, a ``Curves``, names; return them."""
+    series = [part for quantity, part in by_quantity.items() if quantity in kind.names]
+    if kind.rooted:
         series = [_rooted(part) for part in series]
-    panels.draw_series(main, lower, radii, series, bool(shown.single))
-    if shown.rooted:
+    panels.draw_series(main, lower, radii, series, bool(kind.single))
+    if kind.rooted:
         main.set_ylim(0, None)
     elif series:
         panels.logarithmic(main, radii, series)
@@ -96,15 +96,15 @@ def draw_areas(box, rows):
     axes = figure.subplots(4, 2, height_ratios=heights * 2, squeeze=False)
     for i, name in enumerate(AREAS):
         main, lower = axes[2 * (i // 2) : 2 * (i // 2) + 2, i % 2]
-        shown = CURVES[name]
+        kind = CURVES[name]
         main.set_label(name)
         lower.set_label(f"residuals of {name}")
-        series = _draw_series(main, lower, radii, shown, by_quantity)
+        series = _draw_series(main, lower, radii, kind, by_quantity)
         panels.scale_residuals(lower)
         panels.mark([main, lower], limits(box))
-        panels.legend(main, series, shown.single)
+        panels.legend(main, series, kind.single)
         # The name of a root is too long beside a panel of this height.
-        main.set_ylabel(shown.label.rpartition(", ")[2])
+        main.set_ylabel(kind.label.rpartition(", ")[2])
         main.tick_params(labelbottom=False)
         lower.set(xlabel="radius $r$", ylabel="residual $z$")
         panels.title(main, "abcd"[i], box if i == 0 else None, up=panels.ABOVE)

@@ -1,7 +1,7 @@
 """Every figure of a scene: its title, its caption, the tables that it reads, and its curves.
 
-The functions that draw are in ``figures.draw``. This module needs the standard library only,
-because the Snakefile imports it.
+The functions that draw are in ``figures.draw``. This module imports no matplotlib, because the
+Snakefile imports it.
 """
 
 from dataclasses import dataclass, field
