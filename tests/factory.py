@@ -4,14 +4,16 @@ import json
 import math
 from contextlib import contextmanager
 from functools import cached_property
+from types import MappingProxyType
 from unittest.mock import patch
 
 import numpy as np
 
 from twodiscs.analysis import tables
+from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.box import Box, parameters_of
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
-from twodiscs.points.base import content_of, restore_arrays, write_json
+from twodiscs.points.base import file_content, restore_arrays, write_json
 from twodiscs.points.dynamics_point import DynamicsPoint
 from twodiscs.points.intervals_point import Bins, IntervalsPoint
 from twodiscs.points.monte_carlo_point import Hits, MonteCarloPoint
@@ -23,7 +25,6 @@ RADII = (0.02, 0.1, 0.2, 0.24, 0.3, 0.36, 0.38)
 
 
 #: The class of the points of each stage.
-POINTS = {point.stage: point for point in (MonteCarloPoint, DynamicsPoint, IntervalsPoint)}
 
 
 def empty(table, **values):
@@ -113,11 +114,11 @@ def all_reached(point):
 
 def through_json(pieces):
     """Return ``pieces`` of a run as they come back from a file."""
-    content = content_of("simulate", {}, {}, {"all": {"sums": pieces}})
+    content = file_content("simulate", {}, {}, {"all": {"sums": pieces}})
     return restore_arrays(json.loads(json.dumps(content))["parts"])["all"]["sums"]
 
 
-def write(point, path):
+def write(point, path, settings=MappingProxyType({})):
     """Write the file of a job with the sums of a fabricated ``point`` of one block."""
     if point.stage == "dynamics":
         sums, products = np.zeros(len(EVENTS), int), np.zeros((len(EVENTS), len(EVENTS)), int)
@@ -135,7 +136,8 @@ def write(point, path):
         hits = [hits.hits for hits in point.quantities.values()]
         part = {"method": point.method, "samples": point.samples, "quantities": quantities}
         part |= {"right_and_top": len(hits), "sums": {(0, 1): [[*hits, point.right_and_top]]}}
-    write_json(path, content_of("", parameters_of(point.scene), {}, {"all": part}))
+    call = STAGES[point.stage].call
+    write_json(path, file_content(call, parameters_of(point.scene), dict(settings), {"all": part}))
 
 
 # By laws ----------------------------------------------------------------------------------------

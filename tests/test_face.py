@@ -20,8 +20,7 @@ from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.dynamics.paths import state_of
 from twodiscs.figures import style
 from twodiscs.measure.measurements import Measurement, measurement
-from twodiscs.measure.result import seed_of
-from twodiscs.model.box import Box
+from twodiscs.model.box import Box, job_seed
 from twodiscs.model.effects import EFFECTS
 from twodiscs.sampling.initial_states import components
 from twodiscs_paper.configuration import schema, yaml_files
@@ -114,9 +113,9 @@ def test_results_are_those_of_the_pipeline(simulated, sampled, intervals):
 def test_seeds_tell_methods_boxes_and_radii_apart():
     """A scan with one seed has independent errors, unless the scene has a name."""
     scenes = [SCENE, SCENE.with_radius(0.1), td.Scene(1.5, 1.1, 0.2), *SCENES.values()]
-    found = [seed_of(scene, m, 1, None) for scene in scenes for m in ("dynamics", "monte_carlo")]
+    found = [job_seed(scene, m, 1, None) for scene in scenes for m in ("dynamics", "monte_carlo")]
     assert len({*found}) == len(found)
-    assert seed_of(SCENE, "dynamics", 1, "a") != seed_of(SCENE, "dynamics", 2, "a")
+    assert job_seed(SCENE, "dynamics", 1, "a") != job_seed(SCENE, "dynamics", 2, "a")
 
 
 def test_some_events_and_quantities_are_those_of_all(simulated, sampled):

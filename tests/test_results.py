@@ -14,10 +14,11 @@ import pytest
 from effect_scenes import SCENES
 
 import twodiscs as td
+from twodiscs.dynamics.stages import STAGES
 from twodiscs.measure import result as progress_module
 from twodiscs.model.checks import PRESETS
-from twodiscs.points.base import content_of, reached, write_json
-from twodiscs_paper.pipeline.points import KINDS, joined, pieces_of, run_of
+from twodiscs.points.base import file_content, reached, read_json, restore_arrays, write_json
+from twodiscs_paper.pipeline.points import check_coverage
 
 SCENE = td.Scene(1.5, 1.0, 0.2)
 NARROW = td.Scene(1.5, 1.0, 0.249)
@@ -89,28 +90,27 @@ JOBS = {
 def kept(path, stage, scene, settings, parts):
     """Write the file of a job of the pipeline."""
     parameters = td.Box.of(scene).parameters() | {"radius": scene.radius}
-    write_json(path, content_of(KINDS[stage], parameters, settings, parts))
+    write_json(path, file_content(STAGES[stage].call, parameters, settings, parts))
 
 
 @pytest.mark.parametrize("stage", JOBS)
 def test_a_point_of_the_pipeline_goes_on_and_a_saved_result_adds_up(stage, tmp_path):
     settings, larger, function = JOBS[stage]
     settings = settings | {"seed": 3, "name": "paper"}
-    run = run_of(stage, NARROW, settings)
+    run = STAGES[stage].run(NARROW, settings)
     kept(tmp_path / "0.2.json", stage, NARROW, settings, run.run().parts)
     read, made = td.load_result(tmp_path / "0.2.json"), function(NARROW, **settings)
     assert read == made
     assert bits(read.more(**larger)) == bits(function(NARROW, **settings | larger))
-    # The pipeline adds up what the result has and the shards of the rest.
+    # The blocks of the result and the other planned blocks add up.
     made.save(tmp_path / "saved.json")
-    paths, run = [tmp_path / "saved.json"], run_of(stage, NARROW, settings | larger)
+    run, ranges = STAGES[stage].run(NARROW, settings | larger), {}
+    saved = restore_arrays(read_json(tmp_path / "saved.json")["parts"])
     for name, part in run.parts.items():
         _, stop = reached(made.parts[name]["sums"])
-        piece = {(stop, part.planned): part.work(stop, part.planned)}
-        paths.append(tmp_path / f"{name}.json")
-        kept(paths[-1], stage, NARROW, settings, {name: {"sums": piece}})
-    pieces = pieces_of(paths)
-    whole = run.point({name: joined(part, pieces[name]) for name, part in run.parts.items()})
+        rest = {(stop, part.planned): part.work(stop, part.planned)}
+        ranges[name] = check_coverage(part, saved[name]["sums"] | rest)
+    whole = run.point(ranges)
     alone = {n: {(0, p.planned): p.work(0, p.planned)} for n, p in run.parts.items()}
     assert whole == run.point(alone)
 

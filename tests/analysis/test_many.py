@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scalar_many
-from factory import POINTS
 
 import twodiscs as td
 from twodiscs.analysis import check
@@ -15,9 +14,10 @@ from twodiscs.analysis.tables import CheckTable
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import engine
+from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
-from twodiscs.points.base import content_of, restore_arrays
+from twodiscs.points.base import file_content, restore_arrays
 from twodiscs.sampling import initial_states, montecarlo
 from twodiscs.theory import exact
 
@@ -63,9 +63,9 @@ def measured(request):
         "monte_carlo": [montecarlo.MonteCarloRun(scene, quantities, 100_000, 0.02, 4).run()],
     }
     for stage, some in points.items():
-        contents = [content_of(stage, {}, {}, point.parts) for point in some]
+        contents = [file_content(stage, {}, {}, point.parts) for point in some]
         points[stage] = [
-            POINTS[stage].of(scene, restore_arrays(content["parts"]))
+            STAGES[stage].point.of(scene, restore_arrays(content["parts"]))
             for content in json.loads(json.dumps(contents))
         ]
     return (

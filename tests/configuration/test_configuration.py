@@ -11,12 +11,13 @@ import pytest
 from snakemake.utils import update_config
 
 from twodiscs.dynamics import runs
-from twodiscs.model.box import Box, stream_seed
+from twodiscs.dynamics.stages import STAGES
+from twodiscs.model.box import Box, job_seed, stream_seed
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import AXIS, EVENTS, HOPS
 from twodiscs.model.scene import Scene
 from twodiscs_paper.configuration import scene_block, schema, yaml_files
-from twodiscs_paper.configuration.request import STAGES, Quantities
+from twodiscs_paper.configuration.request import Quantities
 from twodiscs_paper.configuration.yaml_files import read
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -202,7 +203,9 @@ def test_seeds_differ_between_scenes_methods_and_radii_and_follow_the_root():
         mapping = {"seed": seed, "scenes": [PLAIN["scenes"][0] | BASE | {"name": n} for n in "ab"]}
         for request in yaml_files.load(mapping).scenes:
             every.append(request.trajectory_seed)
-            every += [request.seed_of(*job) for job in jobs(request) if len(job) == 2]
+            for stage, key in (job for job in jobs(request) if len(job) == 2):
+                scene = request.box.scene(float(key))
+                every.append(job_seed(scene, stage, request.seed, request.name))
     assert len(set(every)) == len(every) == 2 * 2 * (2 + 2 + 4 + 1)
     assert one(watch=True).trajectory_seed == stream_seed(1908, "one", "trajectory", "0.24")
     # theory.csv also holds the radii of the histograms, whose exact means are compared.

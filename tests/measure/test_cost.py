@@ -9,12 +9,12 @@ from twodiscs.analysis.tables import shortfall
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.runs import DAY, DynamicsRun, engine_of
 from twodiscs.measure import cost
-from twodiscs.measure.result import seed_of
+from twodiscs.model.box import job_seed
 from twodiscs.model.checks import format_seconds
 from twodiscs.sampling.many import insertions
 from twodiscs.sampling.rounds import MARGIN
 from twodiscs.theory import exact
-from twodiscs_paper.pipeline.forecast import of_dynamics
+from twodiscs_paper.pipeline.forecast import forecast_dynamics
 
 SCENE = td.Scene(1.5, 1.0, 0.2)
 
@@ -32,18 +32,18 @@ def blocks(monkeypatch):
     monkeypatch.setattr(cost, "timed", timed)
 
 
-def run_of(scene, error, budget=None):
+def new_run(scene, error, budget=None):
     """Return the run of ``simulate(scene, error, budget=budget)``."""
     target = dict.fromkeys(scene.events, error)
-    return DynamicsRun(scene, target, budget, seed_of(scene, "dynamics", 1, None))
+    return DynamicsRun(scene, target, budget, job_seed(scene, "dynamics", 1, None))
 
 
 @pytest.mark.parametrize("scene", [SCENE, NEAR])
 def test_a_pilot_has_the_errors_of_a_run_of_the_same_blocks(blocks, scene):
-    run, measured = run_of(scene, 1.0), td.simulate(scene, 1.0)
-    found = of_dynamics(run, cost.pilots(run))
+    run, measured = new_run(scene, 1.0), td.simulate(scene, 1.0)
+    found = forecast_dynamics(run, cost.pilots(run))
     assert found.seconds == pytest.approx(len(run.parts) * 32e-3)
-    planned = of_dynamics(run, cost.pilots(run), planned=True)
+    planned = forecast_dynamics(run, cost.pilots(run), planned=True)
     assert planned.seconds == pytest.approx(sum(p.planned for p in run.parts.values()) * 1e-3)
     for event, error in found.reached.items():
         assert error == pytest.approx(measured[f"{event}_time"].relative_stderr, rel=1e-3)
@@ -108,10 +108,10 @@ def test_prices_of_insertions_are_those_of_samples(blocks):
 
 def test_a_budget_ends_a_run_at_the_error_that_the_forecast_says(blocks):
     for scene in (SCENE, NEAR):
-        run = run_of(scene, 1e-5, 10**7)
+        run = new_run(scene, 1e-5, 10**7)
         with pytest.warns(td.AccuracyWarning):
             measured = td.simulate(scene, 1e-5, budget=1e7)
-        found = of_dynamics(run, cost.pilots(run))
+        found = forecast_dynamics(run, cost.pilots(run))
         for event, error in found.reached.items():
             one = measured[f"{event}_time"]
             # Half a block more or less, and the noise of two errors from 32 blocks.
@@ -132,14 +132,14 @@ def test_ten_times_the_accuracy_takes_a_hundred_times_as_long(blocks):
 
 
 def test_without_a_budget_a_run_has_a_day():
-    easy = run_of(NEAR, 1e-3).parts
+    easy = new_run(NEAR, 1e-3).parts
     assert all(part.budget > 100 * part.planned * part.block_events for part in easy.values())
-    hard = run_of(NEAR, 1e-9)
+    hard = new_run(NEAR, 1e-9)
     work = sum(part.budget * part.cost_ratio for part in hard.parts.values())
     assert work == pytest.approx(DAY)
     assert hard.most_events == DAY
     # All parts have the same fraction of their events.
-    far = run_of(NEAR, 1e-9, 10**18).parts
+    far = new_run(NEAR, 1e-9, 10**18).parts
     shares = [part.budget / far[name].budget for name, part in hard.parts.items()]
     assert shares == pytest.approx([shares[0]] * len(shares))
 
@@ -231,7 +231,7 @@ def test_an_event_that_no_pilot_counted_has_no_price_and_no_forecast():
     (price,) = cost._prices_of_times(SCENE, {"all": pilot})
     assert price.quantity == "disc_collision_time"
     run = DynamicsRun(SCENE, dict.fromkeys(errors, 1e-3), 10**7, 1)
-    found = of_dynamics(run, {"all": pilot})
+    found = forecast_dynamics(run, {"all": pilot})
     assert found.events == pytest.approx(run.parts["all"].budget)
     assert found.shortfall(run).endswith(
         "before there are enough events horizontal_hop for an error"

@@ -11,13 +11,13 @@ import typst
 
 from twodiscs.analysis.tables import SCENE_TABLES, MeanTimesTable
 from twodiscs.dynamics.ensemble import REPLICAS
+from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.events import EVENTS
 from twodiscs.points.base import reached
-from twodiscs.points.dynamics_point import DynamicsPoint
 from twodiscs_paper.catalogue import STUDY_TABLES, TABLES
 from twodiscs_paper.configuration.yaml_files import load, read
 from twodiscs_paper.pipeline.documents.manuscript import CONSTANTS
-from twodiscs_paper.pipeline.points import pieces_of, read_point
+from twodiscs_paper.pipeline.points import read_point, read_shards
 
 PAPER = Path(__file__).resolve().parents[2] / "paper"
 SOURCE = (PAPER / "paper.typ").read_text()
@@ -313,9 +313,9 @@ def test_numbers_are_those_of_a_second_method(printed, expected, name):
 
 def test_the_long_run_is_what_its_shards_counted_and_agrees():
     folder = PAPER / "long_run" / "far"
-    scene = load(read(folder / "config.yaml")).scenes[0]
-    point = read_point(DynamicsPoint, folder / "dynamics.json")
-    assert point.radius == scene.radii[0]
+    request = load(read(folder / "config.yaml")).scenes[0]
+    job = STAGES["dynamics"], request.box.scene(request.radii[0])
+    point = read_point(folder / "dynamics.json", *job, request.arguments("dynamics"))
     made = MeanTimesTable.rows([point])
     kept = MeanTimesTable.read(folder / "mean_times.csv")
     assert [row["event"] for row in made] == [row["event"] for row in kept]
@@ -323,8 +323,9 @@ def test_the_long_run_is_what_its_shards_counted_and_agrees():
         assert ours["count"] == theirs["count"]
         assert ours["estimate"] == pytest.approx(theirs["estimate"], rel=1e-12)
         assert abs(ours["z"]) < 5  # ten scores: a false alarm in 2e5 seeds
-    pieces = pieces_of(folder.glob("shards/*.json"))
-    (counts, _), blocks = reached(pieces["all"], point.replicas // REPLICAS)
+    settings = request.shard_arguments("dynamics")
+    ranges = read_shards(folder.glob("shards/*.json"), *job, settings)
+    (counts, _), blocks = reached(ranges["all"], point.replicas // REPLICAS)
     assert blocks * REPLICAS == point.replicas
     assert counts.tolist() == [point.counts[event] for event in EVENTS]
 

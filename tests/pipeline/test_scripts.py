@@ -1,20 +1,22 @@
 """Without these tests a script could join wrong shards, or take an edited file for a result."""
 
 import json
+import re
 import runpy
 from pathlib import Path
 from types import MappingProxyType, SimpleNamespace
 
 import numpy as np
 import pytest
-from factory import BOX, POINTS, RADII, Laws, scenes, write
+from factory import BOX, RADII, Laws, scenes, write
 from snakemake.iocontainers import Namedlist
 
 from twodiscs.analysis.tables import SCENE_TABLES
+from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.checks import InputError
 from twodiscs.points.base import digest, read_json, write_json
 from twodiscs_paper.pipeline import job
-from twodiscs_paper.pipeline.points import read_point, run_of
+from twodiscs_paper.pipeline.points import read_point
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "workflow" / "scripts"
 PARAMETERS = BOX.parameters()
@@ -57,15 +59,16 @@ def run(monkeypatch, tmp_path):
 
 def point(run, stage, output, shards=()):
     """Make a point, of ``shards`` if there are any."""
-    params, where = {"box": PARAMETERS, "work": WORK[stage]}, {"stage": stage, "radius": "0.2"}
+    params = {"box": PARAMETERS, "work": WORK[stage], "shard_work": WORK[stage] | SHARD[stage]}
+    where = {"stage": stage, "radius": "0.2"}
     run("point", params, where, {"shards": [*shards]}, point=output)
-    return read_point(POINTS[stage], output)
+    return read_point(output, STAGES[stage], BOX.scene(0.2), WORK[stage])
 
 
-def shards(run, stage, pieces):
+def shards(run, stage, ranges):
     """Make shards of a point; return their files."""
     files = []
-    for first, stop in pieces:
+    for first, stop in ranges:
         files.append(f"all-{first}-{stop}.json")
         where = {"stage": stage, "radius": "0.2", "part": "all", "first": first, "stop": stop}
         params = {"box": PARAMETERS, "work": WORK[stage] | SHARD[stage]}
@@ -81,7 +84,7 @@ def test_work_of_known_length_gives_the_same_point_in_shards(run, stage):
 
 
 def test_counts_are_the_same_in_any_number_of_shards(run):
-    stop = run_of("dynamics", BOX.scene(0.2), WORK["dynamics"]).parts["all"].planned
+    stop = STAGES["dynamics"].run(BOX.scene(0.2), WORK["dynamics"]).parts["all"].planned
     assert stop >= 3
     one = shards(run, "dynamics", [(0, stop)])
     some = shards(run, "dynamics", [(i, i + 1) for i in range(stop)][::-1])
@@ -97,6 +100,23 @@ def test_the_time_of_a_point_includes_that_of_its_shards_and_an_edited_one_is_re
     assert json.loads(Path("a.json").read_text())["seconds"] >= 1000
     edit(file, "0-3")
     with pytest.raises(InputError, match=r"all-0-3.json is not what its job wrote; delete it"):
+        point(run, "monte_carlo", "a.json", [file])
+
+
+@pytest.mark.parametrize(
+    ("changed", "wrong"),
+    [
+        ({"seed": 8}, "has seed 8, but its job asks for 7"),
+        ({"name": "b"}, "has name 'b', but its job asks for 'a'"),
+        ({"shell": 0.2}, "has shell 0.2, but its job asks for 0.1"),
+        ({"extra": 1}, "has extra 1, but its job asks for None"),
+    ],
+)
+def test_a_shard_of_other_work_is_refused(run, changed, wrong):
+    (file,) = shards(run, "monte_carlo", [(0, 3)])
+    content = read_json(file)
+    write_json(file, content | {"settings": content["settings"] | changed})
+    with pytest.raises(InputError, match=re.escape(f"all-0-3.json {wrong}; delete it")):
         point(run, "monte_carlo", "a.json", [file])
 
 
@@ -119,13 +139,18 @@ def points(run, tmp_path):
     files, rng = {"intervals": []}, np.random.default_rng(1)
     for stage in ("monte_carlo", "dynamics"):
         samples = {"monte_carlo": {"samples": 10**7}, "dynamics": {}}[stage]
-        files[stage] = [tmp_path / f"{stage}-{scene.radius}.json" for scene in scenes()]
+        (tmp_path / stage).mkdir()
+        files[stage] = [tmp_path / stage / f"{scene.radius}.json" for scene in scenes()]
         for scene, path in zip(scenes(), files[stage], strict=True):
             write(getattr(Laws(scene), stage)(rng, **samples), path)
     return files
 
 
-MADE = {"box": PARAMETERS, "given": {"events": ["right_wall", "disc_collision"]}}
+MADE = {
+    "box": PARAMETERS,
+    "given": {"events": ["right_wall", "disc_collision"]},
+    "work": {stage: {} for stage in STAGES},
+}
 
 
 @pytest.mark.parametrize("name", ["volume", "areas", "mean_times", "check"])

@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from factory import BOX, POINTS, Laws, bins_point, counts_point, hits_point
+from factory import BOX, Laws, bins_point, counts_point, hits_point
 
 import twodiscs as td
+from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.checks import InputError
 from twodiscs.points.base import KEY, read_json, write_json
 from twodiscs.points.dynamics_point import StripCount
@@ -49,13 +50,13 @@ RESULTS = {
 def test_a_saved_result_is_a_point_and_no_other_point(tmp_path, stage, name):
     result, path = RESULTS[stage](SCENES[name]), tmp_path / "a.json"
     result.save(path)
-    point = read_point(POINTS[stage], path)
+    point = read_point(path, STAGES[stage], SCENES[name], result.settings)
     assert point.scene == SCENES[name]
     assert point == type(point).of(point.scene, result.parts)
     assert point.parts.keys() == result.parts.keys()
-    for other in POINTS.keys() - {stage}:
-        with pytest.raises(InputError, match=rf"must be a point of {other}, but was made by"):
-            read_point(POINTS[other], path)
+    for other in STAGES.keys() - {stage}:
+        with pytest.raises(InputError, match=r"has kind '\w+', but its job asks for '\w+'; delete"):
+            read_point(path, STAGES[other], SCENES[name], result.settings)
 
 
 def places(content, above=()):
@@ -86,7 +87,7 @@ def test_a_file_that_was_edited_anywhere_is_refused_in_one_sentence(tmp_path, va
         ):
             td.load_result(path)
         with pytest.raises(InputError, match="is not what its job wrote; delete it"):
-            read_point(POINTS["dynamics"], path)
+            read_point(path, STAGES["dynamics"], SCENES["plain"], result.settings)
 
 
 def test_a_point_gives_estimates_by_name():
@@ -96,7 +97,7 @@ def test_a_point_gives_estimates_by_name():
     assert INSERTED.estimate("volume").value == 3.0 * 10**6 / 2**20
     counts = counts_point(total=400, squares=800)
     assert counts.estimate("vertical_hop").value == 2048 * 10.0 / 400
-    assert counts.estimate("vertical_hop", copies=2).value == 2 * 2048 * 10.0 / 400
+    assert counts.estimate("vertical_hop", multiplicity=2).value == 2 * 2048 * 10.0 / 400
     assert counts_point().estimate("vertical_hop") is None
     assert COUNTED.estimate("vertical_hop") == STRIP.estimate()
     assert STRIP.estimate().value == pytest.approx(0.1 / 0.5 / (3 / 18))

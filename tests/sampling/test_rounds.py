@@ -20,10 +20,10 @@ from twodiscs_paper.pipeline import points
 PAPER = Box(1.5, 1.0)
 
 
-def done_in_pieces(run, per_piece):
-    """Return the pieces of a run, last one first, by way of JSON."""
-    ends = points.pieces(run.planned, per_piece)[::-1]
-    return points.joined(run, through_json({each: run.work(*each) for each in ends}))
+def done_in_shards(run, per_shard):
+    """Return the shards of a run, last one first, by way of JSON."""
+    ends = points.shard_ranges(run.planned, per_shard)[::-1]
+    return points.check_coverage(run, through_json({each: run.work(*each) for each in ends}))
 
 
 def fabricated(error, budget=math.inf, block_events=1000):
@@ -45,13 +45,13 @@ def fabricated(error, budget=math.inf, block_events=1000):
 
 
 @given(st.integers(0, 10**6), st.integers(4, 20))
-def test_pieces_are_those_of_an_absolute_grid(blocks, k):
-    found = points.pieces(blocks, 2**k)
+def test_shards_are_those_of_an_absolute_grid(blocks, k):
+    found = points.shard_ranges(blocks, 2**k)
     assert [first for first, _ in found] == [0, *(stop for _, stop in found[:-1])][: len(found)]
     assert all(first % 2**k == 0 and 0 < stop - first <= 2**k for first, stop in found)
     assert sum(stop - first for first, stop in found) == blocks
-    # All but the last one are pieces of more blocks, too.
-    assert found[:-1] == points.pieces(2 * blocks, 2**k)[: max(0, len(found) - 1)]
+    # All but the last one are shards of more blocks, too.
+    assert found[:-1] == points.shard_ranges(2 * blocks, 2**k)[: max(0, len(found) - 1)]
 
 
 @given(st.floats(0.001, 1e12))
@@ -67,17 +67,17 @@ def test_the_grid_has_sixteen_steps_while_a_number_doubles(blocks):
     "ends", [[], [(0, 999)], [(1, 1000)], [(0, 500), (501, 1000)], [(0, 500), (400, 1000)],
              [(0, 1000), (0, 500)], [(0, 1000), (1000, 1001)]],
 )  # fmt: skip
-def test_pieces_that_miss_or_repeat_a_block_are_refused(ends):
+def test_shards_that_miss_or_repeat_a_block_are_refused(ends):
     run, counts = fabricated(0.01)
-    parts = {(a, b): [counts[a:b].sum()] for a, b in ends}
-    with pytest.raises(ValueError, match=r"pieces must cover blocks 0 to 1000 without gap or over"):
-        points.joined(run, parts)
+    ranges = {(a, b): [counts[a:b].sum()] for a, b in ends}
+    with pytest.raises(ValueError, match=r"shards must cover blocks 0 to 1000 without gap or over"):
+        points.check_coverage(run, ranges)
 
 
 def test_sums_beyond_64_bits_are_exact():
     run, _ = fabricated(0.01)
-    pieces = {(500 * i, 500 * (i + 1)): [np.array([2**62, i])] for i in range(2)}
-    (sums,), _ = reached(through_json(points.joined(run, pieces)))
+    ranges = {(500 * i, 500 * (i + 1)): [np.array([2**62, i])] for i in range(2)}
+    (sums,), _ = reached(through_json(points.check_coverage(run, ranges)))
     assert sums.tolist() == [2**63, 1]
     (sums,), _ = reached(through_json({(0, 1): [sums]}))
     assert sums.tolist() == [2**63, 1]
@@ -148,7 +148,7 @@ def test_what_is_kept_is_not_done_again():
 def test_a_run_goes_on_from_shards():
     """Only the first round and the rest are done: the pieces between them join up."""
     run, counts = fabricated(0.003, 1e12)
-    shards, done, work = done_in_pieces(run, 256), [], run.work
+    shards, done, work = done_in_shards(run, 256), [], run.work
     run = replace(run, work=lambda *ends: done.append(ends) or work(*ends))
     found = reached(rounds.run_in_rounds(run, resume_from=shards))
     assert found[1] > 1000
@@ -166,7 +166,7 @@ def test_counts_in_pieces_are_those_of_their_blocks_and_reach_what_is_asked():
     run = runs.DynamicsRun(scene, TARGET, 4 * 10**7, 3)
     assert {*run.parts} == {"all", "horizontal_hop"}
     found = [
-        run.point({name: done_in_pieces(one, n) for name, one in run.parts.items()})
+        run.point({name: done_in_shards(one, n) for name, one in run.parts.items()})
         for n in (16, 1024)
     ]
     assert found[0] == found[1]
@@ -201,7 +201,7 @@ def test_planned_events_follow_the_errors_asked_for_as_far_as_the_budget_goes(bu
 def test_intervals_in_pieces_are_those_of_one_process():
     run = runs.IntervalsRun(PAPER.scene(0.1), "vertical_hop", 200_000, 5)
     assert run.parts["all"].planned == 4
-    found = [run.point({"all": done_in_pieces(run.parts["all"], n)}) for n in (1, 2)]
+    found = [run.point({"all": done_in_shards(run.parts["all"], n)}) for n in (1, 2)]
     assert found[0] == found[1] == run.run()
     # A second method: the sums of the chains in floating point.
     totals, _ = runs.recorded(run.scene, run.event, 5, 0, 4, np.ones(1, np.bool_))

@@ -2,10 +2,12 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 
 import pytest
+import yaml
 from checkout import Checkout, first
 
 from twodiscs_paper.configuration.new import new
@@ -20,7 +22,7 @@ def place(unbuilt, tmp_path, monkeypatch):
     return Checkout(tmp_path, unbuilt)
 
 
-def run(place, *words):
+def run(place, *words, passes=True):
     """Return the completed process of ``twodiscs run my.yaml`` and more ``words``."""
     return subprocess.run(
         [sys.executable, "-P", "-m", "twodiscs", "run", "my.yaml", *words],
@@ -28,7 +30,7 @@ def run(place, *words):
         env=os.environ | {"PYTHONPATH": first(str(place.home.path / "src"))},
         capture_output=True,
         text=True,
-        check=True,
+        check=passes,
     )
 
 
@@ -74,3 +76,53 @@ def test_a_read_only_home_a_notebook_and_a_profile_are_no_obstacles(place, monke
     assert "Provided cores: 1 " in done.stderr
     assert (place.path / "results/mine/figures/model.pdf").exists()
     assert (place.path / ".snakemake/cache").exists()
+
+
+#: A scene of two radii and two stages, which takes seconds.
+SMALL = {
+    "shared": [],
+    "scenes": [
+        {
+            "name": "small",
+            "box": {"width": 1.5, "height": 1.0},
+            "radii": [0.1, 0.2],
+            "watch": {"mean_times": ["any_wall"], "volume": True},
+            "accuracy": 0.1,
+            "monte_carlo": {"samples": 1e6},
+        }
+    ],
+}
+
+
+def test_a_point_of_other_work_that_was_copied_in_place_is_refused(place):
+    """It has another radius, seed or method. All else stays, and its own work replaces it."""
+
+    def build(seed, results, **options):
+        (place.path / "my.yaml").write_text(
+            yaml.safe_dump(SMALL | {"seed": seed, "results": results})
+        )
+        tables = (f"{results}/small/{name}.csv" for name in ("mean_times", "volume"))
+        return run(place, *tables, **options)
+
+    for seed, results in ((1, "mine"), (2, "theirs")):
+        build(seed, results)
+    before, points = place.results("mine"), place.path / "mine/small/points"
+    for source, target, wrong in (
+        ("mine/small/points/dynamics/0.2", "dynamics/0.1", "radius 0.2, but its job asks for 0.1"),
+        ("theirs/small/points/dynamics/0.1", "dynamics/0.1", "seed 2, but its job asks for 1"),
+        ("mine/small/points/dynamics/0.2", "monte_carlo/0.2", "kind 'simulate', but its job asks"),
+    ):
+        shutil.copy(place.path / f"{source}.json", points / f"{target}.json")
+        assert build(1, "mine", passes=False).returncode != 0
+        logs = [path.read_text() for path in (place.path / "mine/logs/small").glob("*.log")]
+        (said,) = (text for text in logs if text)
+        sentence = said.splitlines()[-1]
+        assert f"{target}.json has {wrong}" in sentence
+        assert sentence.endswith("; delete it, and it is made again")
+        now = place.results("mine")
+        kept = {name for name in before if "points/" in name} - {f"small/points/{target}.json"}
+        assert {name: now[name] for name in kept} == {name: before[name] for name in kept}
+        (points / f"{target}.json").unlink()
+        build(1, "mine")
+        for name in ("mean_times", "volume"):
+            assert place.results("mine")[f"small/{name}.csv"] == before[f"small/{name}.csv"]

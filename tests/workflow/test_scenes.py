@@ -4,10 +4,10 @@ import pytest
 import yaml
 from checkout import REPOSITORY
 
+from twodiscs.dynamics.stages import STAGES
 from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.model.events import HOPS, WALLS
 from twodiscs_paper.catalogue import STUDIES
-from twodiscs_paper.configuration.request import STAGES
 from twodiscs_paper.configuration.yaml_files import load, read
 
 FILES = sorted((REPOSITORY / "config" / "scenes").glob("*.yaml"))

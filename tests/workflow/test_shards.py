@@ -5,6 +5,7 @@ import shutil
 import pytest
 from checkout import folder
 
+from twodiscs.dynamics.stages import STAGES
 from twodiscs_paper.configuration.yaml_files import load
 
 TINY = {
@@ -69,8 +70,9 @@ def test_shards_have_the_random_numbers_of_their_point():
     """Those of another radius would make errors of two radii the same."""
     radii = [0.05, 0.24, 0.245]
     (scene,) = load(TINY | {"scenes": [TINY["scenes"][0] | {"radii": radii}]}).scenes
-    assert len({scene.seed_of("dynamics", radius) for radius in radii}) == 3
-    whole, shard = scene.arguments("dynamics"), scene.shard_arguments("dynamics")
+    stage, whole = STAGES["dynamics"], scene.arguments("dynamics")
+    assert len({stage.run(scene.box.scene(radius), whole).seed for radius in radii}) == 3
+    shard = scene.shard_arguments("dynamics")
     assert all(whole[key] == shard[key] for key in ("seed", "name"))
 
 
@@ -100,6 +102,14 @@ def test_no_shard_is_done_twice_and_a_damaged_one_is_named(unbuilt, tmp_path):
     said = f"{damaged.name} is not what its job wrote; delete it, and it is made again\n"
     assert log.read_text().endswith(said)
     damaged.unlink()
+    assert build(place).startswith(table)
+
+    # One that was copied over another is not taken for it.
+    one, other = sorted(path for path in first if path.name.startswith("all-"))[:2]
+    shutil.copy(one, other)
+    assert place.snakemake("--cores", "2", "--", TABLE, passes=False).returncode != 0
+    assert f"{other.name} has the blocks {one.stem}; delete it" in log.read_text()
+    other.unlink()
     assert build(place).startswith(table)
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import twodiscs
+from twodiscs.dynamics.stages import POINT_TABLES, STAGES
 from twodiscs.figures.scene_figures import ANIMATION, FIGURES
 from twodiscs_paper.catalogue import (
     ALL_FIGURES,
@@ -15,7 +16,6 @@ from twodiscs_paper.catalogue import (
     STUDY_TABLES,
     is_reproducible,
 )
-from twodiscs_paper.configuration.request import GATHERED, STAGES
 from twodiscs_paper.studies.effects.study import SCENES as EFFECTS
 from twodiscs_paper.studies.effects.study import boxes
 
@@ -143,8 +143,8 @@ def minutes(w, attempt):
 def shards(w):
     """Return the shards of a point, none if one job does all its work."""
     folder = f"{RESULTS}/{w.scene}/shards/{w.stage}/{w.radius}"
-    pieces = job_cost.shards(SCENES[w.scene], w.stage, float(w.radius))
-    return [f"{folder}/{part}-{first}-{stop}.json" for part, first, stop in pieces]
+    shards = job_cost.shards(SCENES[w.scene], w.stage, float(w.radius))
+    return [f"{folder}/{part}-{first}-{stop}.json" for part, first, stop in shards]
 
 
 # The long runs that figures read: their paths are known only while this file is read.

@@ -34,6 +34,7 @@ rule monte_carlo:
     params:
         box=box,
         work=lambda w: SCENES[w.scene].arguments(w.stage),
+        shard_work=lambda w: SCENES[w.scene].shard_arguments(w.stage),
     script:
         "../scripts/point.py"
 
@@ -98,17 +99,19 @@ use rule trajectory as exact with:
 use rule exact as table with:
     """The points of a scene in a table, beside the exact values."""
     input:
-        monte_carlo=lambda w: CONFIGURATION.points(w.scene, w.table, "monte_carlo"),
-        dynamics=lambda w: CONFIGURATION.points(w.scene, w.table, "dynamics"),
-        intervals=lambda w: CONFIGURATION.points(w.scene, w.table, "intervals"),
+        unpack(lambda w: CONFIGURATION.points(w.scene, w.table)),
         code=code("table", "physics", "tables"),
     output:
         table=report(f"{RESULTS}/{{scene}}/{{table}}.csv", category="Tables", subcategory="{scene}"),
     wildcard_constraints:
-        table="|".join(GATHERED),
+        table="|".join(POINT_TABLES),
     localrule: True
     params:
         given=lambda w: {"events": SCENES[w.scene].quantities.areas},
+        work=lambda w: {
+            stage: SCENES[w.scene].arguments(stage)
+            for stage in CONFIGURATION.points(w.scene, w.table)
+        },
 
 
 rule check:

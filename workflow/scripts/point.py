@@ -3,24 +3,26 @@
 import time
 
 import twodiscs.sampling.jit  # noqa: F401 - start saves collections of what is imported before it
-from twodiscs.model.box import Box
-from twodiscs.points.base import content_of, write_json
+from twodiscs.dynamics.stages import STAGES
+from twodiscs.model.box import Box, parameters_of
+from twodiscs.points.base import file_content, write_json
 from twodiscs_paper.pipeline.job import start
-from twodiscs_paper.pipeline.points import KINDS, joined, pieces_of, read_seconds, run_of
+from twodiscs_paper.pipeline.points import check_coverage, read_seconds, read_shards
 
 start(snakemake.log[0])
-wildcards, shards = snakemake.wildcards, snakemake.input.get("shards", [])
-box, settings = snakemake.params.box, snakemake.params.work
-scene = Box(**box).scene(float(wildcards.radius))
-run, before = run_of(wildcards.stage, scene, settings), time.process_time()
+wildcards, paths = snakemake.wildcards, snakemake.input.get("shards", [])
+params, stage = snakemake.params, STAGES[snakemake.wildcards.stage]
+scene = Box(**params.box).scene(float(wildcards.radius))
+run, before = stage.run(scene, params.work), time.process_time()
 if part := wildcards.get("part"):
     first, stop = int(wildcards.first), int(wildcards.stop)
     parts = {part: {"sums": {(first, stop): run.parts[part].work(first, stop)}}}
-elif shards:
-    pieces = pieces_of(shards)
-    parts = run.point({name: joined(run.parts[name], pieces[name]) for name in run.parts}).parts
+elif paths:
+    shards = read_shards(paths, stage, scene, params.shard_work)
+    ranges = {name: check_coverage(run.parts[name], shards[name]) for name in run.parts}
+    parts = run.point(ranges).parts
 else:
     parts = run.run().parts
-content = content_of(KINDS[wildcards.stage], box | {"radius": scene.radius}, settings, parts)
-of_shards = sum(read_seconds(path) or 0.0 for path in shards)
+content = file_content(stage.call, parameters_of(scene), params.work, parts)
+of_shards = sum(read_seconds(path) or 0.0 for path in paths)
 write_json(snakemake.output.point, content, round(time.process_time() - before + of_shards, 2))

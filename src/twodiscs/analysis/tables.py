@@ -708,10 +708,6 @@ class CheckTable(Table):
         return check.check_rows(compared)
 
 
-#: The number of events in the points of a stage.
-WORK = {"monte_carlo": "samples", "dynamics": "events", "intervals": "intervals"}
-
-
 class CostTable(Table):
     """One row per job: its time and work. It is the only table of a scene that no run repeats."""
 
@@ -732,13 +728,12 @@ class CostTable(Table):
         """
         return [
             {
-                "stage": stage,
+                "stage": point.stage,
                 "radius": point.radius,
-                "events": getattr(point, work),
-                "seconds": seconds.get((stage, point.radius)),
+                "events": point.work,
+                "seconds": seconds.get((point.stage, point.radius)),
             }
-            for stage, work in sorted(WORK.items())
-            for point in select_stage(points, stage)
+            for point in sorted(points, key=lambda point: (point.stage, point.radius))
         ]
 
 

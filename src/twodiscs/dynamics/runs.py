@@ -21,6 +21,7 @@ import numpy as np
 
 from twodiscs.dynamics.ensemble import RETURNS, nearest_power_of_two
 from twodiscs.dynamics.two import event_counts, returns, strip
+from twodiscs.model.box import job_seed
 from twodiscs.model.checks import InputError, format_number
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene, why_absent
@@ -65,6 +66,17 @@ class DynamicsRun(Run):
     target: dict
     budget: int | None
     seed: int
+
+    @classmethod
+    def of(cls, scene, settings):
+        """Return the run of ``settings`` of ``simulate``, a ``TimedRun`` for a duration."""
+        seed = job_seed(scene, DynamicsPoint.stage, settings["seed"], settings["name"])
+        error, budget = settings["error"], settings["budget"]
+        if error is None:  # 1 is the largest error that a run takes
+            target = dict.fromkeys(settings["events"], 1.0)
+            return TimedRun(scene, target, budget, seed, settings["duration"])
+        target = error if isinstance(error, dict) else dict.fromkeys(settings["events"], error)
+        return cls(scene, target, budget, seed)
 
     def __post_init__(self):
         require_initial_states(self.scene)
@@ -274,6 +286,12 @@ class IntervalsRun(Run):
     intervals: int
     seed: int
     budget: int = BUDGET
+
+    @classmethod
+    def of(cls, scene, settings):
+        """Return the run of the ``settings`` of ``intervals``."""
+        seed = job_seed(scene, IntervalsPoint.stage, settings["seed"], settings["name"])
+        return cls(scene, settings["hop"], settings["number"], seed, settings["budget"])
 
     def __post_init__(self):
         scene = self.scene

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from twodiscs.analysis.tables import HopHistogramTable
 from twodiscs.measure.measurements import Measurement, frame_of, table_of
-from twodiscs.measure.result import Result, note_of_number, progress_bar, seed_of
-from twodiscs.model.checks import InputError, check_choice, check_count, checked_call
+from twodiscs.measure.result import Result, note_of_number, progress_bar
+from twodiscs.model.checks import InputError, check_choice, check_count, check_integer, checked_call
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.points.estimates import MIN_EVENTS
@@ -202,12 +202,12 @@ def run_intervals(
             "scene must have smooth discs, because rough discs in a box are not ergodic and their "
             f"intervals have no exact mean, but moment_of_inertia is {scene.moment_of_inertia!r}"
         )
-    number, stream = check_count("number", number), seed_of(scene, "intervals", seed, name)
+    number, seed = check_count("number", number), check_integer("seed", seed, 0)
     from twodiscs.dynamics.runs import BUDGET, IntervalsRun
 
-    settings = {"hop": hop, "number": number, "seed": int(seed), "name": name}
+    settings = {"hop": hop, "number": number, "seed": seed, "name": name}
     settings["budget"] = budget or BUDGET
-    run = IntervalsRun(scene, hop, number, stream, settings["budget"])
+    run = IntervalsRun.of(scene, settings)
     with progress_bar(progress, f"intervals r = {scene.radius:g}") as progress:
         point = run.run(progress, cores, resume_from)
     return Intervals(scene, point, settings)

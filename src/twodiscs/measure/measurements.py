@@ -16,13 +16,14 @@ import numpy as np
 
 from twodiscs.analysis.tables import AreasTable, MeanTimesTable, VolumeTable, quantity_of, shortfall
 from twodiscs.measure.exact_values import Quantities
-from twodiscs.measure.result import Result, note_of_number, progress_bar, seed_of
+from twodiscs.measure.result import Result, note_of_number, progress_bar
 from twodiscs.model.checks import (
     AccuracyWarning,
     InputError,
     check_count,
     check_error,
     check_fraction,
+    check_integer,
     check_length,
     checked_call,
     did_you_mean,
@@ -479,20 +480,18 @@ def run_simulation(
     tracked = _named("events", "event", events, possible, scene)
     if missing := [event for event in tracked if event not in errors]:
         raise InputError(f"error must have a value for every event, but has none for {missing[0]}")
-    # A run of a duration is asked for no error: 1 is the largest that it takes.
-    target = {e: 1.0 if timed else check_error("error", errors[e]) for e in tracked}
+    target = {e: None if timed else check_error("error", errors[e]) for e in tracked}
     budget = None if budget is None else check_count("budget", budget)
-    stream = seed_of(scene, "dynamics", seed, name)
-    settings = {"seed": int(seed), "budget": budget, "events": tracked, "name": name}
-    from twodiscs.dynamics.runs import DynamicsRun, TimedRun
-
+    seed = check_integer("seed", seed, 0)
+    settings = {"seed": seed, "budget": budget, "events": tracked, "name": name}
     if timed:
         duration = check_length("duration", duration)
         settings |= {"error": None, "duration": duration}
-        run = TimedRun(scene, target, budget, stream, duration)
     else:
         settings["error"] = target if errors is error else check_error("error", error)
-        run = DynamicsRun(scene, target, budget, stream)
+    from twodiscs.dynamics.runs import DynamicsRun
+
+    run = DynamicsRun.of(scene, settings)
     with progress_bar(progress, f"simulate r = {scene.radius:g}") as progress:
         point = run.run(progress, cores, resume_from)
     rows = MeanTimesTable.rows([point])
@@ -583,14 +582,13 @@ def run_sampling(
     allowed = ("volume", *(f"{event}_area" for event in check_scene(scene).events))
     quantities = _named("quantities", "quantity", quantities, allowed, scene)
     samples = check_count("samples", samples)
-    shell, stream = check_fraction("shell", shell), seed_of(scene, "monte_carlo", seed, name)
-    settings = {"samples": samples, "seed": int(seed), "quantities": quantities}
-    settings |= {"shell": shell, "name": name}
+    settings = {"samples": samples, "seed": check_integer("seed", seed, 0)}
+    settings |= {"quantities": quantities, "shell": check_fraction("shell", shell), "name": name}
     from twodiscs.sampling.initial_states import require_free_fraction
     from twodiscs.sampling.montecarlo import MonteCarloRun
 
     require_free_fraction(scene)
-    run = MonteCarloRun(scene, quantities, samples, shell, stream)
+    run = MonteCarloRun.of(scene, settings)
     with progress_bar(progress, f"sample r = {scene.radius:g}") as progress:
         point = run.run(progress, cores, resume_from)
     rows = VolumeTable.rows([point]) + AreasTable.rows([point])

@@ -11,7 +11,8 @@ import numpy as np
 
 from twodiscs.dynamics.paths import MOST_EVENTS, path_of
 from twodiscs.dynamics.runs import engine_of
-from twodiscs.measure.result import note_of_number, progress_bar, seed_of
+from twodiscs.measure.result import note_of_number, progress_bar
+from twodiscs.model.box import job_seed
 from twodiscs.model.checks import (
     InputError,
     as_list,
@@ -80,7 +81,7 @@ def starts(
     """
     most = MOST_NUMBERS // len(components(check_scene(scene)))
     number = check_count("number", number, most=most)
-    seed = seed_of(scene, "trajectory", seed, name)
+    seed = job_seed(scene, "trajectory", seed, name)
 
     with progress_bar(progress, f"starts r = {scene.radius:g}") as progress:
         return as_records(scene, states(scene, number, seed, progress=progress))
@@ -284,7 +285,7 @@ def averages(
     the time before these, None at first. ``steps`` are the times since the time before each.
     ``names`` are the names of the averages.
     """
-    stream, times = seed_of(check_scene(scene), "observe", seed, name), _times(times)
+    stream, times = job_seed(check_scene(scene), "observe", seed, name), _times(times)
     if not callable(function):
         raise InputError(f"function must take two arrays of states, not be {quote(function)}")
     each = BLOCK if scene.discs < LARGE else engine_of(scene).block_replicas(scene)

@@ -9,10 +9,10 @@ from os import PathLike
 from typing import ClassVar, Self
 
 import twodiscs
-from twodiscs.model.box import Box, key, parameters_of, stream_seed
+from twodiscs.model.box import parameters_of
 from twodiscs.model.checks import InputError, quote
-from twodiscs.model.scene import Scene, check_scene
-from twodiscs.points.base import content_of, write_json
+from twodiscs.model.scene import Scene
+from twodiscs.points.base import file_content, write_json
 
 
 class Printed:
@@ -121,7 +121,7 @@ class Result(Printed):
         >>> content["kind"], content["settings"]["seed"]
         ('simulate', 7)
         """
-        return content_of(self.kind, parameters_of(self.scene), self.settings, self.parts)
+        return file_content(self.kind, parameters_of(self.scene), self.settings, self.parts)
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write the result to a JSON file that ``load_result`` reads.
@@ -196,16 +196,3 @@ def progress_bar(progress, what):
                 bar.refresh()
 
         yield progress
-
-
-def seed_of(scene, method, seed, name):
-    """Return the seed of the random streams of one job, as the pipeline derives it."""
-    return stream_seed(seed, stream_name(scene, name), method, key(scene.radius))
-
-
-def stream_name(scene, name):
-    """Return the name of a scene in its seeds: the parameters of its box if ``name`` is None."""
-    box = Box.of(check_scene(scene)).parameters()
-    if name is not None and not isinstance(name, str):
-        raise InputError(f"name must be the name of a scene, not {quote(name)}")
-    return repr(box) if name is None else name

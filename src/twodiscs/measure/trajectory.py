@@ -10,8 +10,8 @@ import pandas as pd
 
 from twodiscs.analysis.tables import trajectory_columns
 from twodiscs.dynamics.paths import followed
-from twodiscs.measure.result import progress_bar, seed_of
-from twodiscs.model.box import parameters_of, scene_of
+from twodiscs.measure.result import progress_bar
+from twodiscs.model.box import job_seed, parameters_of, scene_of
 from twodiscs.model.checks import InputError, as_list, checked_call, quote, writing_to
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.initial_states import components
@@ -322,7 +322,7 @@ def trajectory(
     >>> path.positions([1, 2.5]).shape  # time, disc, axis
     (2, 2, 2)
     """
-    seed = seed_of(scene, "trajectory", seed, name)
+    seed = job_seed(scene, "trajectory", seed, name)
     with progress_bar(progress, f"trajectory r = {scene.radius:g}") as progress:
         rows = followed(scene, seed, start, duration, progress)
     times, events, first, second, states = zip(*rows, strict=True)

@@ -11,8 +11,8 @@ import numpy as np
 
 from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK
 from twodiscs.dynamics.runs import chains_of, engine_of
-from twodiscs.measure.result import Result, note_of_number, progress_bar, stream_name
-from twodiscs.model.box import key, stream_seed
+from twodiscs.measure.result import Result, note_of_number, progress_bar
+from twodiscs.model.box import key, stream_name, stream_seed
 from twodiscs.model.checks import check_choice, check_count, checked_call
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import Scene, check_scene

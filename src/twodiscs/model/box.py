@@ -375,3 +375,18 @@ def stream_seed(seed, scene, method, key):
     seed = check_integer("seed", seed, 0)
     text = "\n".join((str(seed), scene, check_choice("method", method, METHODS), key))
     return int.from_bytes(blake2b(text.encode(), digest_size=8).digest(), "big") >> 1
+
+
+def stream_name(scene, name):
+    """Return the name of a scene in its seeds: the parameters of its box if ``name`` is None."""
+    check_scene(scene)
+    if name is None:
+        return repr(Box.of(scene).parameters())
+    if not isinstance(name, str):
+        raise InputError(f"name must be the name of a scene, not {quote(name)}")
+    return name
+
+
+def job_seed(scene, method, seed, name):
+    """Return the seed of the random streams of one job; the arguments are those of the face."""
+    return stream_seed(seed, stream_name(scene, name), method, key(scene.radius))

@@ -74,11 +74,13 @@ class Point:
 
     ``parts`` are the parts of its run, None if it was made without one. A class has a method
     ``of(scene, parts)``, which makes the point of the ``parts`` of a run, and ``estimate``, which
-    returns an ``Estimate`` by name, or None without a count.
+    returns an ``Estimate`` by name, or None without a count. ``work`` is the number of events,
+    samples or intervals.
     """
 
     stage: ClassVar[str]
     scene: Scene
+    work: int
 
     @property
     def radius(self):
@@ -114,7 +116,7 @@ def _narrow(values):
         return np.array(values, object)
 
 
-def content_of(kind, scene, settings, parts):
+def file_content(kind, scene, settings, parts):
     """Return the ``parts`` of a run as a dict of plain values, for a JSON file.
 
     ``kind`` is the function of the face with these ``settings``, ``scene`` are the parameters of a
@@ -135,7 +137,7 @@ def content_of(kind, scene, settings, parts):
 
 
 def restore_arrays(parts):
-    """Return the ``parts`` of a run from those of ``content_of``."""
+    """Return the ``parts`` of a run from those of ``file_content``."""
     return {
         name: part
         | {

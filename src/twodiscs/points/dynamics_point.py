@@ -138,6 +138,11 @@ class DynamicsPoint(Point):
         )
 
     @property
+    def work(self):
+        """The number of events simulated."""
+        return self.events
+
+    @property
     def counted(self):
         """The events counted, in the order of ``EVENTS``."""
         return [event for event in EVENTS if event in self.counts]

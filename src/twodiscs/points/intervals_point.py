@@ -116,6 +116,11 @@ class IntervalsPoint(Point):
             parts=parts,
         )
 
+    @property
+    def work(self):
+        """The number of intervals drawn."""
+        return self.intervals
+
     def estimate(self, name="mean"):
         """Return an ``Estimate`` by name: the "mean", or the "density_at_zero"."""
         if name == "mean":

@@ -41,6 +41,11 @@ class SampledPoint(Point):
 
     stage: ClassVar[str] = "monte_carlo"
 
+    @property
+    def work(self):
+        """The number of samples drawn."""
+        return self.samples
+
     def estimate(self, quantity):
         """Return the ``Estimate`` of a sampled quantity, None without a hit."""
         return self.sampled(quantity).estimate

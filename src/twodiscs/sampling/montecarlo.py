@@ -27,9 +27,10 @@ from functools import cached_property
 
 import numpy as np
 
-from twodiscs.model.box import Box
+from twodiscs.model.box import Box, job_seed
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
 from twodiscs.model.scene import Scene
+from twodiscs.points.monte_carlo_point import MonteCarloPoint
 from twodiscs.sampling.conditioned import conditioned_sampler, propose_separation
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.rejection import (
@@ -533,6 +534,12 @@ class MonteCarloRun(Run):
     samples: int
     shell: float
     seed: int
+
+    @classmethod
+    def of(cls, scene, settings):
+        """Return the run of the ``settings`` of ``sample``."""
+        seed = job_seed(scene, MonteCarloPoint.stage, settings["seed"], settings["name"])
+        return cls(scene, settings["quantities"], settings["samples"], settings["shell"], seed)
 
     @cached_property
     def sampler(self):

@@ -180,7 +180,11 @@ def run_all_in_rounds(parts, progress=None, cores=1, resume_from=None):
 
 
 class Run:
-    """Work in ``parts``, {name: SequentialRun}; ``point`` makes a result of {name: pieces}."""
+    """Work in ``parts``, {name: SequentialRun}; ``point`` makes a result of {name: pieces}.
+
+    A class of a stage has a method ``of(scene, settings)``. It makes the run of the arguments of
+    the stage's call, for the face and for a job.
+    """
 
     def run(self, progress=None, cores=1, resume_from=None):
         """Do all work in this process and return the point.

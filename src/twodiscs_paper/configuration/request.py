@@ -7,23 +7,11 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from hashlib import blake2b
 
+from twodiscs.dynamics.stages import STAGES
 from twodiscs.figures.scene_figures import ANIMATION, FIGURES
 from twodiscs.model.box import Box, key, stream_seed
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.model import MOST_EVENTS
-
-#: The stages whose jobs run once for each radius.
-STAGES = ("monte_carlo", "dynamics", "intervals")
-
-#: The tables of a scene that are made of points, and the stages of these points.
-GATHERED = {
-    "volume": ["monte_carlo"],
-    "areas": ["monte_carlo"],
-    "mean_times": ["dynamics"],
-    "hop_histogram": ["intervals"],
-    "check": [*STAGES],
-    "cost": [*STAGES],
-}
 
 #: The thickness of shells in jobs that sample no area. It has no effect; as a constant it keeps an
 #: edit of the configured thickness from running these jobs again.
@@ -165,11 +153,7 @@ class SceneRequest:
     @property
     def trajectory_seed(self):
         """The seed of the random streams of the trajectory."""
-        return self.seed_of("trajectory", self.quantities.trajectory)
-
-    def seed_of(self, stage, radius):
-        """Return the seed of the random streams of a job; ``radius`` is a key or a number."""
-        return stream_seed(self.seed, self.name, stage, key(float(radius)))
+        return stream_seed(self.seed, self.name, "trajectory", key(self.quantities.trajectory))
 
 
 @dataclass(frozen=True)
@@ -220,18 +204,24 @@ class Configuration:
         """Return {name: path} of the tables of a scene."""
         return {name: self.table(name, scene) for name in self.folders[scene].tables}
 
-    def points(self, scene, table, stage):
-        """Return the paths of the points of a ``stage`` from which a table of a scene is made."""
-        keys = self.folders[scene].keys[stage] if stage in GATHERED[table] else ()
-        return [f"{self.results}/{scene}/points/{stage}/{key}.json" for key in keys]
+    def points(self, scene, table):
+        """Return {stage: paths} of the points from which a table of a scene is made."""
+        return {
+            stage.name: [
+                f"{self.results}/{scene}/points/{stage.name}/{key}.json"
+                for key in self.folders[scene].keys[stage.name]
+            ]
+            for stage in STAGES.values()
+            if table in stage.tables
+        }
 
     def all_points(self):
         """Return the paths of the points of all scenes of the configuration."""
         return [
             path
             for scene in self.scenes
-            for stage in STAGES
-            for path in self.points(scene.name, "cost", stage)
+            for paths in self.points(scene.name, "cost").values()
+            for path in paths
         ]
 
     def checked(self):

@@ -28,7 +28,7 @@ class Forecast(NamedTuple):
         return shortfall(rows, run.budget, self.events, self.seconds, "ends")
 
 
-def of_dynamics(run, pilots, planned=False):
+def forecast_dynamics(run, pilots, planned=False):
     """Return the ``Forecast`` of a ``DynamicsRun`` from the ``pilots`` of its parts.
 
     If its blocks are ``planned``, it does all of these: its jobs are shards.
@@ -44,7 +44,7 @@ def of_dynamics(run, pilots, planned=False):
     return Forecast(seconds, events, reached)
 
 
-def of_samples(run, seconds):
+def forecast_samples(run, seconds):
     """Return the ``Forecast`` of a ``MonteCarloRun`` from a pilot of some ``seconds``."""
     part = run.parts["all"]
     sums, blocks, each = timed(run.sampler.count, seconds)

@@ -12,10 +12,11 @@ from operator import itemgetter
 from pathlib import Path
 
 from twodiscs.analysis.tables import CostTable, MeanTimesTable, shortfall
+from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.checks import format_number, format_seconds
 from twodiscs.theory import exact
 from twodiscs_paper.catalogue import STUDIES
-from twodiscs_paper.pipeline.points import pieces, run_of
+from twodiscs_paper.pipeline.points import shard_ranges
 
 #: Events and samples per second of a core, and the largest factor by which effects slow it down.
 EVENTS_PER_SECOND, SAMPLES_PER_SECOND, SLOWER = 1e8, 1e8, 5.0
@@ -42,7 +43,7 @@ DAY = 86400.0
 
 def run_at(scene, stage, radius):
     """Return the run of the job of a ``SceneRequest`` at a ``radius``."""
-    return run_of(stage, scene.box.scene(radius), scene.arguments(stage))
+    return STAGES[stage].run(scene.box.scene(radius), scene.arguments(stage))
 
 
 def _work(run):
@@ -147,9 +148,9 @@ def shards(scene, stage, radius):
     if _work(run) <= scene.shard_events:
         return []
     return [
-        (name, *piece)
+        (name, *ends)
         for name, part in run.parts.items()
-        for piece in pieces(part.planned, _per_shard(scene, part))
+        for ends in shard_ranges(part.planned, _per_shard(scene, part))
     ]
 
 
@@ -164,14 +165,14 @@ def _per_shard(scene, part):
 def forecast(scene, stage, radius):
     """Return the ``Forecast`` of a job from a pilot, and its run."""
     from twodiscs.measure import cost
-    from twodiscs_paper.pipeline.forecast import Forecast, of_dynamics, of_samples
+    from twodiscs_paper.pipeline.forecast import Forecast, forecast_dynamics, forecast_samples
 
     run = run_at(scene, stage, radius)
     in_shards = bool(shards(scene, stage, radius))
     if stage == "dynamics":
-        return of_dynamics(run, cost.pilots(run, PILOT), in_shards), run
+        return forecast_dynamics(run, cost.pilots(run, PILOT), in_shards), run
     if stage == "monte_carlo":
-        return of_samples(run, PILOT), run
+        return forecast_samples(run, PILOT), run
     part = run.parts["all"]
     each = cost.timed(part.work, PILOT)[-1]
     return Forecast(each * part.planned, part.planned * part.block_events, {}), run

@@ -1,48 +1,44 @@
-"""Points of the pipeline: the run of a job, its shards, and the files of both."""
+"""Files of points and shards: a job reads them, and refuses files of other work."""
 
 import json
 from pathlib import Path
 
-from twodiscs.model.box import key, scene_of, stream_seed
-from twodiscs.model.checks import InputError
+from twodiscs.model.box import parameters_of
+from twodiscs.model.checks import InputError, quote
 from twodiscs.points.base import SECONDS, read_json, restore_arrays
 
-#: The function of the face that does the work of a stage.
-KINDS = {"monte_carlo": "sample", "dynamics": "simulate", "intervals": "intervals"}
+#: What to do about a wrong file.
+REMEDY = "delete it, and it is made again"
 
 
-def run_of(stage, scene, settings):
-    """Return the run of a ``stage`` for a ``Scene``: monte_carlo, dynamics or intervals.
+def read_parts(path, stage, scene, settings):
+    """Return the ``parts`` of a run in the file of a point or a shard.
 
-    ``settings`` are the arguments of its function of the face. Only the module of the stage is
-    imported.
-    """
-    given = dict(settings)
-    seed = stream_seed(given.pop("seed"), given.pop("name"), stage, key(scene.radius))
-    if stage == "monte_carlo":
-        from twodiscs.sampling.montecarlo import MonteCarloRun
-
-        return MonteCarloRun(scene, seed=seed, **given)
-    from twodiscs.dynamics.runs import DynamicsRun, IntervalsRun
-
-    if stage == "dynamics":
-        return DynamicsRun(scene, given["error"], given["budget"], seed)
-    return IntervalsRun(scene, given["hop"], given["number"], seed, given["budget"])
-
-
-def read_point(kind, path):
-    """Return the point of a class ``kind`` in a file that a job wrote.
-
-    Raises ``InputError`` if the file was changed, ``OSError`` if it cannot be read.
+    Raises ``InputError`` if the file was changed, or if it is not of this ``Stage``, this ``Scene``
+    and these ``settings`` of its call; ``OSError`` if it cannot be read.
     """
     content = read_json(path)
     try:
-        return kind.of(scene_of(content["scene"]), restore_arrays(content["parts"]))
+        found = {"kind": content["kind"]} | content["scene"] | content["settings"]
+        parts = restore_arrays(content["parts"])
+    except (KeyError, TypeError, ValueError, AttributeError):
+        raise InputError(f"{path} must be a point or a shard of one; {REMEDY}") from None
+    asked = json.loads(json.dumps({"kind": stage.call} | parameters_of(scene) | settings))
+    for name in asked | found:
+        has, wanted = found.get(name), asked.get(name)
+        if has != wanted:
+            wrong = f"has {name} {quote(has)}, but its job asks for {quote(wanted)}"
+            raise InputError(f"{path} {wrong}; {REMEDY}")
+    return parts
+
+
+def read_point(path, stage, scene, settings):
+    """Return the point of a ``Stage`` in a file; the arguments are those of ``read_parts``."""
+    parts = read_parts(path, stage, scene, settings)
+    try:
+        return stage.point.of(scene, parts)
     except (KeyError, TypeError, ValueError):
-        raise InputError(
-            f"{path} must be a point of {kind.stage}, but was made by another version or stage; "
-            "delete it, and it is made again"
-        ) from None
+        raise InputError(f"{path} is a point of another version; {REMEDY}") from None
 
 
 def read_seconds(path):
@@ -50,38 +46,39 @@ def read_seconds(path):
     return json.loads(Path(path).read_bytes()).get(SECONDS)
 
 
-def pieces_of(paths):
-    """Return {part: pieces} of all files at ``paths``, such as the shards of a point.
+def read_shards(paths, stage, scene, settings):
+    """Return {part: {(first, stop): sums}} of the shards of a point.
 
-    Raises ``InputError`` if a file was changed.
+    Raises ``InputError`` as ``read_parts``, and if a shard has other blocks than its name says.
     """
-    pieces = {}
+    ranges = {}
     for path in paths:
-        if "parts" not in (content := read_json(path)):
-            raise InputError(f"{path} must be a shard of a point; delete it, and it is made again")
-        for name, part in restore_arrays(content["parts"]).items():
-            pieces.setdefault(name, {}).update(part["sums"])
-    return pieces
+        for name, part in read_parts(path, stage, scene, settings).items():
+            for (first, stop), sums in part["sums"].items():
+                if Path(path).stem != f"{name}-{first}-{stop}":
+                    raise InputError(f"{path} has the blocks {name}-{first}-{stop}; {REMEDY}")
+                ranges.setdefault(name, {})[first, stop] = sums
+    return ranges
 
 
-def pieces(blocks, per_piece):
-    """Return the pieces [(first, stop), …] of a number of ``blocks``, on an absolute grid.
+def shard_ranges(blocks, per_shard):
+    """Return the ranges [(first, stop), …] of a number of ``blocks``, on an absolute grid.
 
-    They begin at multiples of ``per_piece``, a power of two; the last one is cut at ``blocks``.
+    They begin at multiples of ``per_shard``, a power of two; the last one is cut at ``blocks``.
     """
-    return [(first, min(first + per_piece, blocks)) for first in range(0, blocks, per_piece)]
+    return [(first, min(first + per_shard, blocks)) for first in range(0, blocks, per_shard)]
 
 
-def joined(run, pieces):
-    """Return the ``pieces`` of all planned blocks of a run.
+def check_coverage(run, ranges):
+    """Return ``ranges``, {(first, stop): sums}, of all planned blocks of a run.
 
     They must cover these blocks without gap or overlap.
     """
-    ends = sorted(pieces)
+    ends = sorted(ranges)
     firsts, stops = [first for first, _ in ends], [stop for _, stop in ends]
     if not ends or [*firsts, run.planned] != [0, *stops]:
         given = ", ".join(f"{first} to {stop}" for first, stop in ends) or "none"
         raise InputError(
-            f"pieces must cover blocks 0 to {run.planned} without gap or overlap, not {given}"
+            f"shards must cover blocks 0 to {run.planned} without gap or overlap, not {given}"
         )
-    return pieces
+    return ranges
