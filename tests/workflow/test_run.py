@@ -106,12 +106,13 @@ def test_a_point_of_other_work_that_was_copied_in_place_is_refused(place):
 
     for seed, results in ((1, "mine"), (2, "theirs")):
         build(seed, results)
-    before, points = place.results("mine"), place.path / "mine/small/points"
+    first, points = place.results("mine"), place.path / "mine/small/points"
     for source, target, wrong in (
         ("mine/small/points/dynamics/0.2", "dynamics/0.1", "radius 0.2, but its job asks for 0.1"),
         ("theirs/small/points/dynamics/0.1", "dynamics/0.1", "seed 2, but its job asks for 1"),
         ("mine/small/points/dynamics/0.2", "monte_carlo/0.2", "kind 'simulate', but its job asks"),
     ):
+        before = place.results("mine")
         shutil.copy(place.path / f"{source}.json", points / f"{target}.json")
         assert build(1, "mine", passes=False).returncode != 0
         logs = [path.read_text() for path in (place.path / "mine/logs/small").glob("*.log")]
@@ -125,4 +126,4 @@ def test_a_point_of_other_work_that_was_copied_in_place_is_refused(place):
         (points / f"{target}.json").unlink()
         build(1, "mine")
         for name in ("mean_times", "volume"):
-            assert place.results("mine")[f"small/{name}.csv"] == before[f"small/{name}.csv"]
+            assert place.results("mine")[f"small/{name}.csv"] == first[f"small/{name}.csv"]

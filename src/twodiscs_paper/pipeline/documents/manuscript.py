@@ -42,9 +42,9 @@ def captions(scene):
 def typeset(template, output, scenes, figures, seed, configuration):
     """Compile the Typst file ``template`` to the PDF file ``output``; return its numbers.
 
-    The numbers are rows of ``PaperNumbersTable``, from numbers.typ beside the template. Typst reads the
-    tables and figures below the folder of ``output``. ``scenes`` are [{"name", "width", "height",
-    "tables": [names], "figures": [names]}], and the manuscript is about the first of them. The
+    The numbers are rows of ``PaperNumbersTable``, from numbers.typ beside the template. Typst reads
+    the tables and figures below the folder of ``output``. ``scenes`` are [{"name", "width",
+    "height", "tables": [names], "figures": [names]}]; the manuscript is about the first one. The
     ``figures`` of studies are names, too. ``configuration`` is its hash. The template finds all
     this as JSON under ``sys.inputs.contents``; ``results`` is a path there from the root that
     results and project have in common. The same inputs at the same commit give the same bytes on
