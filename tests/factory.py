@@ -60,7 +60,7 @@ def scenes(radii=RADII):
 
 def exact_values(radii=RADII):
     """Return {(radius, quantity): exact value}, as theory.csv has them."""
-    rows = tables.Theory.rows(BOX, radii)
+    rows = tables.TheoryTable.rows(BOX, radii)
     return {(row["radius"], row["quantity"]): row["exact"] for row in rows}
 
 

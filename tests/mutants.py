@@ -188,7 +188,7 @@ MUTANTS = [
     ("hops shared on a ring as in a box", "2 - (not scene.periodic) * 2 / pairs", "2 - 2 / pairs"),
     ("friction limited by the longest side", "shortest = min(map(self.side, self.axes))", "shortest = max(map(self.side, self.axes))"),
     ("error of a scan that is not given", "error = 1e-2", "error = 1e-3"),
-    ("CSV of another radius", "_print_csv(Theory.rows(Box.of(scene), [scene.radius]))", "_print_csv(Theory.rows(Box.of(scene), [scene.radius / 2]))"),
+    ("CSV of another radius", "_print_csv(TheoryTable.rows(Box.of(scene), [scene.radius]))", "_print_csv(TheoryTable.rows(Box.of(scene), [scene.radius / 2]))"),
     ("law of diffusive passages", "DIFFUSIVE = 3 / 4", "DIFFUSIVE = 3 / 2"),
     ("error of dynamics for that of Monte Carlo", "monte_carlo_stderr=spread,", "monte_carlo_stderr=error,"),
     ("count of the event that is known best", 'count = min((row["count"] for row in counted), default=0)', 'count = max((row["count"] for row in counted), default=0)'),

@@ -262,7 +262,7 @@ def test_table_of_agreement_is_that_of_the_expected_results():
     (shown,) = re.findall(r"^\| box \|.*\n\|[-|]+\n((?:\|.*\n)+)", page("README.md"), re.MULTILINE)
     assert shown.splitlines() == found
     events = found[0].split("|")[-2].strip()
-    assert f"| `paper` | 3e-4 | {events} |" in page("docs/accuracy-and-job_cost.md")
+    assert f"| `paper` | 3e-4 | {events} |" in page("docs/accuracy-and-cost.md")
 
 
 # Configurations -----------------------------------------------------------------------------------

@@ -218,7 +218,7 @@ def test_a_cluster_of_odd_size_is_one_passage():
 def test_the_measured_density_is_exact_in_an_ordered_channel():
     """At r = 0.28: five standard errors."""
     scene = Scene(24.0, 1.0, 0.28, discs=32, periodic="x")
-    places = file.initial.states(scene, 300, 1)[None, :32]
+    places = file.many_initial_states.states(scene, 300, 1)[None, :32]
     found = file.measured_density(scene, places)
     due = file.exact_density(1.0, 0.28, 0.75).variance
     assert found.stderr < 0.12 * due
