@@ -2,6 +2,8 @@
 
 import json
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pandas as pd
@@ -14,7 +16,10 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 POINT = {"counts": {"vertical_hop": 2**62, "bins": [3, 4]}, "duration": 0.5, "status": "ended"}
 TABLES = {
     "agreement.csv": "quantity,estimate,count\nmean_square,1.0,7\n",
-    "stability.csv": "part,value,passed\ntheory,1e-16,true\nruns,1e-4,true\n",
+    "stability.csv": (
+        "part,value,passed,exact,distance\ntheory,1e-16,true,,\nruns,1e-4,true,,\n"
+        "extremes,0.3,true,0.25,-1e-6\n"
+    ),
     "small/areas.csv": (
         "radius,method,hits,estimate,bias,z,chi2,stderr\n"
         "0.1,conditioned,9007199254740993,0.3,1e-5,0.0123,100.0,1e-4\n"
@@ -108,6 +113,8 @@ def test_renewed_results_are_as_expected(results, expected):
         ("../stability", "1e-16", "3e-16", ""),
         ("../stability", "true", "false", "passed in row 1"),
         ("../stability", "1e-4", "1.1e-4", "value in row 2"),
+        ("../stability", "0.25", f"{0.25 * (1 + 2e-10)!r}", ""),
+        ("../stability", "0.25", f"{0.25 * (1 + 3e-10)!r}", "exact in row 3"),
         ("hop_histogram", "0.2,0.0,7\n", "", "1 rows, expected 2"),
     ],
 )
@@ -136,6 +143,53 @@ def test_a_point_is_compared_value_by_value(results, expected, old, new, sentenc
     name = "small/points/dynamics/0.24.json"
     replace(results / name, old, new)
     assert found(results, expected) == ({name: sentence} if sentence else {})
+
+
+#: Exact values, computed again and compared with those expected; rows of theory.csv and of passages
+#: by their columns, extremes by their case.
+EXACT_AGAIN = """
+import math
+import numpy as np, pandas as pd
+from twodiscs.model.scene import Scene
+from twodiscs.theory import exact
+from twodiscs_paper.configuration.yaml_files import load, read
+from twodiscs_paper.catalogue import TABLES
+from twodiscs_paper.pipeline.results import verify
+from twodiscs_paper.studies.passages.models import file
+from twodiscs_paper.studies.stability.measure import EXTREMES
+
+for scene in load(read("config/config.yaml")).scenes:
+    rows = TABLES["theory"].rows(scene.box, scene.exact_radii("theory"))
+    expected = verify.read(f"paper/expected/{scene.name}/theory.csv")
+    observed = pd.DataFrame(rows)[[*expected]].convert_dtypes()
+    assert verify.same("theory", "exact", observed["exact"], expected["exact"]).all()
+table = verify.read("paper/expected/stability.csv")
+times = table[(table["part"] == "extremes") & table["quantity"].str.endswith("_time")]
+exact_times = {case: exact.mean_times(scene) for case, scene in EXTREMES.items()}
+found = [exact_times[row.case][row.quantity.removesuffix("_time")] for row in times.itertuples()]
+observed = times.assign(exact=np.array(found, float))
+known = times["exact"].notna().to_numpy()
+close = verify.same("stability", "exact", observed["exact"].astype("Float64"), times["exact"])
+assert (close | verify.well_conditioned(observed, times))[known].all()
+table = verify.read("paper/expected/passages.csv")
+rows = table[(table["quantity"] == "file") & table["moment_of_inertia"].isna()]
+rows = rows[rows["distance"] < 0]
+for row in rows.to_dict("records"):
+    scene = Scene(row["width"], row["height"], row["radius"], discs=row["discs"], periodic="x")
+    friction = None if row["friction"] is pd.NA else row["friction"]
+    assert math.isclose(file.law(scene, friction, row["time"]), row["reference"], rel_tol=1e-12)
+assert len(rows) > 10
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("threads", ["1", "2"])
+@pytest.mark.parametrize("kernel", ["Nehalem", "Haswell", "Zen", "SkylakeX"])
+def test_exact_values_are_as_expected_with_every_kernel_of_the_linear_algebra(kernel, threads):
+    """A kernel that the processor lacks is replaced by OpenBLAS with the best that it has."""
+    chosen = {"OPENBLAS_CORETYPE": kernel, "OPENBLAS_NUM_THREADS": threads}
+    command = [sys.executable, "-c", EXACT_AGAIN]
+    subprocess.run(command, env=os.environ | chosen, cwd=REPOSITORY, check=True)
 
 
 def test_missing_files_and_another_configuration_are_named(results, expected):

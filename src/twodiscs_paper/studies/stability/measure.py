@@ -509,7 +509,7 @@ def extreme_rows(seed, scenes=EXTREMES):
         target = dict.fromkeys(scene.events, EXTREME_ERROR)
         point = runs.DynamicsRun(scene, target, events, other_seed(seed, i)).run()
         times = MeanTimesTable.rows([point])
-        start = start_of("extremes", case, scene.radius)
+        start = start_of("extremes", case, scene.radius, scene.radius / scene.largest_radius - 1)
         for found in comparisons([], [], times, [], [point]):
             if found["test"] == "certain":
                 continue

@@ -38,7 +38,9 @@ class StabilityTable(Table):
             "and back (return), or by a small separation"
         ),
         "radius": RADIUS,
-        "distance": NUMBER("radius/limit − 1, for the limit named in case"),
+        "distance": NUMBER(
+            "radius/limit − 1, for the limit named in case; in extremes for the largest radius"
+        ),
         "count": COUNT("samples, cases, events or repetitions behind the value"),
         "value": SEE_QUANTITY("the measured value; empty if there is none (see status)"),
         "exact": SEE_QUANTITY("its expected value, apart from random and rounding errors"),
