@@ -396,6 +396,11 @@ def test_numbers_of_one_run_are_correlated_as_its_counts_are(scene):
     assert abs(left.nominal_value) < 1e-12
     assert left.std_dev < 1e-6 * hits[2].std_dev
     again = td.simulate(scene, duration=1e4, seed=4)
+    # pandas copies attrs deeply in each operation.
+    table = md.frame()
+    table.attrs |= {"result": md, "wall": md["any_wall_time"]}
+    assert (table.copy().attrs["wall"].u / md["any_wall_time"].u).std_dev < 1e-12
+    assert table.copy().attrs["result"] is md
     apart = md["any_wall_time"].u - again["any_wall_time"].u
     assert apart.std_dev == pytest.approx(
         math.hypot(md["any_wall_time"].stderr, again["any_wall_time"].stderr)

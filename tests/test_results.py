@@ -2,9 +2,11 @@
 
 import json
 import math
+import re
 import resource
 import stat
 import sys
+from copy import copy, deepcopy
 from dataclasses import replace
 from types import ModuleType
 
@@ -18,6 +20,7 @@ from twodiscs.dynamics.stages import STAGES
 from twodiscs.measure import result as progress_module
 from twodiscs.model.checks import PRESETS
 from twodiscs.points.base import file_content, reached, read_json, restore_arrays, write_json
+from twodiscs.sampling import rounds
 from twodiscs_paper.pipeline.points import check_coverage
 
 SCENE = td.Scene(1.5, 1.0, 0.2)
@@ -36,6 +39,8 @@ MADE = {
     "transmission": (
         lambda **o: td.transmission(NARROW, "horizontal_hop", 2**12, seed=5, **o), "hops", 2**14,
     ),
+    "sample of three": (lambda **o: td.sample(THREE, 1e3, seed=5, **o), "samples", 1e4),
+    "simulate a time": (lambda **o: td.simulate(SCENE, duration=1, seed=5, **o), "duration", 1e5),
     "scan": (lambda **o: td.scan(1.5, 1.0, [0.2, 0.1, 0.9], 0.3, seed=5, **o), "error", 0.05),
     "scan with a budget": (
         lambda **o: td.scan(1.5, 1, [0.2], 1e-3, seed=5, events="any_wall", **{"budget": 1e5} | o),
@@ -68,6 +73,24 @@ def test_results_go_on_and_come_back(name, tmp_path, monkeypatch):
     assert bits(more) != bits(less)
     assert more != less
     assert bits(more.more(**{setting: less.settings[setting]})) == bits(less)
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_a_result_does_not_change_and_a_copy_is_the_result_itself(name):
+    found = MADE[name][0]()
+    assert deepcopy({"of": [found]})["of"][0] is copy(found) is found
+    before = json.dumps(found.to_dict())
+    for plain in (found.settings, found.to_dict()):
+        emptied(plain)
+    assert json.dumps(found.to_dict()) == before
+
+
+def emptied(plain):
+    """Empty a dict or a list and all that is in it, as a careless reader may."""
+    for child in plain.values() if isinstance(plain, dict) else plain:
+        if isinstance(child, dict | list):
+            emptied(child)
+    plain.clear()
 
 
 #: {stage: (settings, larger settings, function of the face)} of a job of the pipeline.
@@ -119,14 +142,15 @@ def test_a_point_of_the_pipeline_goes_on_and_a_saved_result_adds_up(stage, tmp_p
 def test_a_file_is_replaced_whole_or_not_at_all(name, tmp_path):
     """A limit on the size of files stands for a full disk."""
     path, link = tmp_path / f"old.{name}", tmp_path / f"link.{name}"
+    trajectory = td.trajectory(SCENE, 9)
     path.write_text("old")
     path.chmod(0o640)
     link.symlink_to(path)
     write = {
         "json": td.sample(SCENE, 1).save,
-        "xyz": lambda path: td.trajectory(SCENE, 9).to_xyz(path),
-        "gif": lambda path: td.animate(td.trajectory(SCENE, 9), path),
-        "html": lambda path: td.animate(td.trajectory(SCENE, 9), path),
+        "xyz": trajectory.to_xyz,
+        "gif": lambda path: td.animate(trajectory, path),
+        "html": lambda path: td.animate(trajectory, path),
     }.get(name, lambda path: td.plot(SCENE, path))
     usual = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (100, usual[1]))
@@ -141,6 +165,45 @@ def test_a_file_is_replaced_whole_or_not_at_all(name, tmp_path):
     assert stat.filemode(path.stat().st_mode) == "-rw-r-----"
     assert link.is_symlink()
     assert {*tmp_path.iterdir()} == {path, link}
+
+
+#: Values in the place of any other in a file; ... stands for its removal.
+WRONG = (None, "x", -1, 1.5, 10**30, [], [[]], {"a": 1}, ...)
+
+
+def edited(node):
+    """Yield (keys above it, value, the node with this value in one place), for all places."""
+    children = node.items() if isinstance(node, dict) else enumerate(node[:2])
+    for key, child in [*children]:
+        for wrong in WRONG:
+            other = copy(node)
+            other[key] = wrong
+            if wrong is ...:
+                del other[key]
+            if other != node:
+                yield (key,), wrong, other
+        for keys, wrong, below in edited(child) if isinstance(child, dict | list) else ():
+            other = copy(node)
+            other[key] = below
+            yield (key, *keys), wrong, other
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_a_file_of_another_content_is_one_sentence_and_no_work(name, tmp_path, monkeypatch):
+    """Its digest is right. Other counts, and other settings that fit them, cannot be known."""
+    path = tmp_path / "result.json"
+    made = MADE[name][0]()
+    monkeypatch.setattr(rounds, "_done", lambda *given: pytest.fail("loading computes"))
+    for keys, wrong, content in edited(made.to_dict()):
+        write_json(path, content)
+        try:
+            found = td.load_result(path)
+        except td.InputError as error:
+            assert re.match(r"(path|the result) must be .*[^\n]*$", str(error))  # noqa: PT017
+        else:
+            assert "sums" not in keys or type(wrong) is int, keys
+            assert {"sums", "settings", "results", "refused"} & {*keys}, (keys, wrong)
+            bits(found)
 
 
 def test_files_of_something_else_are_refused(tmp_path):

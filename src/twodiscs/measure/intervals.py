@@ -206,7 +206,7 @@ def run_intervals(
     from twodiscs.dynamics.runs import BUDGET, IntervalsRun
 
     settings = {"hop": hop, "number": number, "seed": seed, "name": name}
-    settings["budget"] = budget or BUDGET
+    settings["budget"] = BUDGET if budget is None else check_count("budget", budget)
     run = IntervalsRun.of(scene, settings)
     with progress_bar(progress, f"intervals r = {scene.radius:g}") as progress:
         point = run.run(progress, cores, resume_from)

@@ -13,7 +13,8 @@ import twodiscs
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.model.box import Box, scene_of
 from twodiscs.model.checks import InputError, checked_call, quote
-from twodiscs.points.base import digest, read_json, restore_arrays
+from twodiscs.points.base import MALFORMED, digest, read_json, restore_arrays
+from twodiscs.sampling.rounds import Ended
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -111,31 +112,45 @@ def _configuration(path):
     for folder in (path.parent, path.parent.parent):
         try:
             configuration = json.loads((folder / "configuration.json").read_text(encoding="utf-8"))
-        except (OSError, ValueError):
+            if folder == path.parent:
+                return configuration
+            scenes = [s for s in configuration["scenes"] if s["name"] == path.parent.name]
+            return {**configuration, "scenes": scenes}
+        except (OSError, *MALFORMED):
             continue
-        if folder == path.parent or not isinstance(configuration, Mapping):
-            return configuration
-        scenes = [s for s in configuration.get("scenes", []) if s.get("name") == path.parent.name]
-        return {**configuration, "scenes": scenes}
     return None
 
 
 def from_dict(content):
-    """Return the result that ``to_dict`` describes, made again from its sums."""
+    """Return the result that ``to_dict`` describes, made again from its sums without any work.
+
+    Raises ``InputError``, or one of ``MALFORMED``, if no result has this content.
+    """
     if content["kind"] == "scan":
         from twodiscs.measure.scan import Scan
 
-        return Scan(map(from_dict, content["results"]), dict(content["refused"]))
-    if content["kind"] == "intervals":
-        from twodiscs.measure.intervals import run_intervals as make
-    elif content["kind"] == "transmission":
-        from twodiscs.measure.transmission import run_transmission as make
+        refused = {float(radius): "".join(why) for radius, why in content["refused"]}
+        found = Scan(map(from_dict, content["results"]), refused)
+        alike = {(one.kind, repr(Box.of(one.scene)), repr(one.settings)) for one in found}
+        is_right = len(alike) == 1 and found[0].kind == "simulate"
+        known = {"results": content["results"]}
     else:
-        from twodiscs.measure.measurements import MAKERS
+        if content["kind"] == "intervals":
+            from twodiscs.measure.intervals import run_intervals as make
+        elif content["kind"] == "transmission":
+            from twodiscs.measure.transmission import run_transmission as make
+        else:
+            from twodiscs.measure.measurements import MAKERS
 
-        make = MAKERS[content["kind"]]
-    parts, settings = restore_arrays(content["parts"]), content["settings"]
-    return make(scene_of(content["scene"]), **settings, resume_from=parts)
+            make = MAKERS[content["kind"]]
+        settings, parts = content["settings"], Ended(restore_arrays(content["parts"]))
+        found = make(scene_of(content["scene"]), **settings, resume_from=parts)
+        # A point of a build has some of the settings, maybe in another order.
+        is_right, known = settings.keys() <= found.settings.keys(), {"settings": settings}
+    made = found.to_dict() | known | {"twodiscs": content["twodiscs"]}
+    if not is_right or json.loads(json.dumps(made)) != content:
+        raise InputError("the content must be that of a result")
+    return found
 
 
 @checked_call
@@ -182,4 +197,10 @@ def load_result(path: str | PathLike[str]) -> Measurements | Any:
             f"the result must be of version {known}.x, so that its numbers are the same, not of "
             f"{quote(version)}"
         )
-    return from_dict(content)
+    try:
+        return from_dict(content)
+    except MALFORMED as error:
+        raise InputError(
+            f"path must be a file that save() wrote, or a point of a build, but the content of "
+            f"{path!r} was changed"
+        ) from error

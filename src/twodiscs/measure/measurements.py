@@ -16,7 +16,7 @@ import numpy as np
 
 from twodiscs.analysis.tables import AreasTable, MeanTimesTable, VolumeTable, quantity_of, shortfall
 from twodiscs.measure.exact_values import Quantities
-from twodiscs.measure.result import Result, note_of_number, progress_bar
+from twodiscs.measure.result import Immutable, Result, note_of_number, progress_bar
 from twodiscs.model.checks import (
     AccuracyWarning,
     InputError,
@@ -45,7 +45,7 @@ COLUMNS = ("quantity", "estimate", "± error", "exact", "unit", "z", "count", "s
 
 
 @dataclass(frozen=True)
-class Measurement:
+class Measurement(Immutable):
     """An estimate of one quantity, beside its exact value.
 
     ``float(m)`` is the value, ``f"{m:.3f}"`` and ``round(m, 3)`` are those of the value. ``m.u`` is

@@ -11,7 +11,7 @@ import numpy as np
 
 from twodiscs.dynamics.paths import MOST_EVENTS, path_of
 from twodiscs.dynamics.runs import engine_of
-from twodiscs.measure.result import note_of_number, progress_bar
+from twodiscs.measure.result import Immutable, note_of_number, progress_bar
 from twodiscs.model.box import job_seed
 from twodiscs.model.checks import (
     InputError,
@@ -88,7 +88,7 @@ def starts(
 
 
 @dataclass(frozen=True, eq=False)
-class Observed:
+class Observed(Immutable):
     """Averages over independent replicas of the invariant measure of one scene.
 
     ``observe`` and ``diffusion`` return one.

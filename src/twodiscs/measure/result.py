@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from contextlib import contextmanager
+from copy import deepcopy
 from html import escape
 from os import PathLike
 from typing import ClassVar, Self
@@ -15,7 +16,31 @@ from twodiscs.model.scene import Scene
 from twodiscs.points.base import file_content, write_json
 
 
-class Printed:
+class Settings:
+    """The attribute ``settings``: a reader gets a copy, whose changes do not change the result."""
+
+    def __get__(self, result, owner=None):
+        if result is None:
+            raise AttributeError("settings are those of a result")
+        return deepcopy(vars(result)["settings"])
+
+    def __set__(self, result, value):
+        vars(result)["settings"] = value
+
+
+class Immutable:
+    """The base of what does not change: a copy is the object itself, with its correlations."""
+
+    settings = Settings()
+
+    def __copy__(self) -> Self:
+        return self
+
+    def __deepcopy__(self, memo: dict) -> Self:
+        return self
+
+
+class Printed(Immutable):
     """The base of objects that print as their ``scene``, a table and maybe a ``note``.
 
     A class has a method ``_texts``, which returns the texts of the printed table.
@@ -46,7 +71,6 @@ class Result(Printed):
     """
 
     kind: ClassVar[str]
-    settings: dict[str, object]
     parts: dict[str, dict]
     version: str = twodiscs.__version__
     #: The difference between the work that was asked for and the work that was done, None if none.

@@ -11,6 +11,7 @@ import numpy as np
 
 from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK
 from twodiscs.dynamics.runs import chains_of, engine_of
+from twodiscs.dynamics.two.hop_clusters import LARGEST_CLUSTER, SUMS
 from twodiscs.measure.result import Result, note_of_number, progress_bar
 from twodiscs.model.box import key, stream_name, stream_seed
 from twodiscs.model.checks import check_choice, check_count, checked_call
@@ -359,15 +360,16 @@ def run_transmission(scene, hop, hops, seed, name, cores=1, progress=None, resum
     runs = parts_of(scene, hop, neighbour_mean, gap, times, blocks, stream_name(scene, name), seed)
     settings = {"hop": hop, "hops": int(hops), "seed": int(seed), "name": name}
     with progress_bar(progress, f"transmission r = {scene.radius:g}") as progress:
-        pieces = run_all_in_rounds(runs, progress, cores, resume_from or {})
+        pieces = run_all_in_rounds(runs, progress, cores, resume_from)
     parts = {name: {"sums": sums} for name, sums in pieces.items()}
     ((sums,), _), clusters, kappa = reached(pieces["times"]), {}, None
     if "clusters" in pieces:
         (sizes,), _ = reached(pieces["clusters"])
+        sizes = sizes.reshape(LARGEST_CLUSTER + 1)  # raises for sums of another form
         clusters = {n: int(number) for n, number in enumerate(sizes) if number}
         law = partial(odd_clusters_per_passage, others=others)
         kappa = plateau(cluster_estimate(sizes), gap, neighbour_mean, law)
-    curve = time_estimates(sums, blocks * HOPS_OF_BLOCK)
+    curve = time_estimates(sums.reshape(SUMS, len(times)), blocks * HOPS_OF_BLOCK)
     note = note_of_number("hops", settings["hops"], blocks * HOPS_OF_BLOCK)
     return Transmission(
         scene, hop, kappa, gap, clusters, mean, neighbour_mean, times, curve, settings, parts, note

@@ -9,6 +9,8 @@ goes on from its pieces, and the pieces of several files with other blocks add u
 
 import json
 import math
+import operator
+from copy import deepcopy
 from hashlib import sha256
 from pathlib import Path
 from typing import ClassVar
@@ -26,6 +28,9 @@ KEY = "sha256"
 
 #: A key whose value differs from run to run: neither the content nor its digest includes it.
 SECONDS = "seconds"
+
+#: The errors by which the content of a file shows that this package did not write it.
+MALFORMED = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 
 
 def digest(*paths):
@@ -55,7 +60,7 @@ def read_json(path):
         content = json.loads(Path(path).read_bytes())
         content.pop(SECONDS, None)
         written = content.pop(KEY) == _digest_of(content)
-    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
+    except (*MALFORMED, RecursionError):
         written = False
     if not written:
         raise InputError(f"{path} is not what its job wrote; delete it, and it is made again")
@@ -113,7 +118,7 @@ def _narrow(values):
     try:
         return np.array(values, np.int64)
     except OverflowError:
-        return np.array(values, object)
+        return np.frompyfunc(operator.index, 1, 1)(np.array(values, object))
 
 
 def file_content(kind, scene, settings, parts):
@@ -123,7 +128,7 @@ def file_content(kind, scene, settings, parts):
     box and the radius.
     """
     plain = {
-        name: part
+        name: deepcopy({key: value for key, value in part.items() if key != "sums"})
         | {
             "sums": {
                 f"{first}-{stop}": [np.asarray(entry).tolist() for entry in sums]

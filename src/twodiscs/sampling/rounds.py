@@ -23,7 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.checks import check_integer
+from twodiscs.model.checks import InputError, check_integer
 from twodiscs.model.scene import Scene
 from twodiscs.points.base import added, reached
 from twodiscs.points.monte_carlo_point import MonteCarloPoint
@@ -159,12 +159,25 @@ class Sampler(NamedTuple):
         return MonteCarloPoint.of(self.scene, {"all": self.constants | {"sums": pieces}})
 
 
+class Ended(dict):
+    """The parts of a run that has ended: no more work is done than they have."""
+
+    def pieces(self, name, run):
+        """Return the pieces of a ``run``; raise ``InputError`` if blocks are missing."""
+        _, stop = reached(pieces := self[name]["sums"])
+        if stop < 1 or (run.budget == math.inf and stop != run.planned):
+            raise InputError(f"{name} must have all blocks from 0 on, not {stop} of {run.planned}")
+        return pieces
+
+
 def run_all_in_rounds(parts, progress=None, cores=1, resume_from=None):
     """Return {name: pieces} of the runs in ``parts``, {name: run}, one after the other.
 
     ``progress`` is called with the work of all of them; ``resume_from`` are the parts of an earlier
-    run.
+    run. If they are ``Ended``, nothing is computed.
     """
+    if isinstance(resume_from, Ended):
+        return {name: resume_from.pieces(name, run) for name, run in parts.items()}
     resume_from = {} if resume_from is None else resume_from
     done_parts, work = {}, {name: run.planned * run.block_work for name, run in parts.items()}
 

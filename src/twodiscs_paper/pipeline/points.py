@@ -5,7 +5,7 @@ from pathlib import Path
 
 from twodiscs.model.box import parameters_of
 from twodiscs.model.checks import InputError, quote
-from twodiscs.points.base import SECONDS, read_json, restore_arrays
+from twodiscs.points.base import MALFORMED, SECONDS, read_json, restore_arrays
 
 #: What to do about a wrong file.
 REMEDY = "delete it, and it is made again"
@@ -21,7 +21,7 @@ def read_parts(path, stage, scene, settings):
     try:
         found = {"kind": content["kind"]} | content["scene"] | content["settings"]
         parts = restore_arrays(content["parts"])
-    except (KeyError, TypeError, ValueError, AttributeError):
+    except MALFORMED:
         raise InputError(f"{path} must be a point or a shard of one; {REMEDY}") from None
     asked = json.loads(json.dumps({"kind": stage.call} | parameters_of(scene) | settings))
     for name in asked | found:
@@ -37,7 +37,7 @@ def read_point(path, stage, scene, settings):
     parts = read_parts(path, stage, scene, settings)
     try:
         return stage.point.of(scene, parts)
-    except (KeyError, TypeError, ValueError):
+    except MALFORMED:
         raise InputError(f"{path} is a point of another version; {REMEDY}") from None
 
 
