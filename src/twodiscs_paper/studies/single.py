@@ -17,6 +17,21 @@ def advance(state, law):
 
 
 @compiled
+def advance_to(state, law, hop):
+    """Return the state, time and code of ``advance``, and the time of a vertical hop on the way.
+
+    It is the time of a disc collision if not ``hop``, and −1 if the event did not come.
+    """
+    before, rising = across(state, None)
+    state, time, code = advance(state, law)
+    if hop:
+        met = crossing_time(before, rising) if crosses(before, across(state, None)[0]) else -1.0
+    else:
+        met = time if code == DISC else -1.0
+    return state, time, code, met
+
+
+@compiled
 def time_to_next(state, law, hop, longest):
     """Return the time to the next vertical hop, or to the next disc collision if not ``hop``.
 
@@ -25,13 +40,10 @@ def time_to_next(state, law, hop, longest):
     """
     elapsed = 0.0
     while elapsed <= longest:
-        before, rising = across(state, None)
-        state, time, code = advance(state, law)
-        if hop and crosses(before, across(state, None)[0]):
-            return elapsed + crossing_time(before, rising)
+        state, time, _, met = advance_to(state, law, hop)
+        if met >= 0.0:
+            return elapsed + met
         elapsed += time
-        if code == DISC and not hop:
-            break
     return elapsed
 
 

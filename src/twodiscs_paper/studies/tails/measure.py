@@ -1,27 +1,41 @@
 """Tails of the times between events, where plain counting finds nothing.
 
 At a random moment of a stationary motion let F be the time to the next event and G the time since
-the last event. An interval F + G is picked in proportion to its length. By Palm's theorem
+the last event. An interval F + G is picked in proportion to its length, or to the integral of any
+positive marker m of the state. By Palm's theorem
 
-    P(T > t) = τ ⟨1[F + G > t] / (F + G)⟩.
+    P(T > t) = τ ⟨1[F + G > t] m / ∫m⟩,
 
-Starts come from the invariant measure; G is found by running backwards from the same start. Long
-intervals begin near a neutral motion (see ``single.tail_constant``), where all energy except a
-small share s is along one axis. On the sphere of speeds s is uniform on [0, 1]. The smaller of the
-shares along x and y is therefore uniform on [0, 1/2]. This range is cut into strata, each a
-quarter of the one before. All strata have the same number of starts; their exact weights are powers
-of two, or three times powers of two. A probability of 1e-8 takes no more starts than a probability
-of 1/2, and the estimate has no bias. The method needs only + − × / and √.
+with m at that moment, and its integral over the interval. Starts come from the invariant measure;
+G is found by running backwards from the same start. Long intervals begin near a neutral motion
+(see ``single.tail_constant``), where all energy except a small share s is along one axis. On the
+sphere of speeds s is uniform on [0, 1]. The smaller of the shares along x and y is therefore
+uniform on [0, 1/2]. This range is cut into strata, each a quarter of the one before, with powers of
+two, or three times powers of two, as exact weights.
+
+The marker is four times larger from one stratum to the next, so that the weight of a stratum times
+its marker, the largest value that a start may add, is the same in all. A marker of 1 would leave a
+tenth of the long intervals to starts outside of drifts, which hardly meet them; now most of ∫m
+comes from the drift. From one stratum to the next the work for a start doubles. Numbers of starts
+∝ weight × value/√work (Neyman; Cochran, Sampling Techniques, 1977, section 5.5) are therefore
+halved in every second stratum. A probability of 1e-8 takes no more starts than one of 1/2, and the
+estimate has no bias.
+
+If a stratum has no interval longer than t, its spread says nothing. Beyond the times of its drifts
+its part of P(T > t) falls as t⁻³ or faster, as the tail does. An upper bound is therefore the part
+of its longest interval, times the cube of the length of this interval over t. The error includes
+these bounds. The method needs only + − × / and √.
 """
 
 import math
+from dataclasses import replace
 from itertools import pairwise, starmap
 
 import numpy as np
 
 from twodiscs.dynamics.ensemble import nearest_power_of_two
-from twodiscs.dynamics.law import DISC, crosses, crossing_time, law_of
-from twodiscs.dynamics.two.follow import across, state_at
+from twodiscs.dynamics.law import DISC, law_of
+from twodiscs.dynamics.two.follow import state_at
 from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
 from twodiscs.points.estimates import Estimate
@@ -31,7 +45,7 @@ from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.streams import next_bits, open_stream, uniform
 from twodiscs.theory import exact
 from twodiscs_paper.studies.estimates import chi2_p, mean_of
-from twodiscs_paper.studies.single import advance, tail_constant, time_to_next
+from twodiscs_paper.studies.single import advance_to, tail_constant
 from twodiscs_paper.study import row
 
 #: Independent blocks behind an error bar, which then has a relative error of about 7 %.
@@ -71,34 +85,56 @@ def draw_drifting_velocity(state, largest, least):
 
 
 @compiled
-def length_biased(seed, first, stop, strata, samples, times, law, draw, hop):
-    """Return ⟨1[F + G > t]/(F + G)⟩ for each of blocks ``first`` … ``stop`` − 1 and each time.
+def marked_time(state, law, hop, lowest):
+    """Return the time to the next event, as ``time_to_next``, and the integral of the marker.
 
-    A block has ``samples`` starts in each of ``strata`` strata; ``times`` ascend. The result has
-    the shape (stop − first, times), in 1/time.
+    The marker is 1 in the first stratum and four times as large from one to the next. The shares of
+    the last stratum are up to ``lowest``. A share changes in collisions only.
     """
-    rows = np.zeros((stop - first, times.size))
-    sums = np.zeros(times.size)
+    elapsed, marked, mark, code = 0.0, 0.0, 0.0, DISC
+    while True:
+        if code == DISC:
+            _, _, _, _, u1, v1, u2, v2 = state
+            share, upper, mark = min(u1 * u1 + u2 * u2, v1 * v1 + v2 * v2), 0.125, 1.0
+            while share <= upper and lowest <= upper:
+                upper, mark = 0.25 * upper, 4.0 * mark
+        state, time, code, met = advance_to(state, law, hop)
+        if met >= 0.0:
+            return elapsed + met, marked + mark * met
+        elapsed, marked = elapsed + time, marked + mark * time
+
+
+@compiled
+def length_biased(seed, first, stop, strata, samples, times, law, draw, hop):
+    """Return ⟨1[F + G > t] m/∫m⟩ in blocks ``first`` … ``stop`` − 1, by stratum, and the longest.
+
+    A block has ``samples`` starts in the last of ``strata`` strata, twice as many in every second
+    one before; ``times`` ascend. The first result has the shape (stop − first, strata, times), in
+    1/time; its sums over strata are the estimates. The second one has the longest interval of each
+    stratum, and what this start adds to the estimate of its block.
+    """
+    rows, longest = np.zeros((stop - first, strata, times.size)), np.zeros((strata, 2))
+    lowest = 0.5 ** (2 * strata - 1)
     for block in range(first, stop):
-        state = open_stream(seed, block)
-        largest = 0.5
+        state, largest, mark = open_stream(seed, block), 0.5, 1.0
         for stratum in range(strata):
             least = 0.25 * largest if stratum < strata - 1 else 0.0
-            sums[:] = 0.0
-            for _ in range(samples):
+            starts = samples << ((strata - 1 - stratum) // 2)
+            weight, sums = 2.0 * (largest - least) / starts, rows[block - first, stratum]
+            for _ in range(starts):
                 x1, y1, x2, y2 = draw_configuration(state, draw, 0, 0)
                 u1, v1, u2, v2 = draw_drifting_velocity(state, largest, least)
-                interval = time_to_next((x1, y1, x2, y2, u1, v1, u2, v2), law, hop, np.inf)
-                interval += time_to_next((x1, y1, x2, y2, -u1, -v1, -u2, -v2), law, hop, np.inf)
+                ahead, marked = marked_time((x1, y1, x2, y2, u1, v1, u2, v2), law, hop, lowest)
+                since, more = marked_time((x1, y1, x2, y2, -u1, -v1, -u2, -v2), law, hop, lowest)
+                interval, value = ahead + since, weight * mark / (marked + more)
+                if interval > longest[stratum, 0]:
+                    longest[stratum] = interval, value
                 for i in range(times.size):
                     if interval <= times[i]:
                         break
-                    sums[i] += 1.0 / interval
-            weight = 2.0 * (largest - least) / samples
-            for i in range(times.size):
-                rows[block - first, i] += weight * sums[i]
-            largest = least
-    return rows
+                    sums[i] += value
+            largest, mark = least, 4.0 * mark
+    return rows, longest
 
 
 @compiled
@@ -116,15 +152,10 @@ def count_long(seed, first, stop, replicas, window, times, law, draw, hop):
             state = state_at(starts, replica, law)
             now, last = 0.0, -1.0
             while True:
-                before, rising = across(state, None)
-                state, time, code = advance(state, law)
-                if hop:
-                    met = crosses(before, across(state, None)[0])
-                    moment = now + crossing_time(before, rising)
-                else:
-                    met, moment = code == DISC, now + time
+                state, time, _, met = advance_to(state, law, hop)
+                moment = now + met
                 now += time
-                if not met:
+                if met < 0.0:
                     continue
                 if last >= 0.0:
                     count[0] += 1
@@ -147,19 +178,26 @@ def tail(scene, event, times, samples, seed, blocks=BLOCKS):
     """Return an ``Estimate`` of P(T > t) for each of the ascending ``times``, without bias.
 
     T is the interval between hops of one kind or between disc collisions of the ``Scene``.
-    ``samples`` starts are drawn in each stratum of each of ``blocks`` independent blocks. The
-    spread between blocks gives the standard error. The strata reach down to drifts that last for
-    the longest of the times, so the work grows with this time.
+    Each of ``blocks`` independent blocks has ``samples`` starts in the last stratum. The spread
+    between blocks gives the standard error, with the bounds of strata without a longer interval.
+    The strata reach down to drifts that last for the longest of the times, so the work grows with
+    this time.
     """
     oriented, hop = _oriented(scene, event)
     # A drift of speed √s crosses the box in a time w/√s.
     longest = nearest_power_of_two(max(1.0, times[-1] / max(scene.width, scene.height)))
     strata = 2 + int(math.frexp(longest)[1])
-    means = length_biased(
+    sums, longest = length_biased(
         np.uint64(seed), 0, blocks, strata, samples, np.array(times), law_of(oriented),
         conditioned_sampler(oriented), hop,
     )  # fmt: skip
-    return mean_of(means * exact.mean_times(scene)[event])
+    mean = exact.mean_times(scene)[event]
+    estimates, (ends, values) = mean_of(sums.sum(axis=1) * mean), longest.T
+    return [
+        replace(one, stderr=math.hypot(one.stderr, *unseen[ends <= time]))
+        for one, time in zip(estimates, times, strict=True)
+        for unseen in [values * mean / blocks * (ends / time) ** 3]
+    ]
 
 
 def survivals(scene, event, times, replicas, seed):
