@@ -71,7 +71,7 @@ def test_a_stratum_without_a_longer_interval_adds_its_bound():
     strata = 8
     sums, longest = tails.length_biased(
         np.uint64(3), 0, blocks, strata, samples, np.array(times), tails.law_of(scene),
-        tails.separation_sampler(scene), False,
+        tails.conditioned_sampler(scene), False,
     )  # fmt: skip
     mean = exact.mean_times(scene)[event]
     (spread,) = mean_of(mean * sums.sum(axis=1))

@@ -28,7 +28,10 @@ class TailsTable(Table):
         "time": TIME("t; for a rate, where the fit begins"),
         "until": TIME("where the fit ends; empty for survival"),
         "estimate": Column(float, "1/time for a rate", "estimate"),
-        "stderr": AS_ESTIMATE("its standard error, from independent blocks"),
+        "stderr": AS_ESTIMATE(
+            "its standard error, from independent blocks; of weighted intervals with the bounds of "
+            "strata that have no interval longer than t"
+        ),
         "law": AS_ESTIMATE(
             "C/t³ with the exact C, empty if C is 0; for a rate 1/mean, the rate of exponential "
             "intervals"
@@ -63,7 +66,7 @@ STUDY = Study(
     "tails",
     builds="how probable long intervals are",
     tables=(TailsTable,),
-    seconds=8.0,
+    seconds=10.0,
     order=4,
     figures={
         "tails": Figure(
