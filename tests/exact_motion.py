@@ -7,7 +7,7 @@ from itertools import islice
 import mpmath
 from mpmath import mpf
 
-from twodiscs.dynamics.paths import events_of
+from twodiscs.dynamics.paths import path_events
 from twodiscs.theory.exact import event_rate
 
 WALLS = ("wall_x1", "wall_y1", "wall_x2", "wall_y2")
@@ -17,7 +17,7 @@ def exact_path(scene, state):
     """Yield (time, name) of all events, hops included, for ever.
 
     ``state`` is (x1, y1, x2, y2, u1, v1, u2, v2); it and the ranges of the centres are doubles,
-    taken without rounding. Names are as in ``trajectory.events_of``. If events have the same time,
+    taken without rounding. Names are as in ``paths.path_events``. If events have the same time,
     walls come first. Call it under ``mpmath.workdps``.
     """
     x, v = [mpf(float(q)) for q in state[:4]], [mpf(float(q)) for q in state[4:]]
@@ -61,7 +61,7 @@ def compare(scene, state, number):
     unit = 1 / event_rate(scene)
     with mpmath.workdps(50):
         exact = list(islice(exact_path(scene, state), number))
-        found = [row[:2] for row in islice(events_of(scene, state, math.inf), number + 1)][1:]
+        found = [row[:2] for row in islice(path_events(scene, state, math.inf), number + 1)][1:]
         begin = 0
         while begin < number:
             end = begin + 1

@@ -183,7 +183,7 @@ MUTANTS = [
     ("error of the second estimate", "math.hypot(found.stderr, reference.stderr)\n    return {\n        \"reference\": reference.value,\n", "found.stderr\n    return {\n        \"reference\": reference.value,\n"),
     ("error of a root", "variance.value / 2 if variance", "variance.value if variance"),
     ("limit of long waves", "np.polyfit(numbers**2, sizes", "np.polyfit(numbers, sizes"),
-    ("kicks of the first block in all blocks of an average", "path.kicks_of(scene, each, stream, block)", "path.kicks_of(scene, each, stream, 0)"),
+    ("kicks of the first block in all blocks of an average", "engine.new_kicks(scene, each), stream, block)", "engine.new_kicks(scene, each), stream, 0)"),
     ("diffusion of unequal discs as of equal ones", "discs = range(1, scene.discs + 1 if scene.identical else 2)", "discs = range(1, scene.discs + 1)"),
     ("hops shared on a ring as in a box", "2 - (not scene.periodic) * 2 / pairs", "2 - 2 / pairs"),
     ("friction limited by the longest side", "shortest = min(map(self.side, self.axes))", "shortest = max(map(self.side, self.axes))"),

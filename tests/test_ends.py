@@ -59,7 +59,7 @@ CALLS = {
 CODE = """
 import atexit, sys
 import twodiscs as td
-from twodiscs.dynamics.paths import path_of
+from twodiscs.dynamics.engine import find_engine
 
 @atexit.register
 def print_peak():
@@ -71,7 +71,7 @@ box = td.Box(width, height, effects, discs)
 largest = box.largest_radius
 try:
     scene = td.Scene(width, height, largest * (1 - distance), discs=discs, **effects)
-    rate = path_of(scene).trajectory_rate(scene)
+    rate = find_engine(scene).trajectory_rate(scene)
     {call}
 except td.InputError as error:
     sys.exit(f"refused: {{error}}")

@@ -17,7 +17,7 @@ from figure_cases import unclear
 
 import twodiscs as td
 from twodiscs.analysis.tables import SCENE_TABLES
-from twodiscs.dynamics.paths import state_of
+from twodiscs.dynamics.paths import check_start
 from twodiscs.figures import style
 from twodiscs.measure.measurements import Measurement, measurement
 from twodiscs.model.box import Box, job_seed
@@ -256,7 +256,7 @@ def test_starts_are_states(name):
     found = td.starts(scene, 5, seed=3)
     assert found.dtype.names == components(scene)
     for start in found:
-        state_of(scene, start)
+        check_start(scene, start)
     again = td.trajectory(scene, 3, start=found[0])
     assert again.equals(td.trajectory(scene, seed=3, duration=3))
     assert again["time"].iloc[-1] == 3

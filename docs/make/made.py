@@ -13,8 +13,8 @@ import nbformat
 from pictures import BOX, PANELS, SCENE, draw
 
 import twodiscs
-from twodiscs.measure.result import Result
 from twodiscs.figures import style
+from twodiscs.measure.result import Result
 from twodiscs_paper.catalogue import ALL_FIGURES, STUDIES, STUDY_FIGURES, TABLES
 from twodiscs_paper.configuration.schema import described_keys
 from twodiscs_paper.pipeline.documents import explorer

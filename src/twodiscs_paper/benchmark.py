@@ -13,8 +13,9 @@ from functools import partial
 import numpy as np
 
 from twodiscs.dynamics import runs
+from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.many import engine
+from twodiscs.dynamics.many import class_counts, many_rates
 from twodiscs.model.events import EVENTS, SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
@@ -36,14 +37,14 @@ from twodiscs_paper.studies.effects.price import rows as cost_rows
 def in_long_box(discs, hops, events=1_000_000):
     """Count about ``events`` of N discs in a box of 0.75 N × 1, without initial states."""
     scene = Scene(0.75 * discs, 1.0, SCENE.radius / 2, discs=discs)
-    each = engine.block_replicas(scene)
-    duration = engine.duration_of(scene, max(256, events / each))
+    each = many_rates.block_replicas(scene)
+    duration = many_rates.expected_duration(scene, max(256, events / each))
 
     def counted(time):
-        return timed(lambda: engine.run_classes(scene, 1, 0, 1, time, hops=hops))
+        return timed(lambda: class_counts.run_classes(scene, 1, 0, 1, time, hops=hops))
 
     (sums, _), seconds = counted(duration)
-    return engine.simulated_events(sums), seconds - counted(duration / 2**20)[1]
+    return class_counts.simulated_events(sums), seconds - counted(duration / 2**20)[1]
 
 
 def lockstep_intervals(intervals=5_000_000):
@@ -54,7 +55,7 @@ def lockstep_intervals(intervals=5_000_000):
 
 def scalar_engine(blocks=BLOCKS // 8):
     """Do the same as ``lockstep``, one trajectory after the other."""
-    duration = runs.engine_of(SCENE).replica_duration(SCENE)
+    duration = find_engine(SCENE).replica_duration(SCENE)
     draw = conditioned_sampler(SCENE)
     arguments = (REPLICAS, duration, SCENE.contact_distance, draw, (0, 0))
     counted, seconds = timed(lambda: scalar.count_blocks(np.uint64(1), 0, blocks, *arguments))
@@ -64,7 +65,7 @@ def scalar_engine(blocks=BLOCKS // 8):
 def plain_python(replicas=200):
     """Do the same without a compiler."""
     starts = [tuple(map(float, state)) for state in states(SCENE, replicas, 1)[:8].T]
-    end = runs.engine_of(SCENE).replica_duration(SCENE), SCENE.range_x / 2, SCENE.range_y / 2, 0.4
+    end = find_engine(SCENE).replica_duration(SCENE), SCENE.range_x / 2, SCENE.range_y / 2, 0.4
     counts, seconds = timed(lambda: [scalar.count_replica.py_func(*s, *end) for s in starts])
     return sum(map(scalar.simulated_events, counts)), seconds
 

@@ -12,8 +12,9 @@ import twodiscs as td
 from twodiscs.analysis import check
 from twodiscs.analysis.tables import CheckTable
 from twodiscs.dynamics import runs
+from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.many import engine
+from twodiscs.dynamics.many import many_rates
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
@@ -112,9 +113,9 @@ def test_a_wrong_rate_is_found_without_an_exact_value(measured):
 def test_expected_rates_are_near_what_is_counted():
     for name in ("four", "four on a ring"):
         scene = SCENES[name]
-        duration = runs.engine_of(scene).replica_duration(scene)
-        sums, _ = runs.engine_of(scene).run_blocks(scene, scene.events, 8, 0, 2, duration)
-        for event, rate in engine.expected_rates(scene).items():
+        duration = find_engine(scene).replica_duration(scene)
+        sums, _ = find_engine(scene).run_blocks(scene, scene.events, 8, 0, 2, duration)
+        for event, rate in many_rates.expected_rates(scene).items():
             seen = sums[EVENTS.index(event)] / duration / 2 / REPLICAS
             assert rate == pytest.approx(seen, rel=0.05), (name, event)
 
@@ -128,7 +129,7 @@ def test_a_trajectory_is_that_of_another_program(name):
     scene = SCENES[name]
     n, ring = scene.discs, scene.width if scene.periodic else 0.0
     box = scene.range_x / 2, scene.range_y / 2, scene.contact_distance, ring
-    duration = engine.duration_of(scene, 16)
+    duration = many_rates.expected_duration(scene, 16)
     for state in initial_states.states(scene, 20, 11).T:
         frame = td.trajectory(scene, start=state, duration=1.1 * duration)
         parts = [np.array(part) for part in state.reshape(4, n)]

@@ -17,7 +17,7 @@ from twodiscs.analysis.tables import (
     _sampled_row,
 )
 from twodiscs.dynamics import runs
-from twodiscs.dynamics.many import engine
+from twodiscs.dynamics.many import many_rates
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
@@ -306,5 +306,5 @@ DENSE = [
 
 @pytest.mark.parametrize("scene", DENSE)
 def test_rates_that_insertions_do_not_see_are_guessed(scene):
-    assert 0 < engine.expected_event_rate(scene) < math.inf
-    assert engine.expected_rates(scene)["disc_collision"] > 0
+    assert 0 < many_rates.expected_event_rate(scene) < math.inf
+    assert many_rates.expected_rates(scene)["disc_collision"] > 0

@@ -10,6 +10,7 @@ from factory import all_reached
 from marks import slow
 
 from twodiscs.dynamics import runs
+from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import WALL_Y1, WALL_Y2
 from twodiscs.dynamics.two import event_counts
@@ -58,7 +59,7 @@ def test_any_duration_is_unbiased():
 
 def test_what_is_not_watched_is_not_detected():
     everything, hops, bare = (
-        runs.engine_of(PAPER).run_blocks(PAPER, events, 7, 0, 1, 32.0)[0]
+        find_engine(PAPER).run_blocks(PAPER, events, 7, 0, 1, 32.0)[0]
         for events in (EVENTS, ("horizontal_hop",), ("disc_collision",))
     )
     for found, detected in ((hops, (*HOPS, "disc_collision")), (bare, ("disc_collision",))):

@@ -11,7 +11,7 @@ import math
 import numpy as np
 import pytest
 
-from twodiscs.dynamics.many import engine
+from twodiscs.dynamics.many import class_counts, many_rates
 from twodiscs.model.events import SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.theory.virial import flux_constant
@@ -42,8 +42,10 @@ def force(discs, width, height, events, seed, replicas=64):
     # A scene needs a unit of length in which a volume to the power N is a double.
     size = math.sqrt(width * height)
     scene = Scene(width / size, height / size, 0.5 / size, discs=discs, periodic="x")
-    duration = engine.duration_of(scene, events / replicas)
-    sums, products = engine.run_classes(scene, seed, 0, 1, duration, replicas=replicas, hops=False)
+    duration = many_rates.expected_duration(scene, events / replicas)
+    sums, products = class_counts.run_classes(
+        scene, seed, 0, 1, duration, replicas=replicas, hops=False
+    )
     wall = [*SHELLS].index("top_wall")
     mean = sums[wall] / replicas
     error = math.sqrt((products[wall, wall] / replicas - mean**2) / (replicas - 1))

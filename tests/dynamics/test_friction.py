@@ -16,7 +16,8 @@ from sampling.uniformity import assert_uniform_on_sphere, parts, scaled_componen
 
 import twodiscs as td
 from twodiscs.dynamics import paths
-from twodiscs.dynamics.ensemble import open_kicks
+from twodiscs.dynamics.engine import find_engine
+from twodiscs.dynamics.ensemble import open_block_kicks, open_kicks
 from twodiscs.dynamics.law import redrawn
 from twodiscs.dynamics.two.follow import new_kicks
 from twodiscs.model.scene import Scene
@@ -100,8 +101,9 @@ def test_kicks_have_other_random_numbers_than_initial_states():
 @pytest.mark.parametrize("discs", [2, 3])
 def test_states_of_two_blocks_are_kicked_as_those_of_one_that_is_twice_as_large(discs):
     scene = Scene(1.5, 1.0, 0.1, discs=discs, friction=2.0)
-    whole = paths.path_of(scene).kicks_of(scene, 8, 3).waits
-    assert np.array_equal(paths.path_of(scene).kicks_of(scene, 4, 3, block=1).waits, whole[4:])
+    new = find_engine(scene).new_kicks
+    whole = open_block_kicks(new(scene, 8), 3).waits
+    assert np.array_equal(open_block_kicks(new(scene, 4), 3, block=1).waits, whole[4:])
     assert len({*whole}) == 8
 
 
@@ -110,7 +112,7 @@ def test_a_trajectory_is_kicked_at_random_times(scene):
     """Its other events are compared with the ensemble beside those of scenes without friction."""
     scene, time = replace(scene, friction=4.0), 256.0
     start = tuple(map(float, states(scene, 1, 3)[: len(components(scene)), 0]))
-    rows = list(paths.events_of(scene, start, time, seed=3))
+    rows = list(paths.path_events(scene, start, time, seed=3))
     kicks = sum(row[1] == "kick" for row in rows)
     assert abs(kicks - 4 * time) <= 5 * math.sqrt(4 * time)
     velocities = [i for i, name in enumerate(components(scene)) if name[0] in "uvs"]
@@ -119,7 +121,7 @@ def test_a_trajectory_is_kicked_at_random_times(scene):
             assert all(old[i] != new[i] for i in velocities)
             assert at > before
     # Another seed has the same start and other kicks.
-    other = list(paths.events_of(scene, start, time, seed=4))
+    other = list(paths.path_events(scene, start, time, seed=4))
     assert other[0] == rows[0]
     assert other[-1][-1] != rows[-1][-1]
 

@@ -7,8 +7,8 @@ from exact_motion import compare
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from twodiscs.dynamics.law import law_of
-from twodiscs.dynamics.paths import events_of
+from twodiscs.dynamics.law import two_disc_law
+from twodiscs.dynamics.paths import path_events
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.initial_states import states
@@ -50,7 +50,7 @@ def test_tiny_discs_aimed_at_each_other(radius, miss):
     """From afar, an impact parameter of ``miss`` contact distances decides between hit and miss."""
     scene = PAPER.with_radius(radius)
     state = (-0.5, miss * 2 * radius, 0.5, 0.0, *unit_speed(1.0, 0.0, -1.0, 0.0))
-    names = [row[1] for row in events_of(scene, state, 1.0)]
+    names = [row[1] for row in path_events(scene, state, 1.0)]
     assert names.count("disc_collision") == (miss < 1)
     assert compare(scene, state, 4) >= 2 if miss else compare(scene, state, 8) == 8
 
@@ -92,7 +92,7 @@ def test_corner_hit_exactly_by_both_discs():
     """Both run into opposite corners: four simultaneous events, and the way back."""
     scene = PAPER.with_radius(0.125)
     state = (0.625 - 0.25, 0.375 - 0.25, -0.625 + 0.25, -0.375 + 0.25, 0.5, 0.5, -0.5, -0.5)
-    rows = list(events_of(scene, state, 1.0))
+    rows = list(path_events(scene, state, 1.0))
     assert [row[0] for row in rows] == [0.0, 0.5, 0.5, 0.5, 0.5, 1.0]
     assert sorted(row[1] for row in rows[1:-1]) == ["wall_x1", "wall_x2", "wall_y1", "wall_y2"]
     assert rows[-1][4][:4] == state[:4]
@@ -105,7 +105,7 @@ def test_discs_smaller_than_the_spacing_of_coordinates():
     for velocities in ((0.0, 0.0, 0.0, 1.0), (0.0, -1e-160, 0.0, 1.0)):
         state = (-half_x, 0.0, -half_x, -half_y, *velocities)
         for _ in range(20):
-            state, time, _ = advance(state, law_of(scene))
+            state, time, _ = advance(state, two_disc_law(scene))
             assert 0 <= time < math.inf
             assert abs(math.fsum(v * v for v in state[4:]) - 1) < 1e-14
 
@@ -137,7 +137,7 @@ def test_any_combination_of_extremes_goes_on(sides, data, places, velocities):
     x1, y1, x2, y2 = (q * h for q, h in zip(places, (half_x, half_y) * 2, strict=True))
     assume((x1 - x2) ** 2 + (y1 - y2) ** 2 >= sigma**2)
     state = (x1, y1, x2, y2, *unit_speed(*velocities))
-    law, elapsed = law_of(scene), 0.0
+    law, elapsed = two_disc_law(scene), 0.0
     for number in range(300):
         state, time, _ = advance(state, law)
         assert time >= 0

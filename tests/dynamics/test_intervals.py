@@ -8,7 +8,7 @@ from effect_scenes import SCENES
 from marks import slow
 
 from twodiscs.dynamics import paths, runs
-from twodiscs.dynamics.many import engine
+from twodiscs.dynamics.many import many_intervals
 from twodiscs.dynamics.two import returns
 from twodiscs.model.scene import Scene
 from twodiscs.points.intervals_point import BINS, GROWTH, wide_edges
@@ -84,12 +84,12 @@ def test_intervals_of_many_are_those_of_trajectories(scene, event):
     replicas, window, width = 5, 16.0, 0.125
     wide, sums = np.full(65, 65), np.zeros((3, 66), np.int64)
     going = np.ones(1, np.bool_)
-    times, numbers = engine.record_within(
+    times, numbers = many_intervals.record_within(
         window, scene, event, 7, 3, 4, replicas, (width, wide), sums, going
     )
     due = np.zeros((3, 66), np.int64)
     for k, state in enumerate(many_initial_states.states(scene, replicas, 7, 3).T):
-        rows = paths.events_of(scene, state, 4 * window)
+        rows = paths.path_events(scene, state, 4 * window)
         at = np.array([time for time, name, *_ in rows if name == event])
         own = np.diff(at)[at[:-1] < window]
         assert (numbers[k], times[k]) == (own.size, pytest.approx(own.sum(), rel=1e-12))

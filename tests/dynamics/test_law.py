@@ -16,8 +16,8 @@ from twodiscs.dynamics.law import (
     crosses,
     crossing_time,
     divided,
-    law_of,
     next_event,
+    two_disc_law,
     wall_quotient,
 )
 from twodiscs.model.scene import Scene
@@ -184,7 +184,7 @@ def test_hops_are_counted_once():
 
 def test_the_law_of_a_plain_scene_has_no_effects():
     """An effect that is None is not compiled."""
-    law = law_of(Scene(1.5, 1.0, 0.2))
+    law = two_disc_law(Scene(1.5, 1.0, 0.2))
     assert law == Law(0.55, 0.3, 0.4)
     assert all(value is None for value in law[3:])
 

@@ -14,15 +14,16 @@ from hypothesis import strategies as st
 from marks import slow
 from mpmath import mp, mpf
 
-from twodiscs.dynamics import paths, runs
+from twodiscs.dynamics import paths
+from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.law import (
     DISC,
     END_OF_TIME,
     after_event,
     contact_quotient,
     fall_quotient,
-    law_of,
     next_event,
+    two_disc_law,
 )
 from twodiscs.dynamics.two import follow
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, WALLS
@@ -81,7 +82,7 @@ def reversed_state(scene, state):
     """Return the state with velocities and spins reversed, as the loop keeps it."""
     column, kept = np.zeros((2, COMPONENTS, 1))
     column[: len(state), 0] = state
-    follow.keep_reversed(kept, 0, column, 0, law_of(scene), True)
+    follow.keep_reversed(kept, 0, column, 0, two_disc_law(scene), True)
     return tuple(map(float, kept[: len(state), 0]))
 
 
@@ -91,7 +92,7 @@ def reversed_state(scene, state):
 @pytest.mark.parametrize("scene", LAWS, ids=repr)
 def test_energy_momentum_and_room_are_kept(scene):
     """Over 5000 events; roundings of a sum of n random signs grow like √n, here 71."""
-    law, state, places = law_of(scene), start(scene, 1), []
+    law, state, places = two_disc_law(scene), start(scene, 1), []
     assert energy(scene, state) == pytest.approx(0.5, abs=4 * EPS)
     for _ in range(5000):
         time, code = next_event(state, math.inf, law)
@@ -115,7 +116,7 @@ def test_energy_momentum_and_room_are_kept(scene):
 
 @pytest.mark.parametrize("scene", LAWS, ids=repr)
 def test_reversed_velocities_lead_back(scene):
-    law, first = law_of(scene), start(scene, 2)
+    law, first = two_disc_law(scene), start(scene, 2)
     state, number = first, 8
     times = []
     for _ in range(number):
@@ -136,7 +137,7 @@ COUNTED = [SCENES["combination"], SCENES["friction"], slow(replace(SCENES["all"]
 
 @pytest.mark.parametrize("scene", COUNTED, ids=repr)
 def test_a_trajectory_tells_the_same_events_as_the_ensemble(scene):
-    rows = list(paths.events_of(scene, start(scene, 3), 64.0, seed=3))
+    rows = list(paths.path_events(scene, start(scene, 3), 64.0, seed=3))
     names = Counter(row[1] for row in rows)
     seen = {event: names[event] for event in (*HOPS, "disc_collision")}
     discs = (1, 2) if scene.identical else (1,)
@@ -150,7 +151,7 @@ def test_a_trajectory_tells_the_same_events_as_the_ensemble(scene):
             for disc in discs
         )
     seen["any_wall"] = sum(n for name, n in names.items() if name.startswith("wall"))
-    sums, _ = runs.engine_of(scene).run_blocks(scene, EVENTS, 3, 0, 1, 64.0, replicas=1, lanes=1)
+    sums, _ = find_engine(scene).run_blocks(scene, EVENTS, 3, 0, 1, 64.0, replicas=1, lanes=1)
     counts = dict(zip(EVENTS, sums.tolist(), strict=True))
     assert {event: counts[event] for event in scene.events} == {
         event: seen[event] for event in scene.events
@@ -228,7 +229,7 @@ def test_rough_collisions_reverse_what_slides_and_what_approaches(seed, mass, in
     s1, s2 = generator.normal(size=2)
     place = sigma * n / 2
     state = (*place, *-place, *v1, *v2, s1, s2)
-    after = after_event(state, 0.0, DISC, law_of(scene))
+    after = after_event(state, 0.0, DISC, two_disc_law(scene))
     w1, w2, (t1, t2) = np.array(after[4:6]), np.array(after[6:8]), after[8:]
     t = np.array([-n[1], n[0]])
 
@@ -244,7 +245,7 @@ def test_rough_collisions_reverse_what_slides_and_what_approaches(seed, mass, in
     # Forces at the point of contact turn either disc there by as much as the other, r n × impulse.
     turned = inertia * np.array([t1 - s1, mass * (t2 - s2)])
     assert turned == pytest.approx(turned[::-1], abs=1e-11 * size * (1 + mass))
-    again = after_event((*after[:4], *after[4:]), 0.0, DISC, law_of(scene))
+    again = after_event((*after[:4], *after[4:]), 0.0, DISC, two_disc_law(scene))
     assert again[4:] == pytest.approx(state[4:], abs=1e-12 * size)
 
 
@@ -256,7 +257,7 @@ def test_rough_walls_reverse_what_slides(axis, side, disc):
     half = (4.0, 3.0)[axis] / 2 - scene.radii[disc]
     places, speeds, spins = [0.0, 0.5, 0.0, -0.5], [0.3, -0.2, 0.1, 0.25], [0.4, -0.6]
     places[2 * disc + axis], speeds[2 * disc + axis] = side * (half - 0.1), 2.0 * side
-    law, state = law_of(scene), (*places, *speeds, *spins)
+    law, state = two_disc_law(scene), (*places, *speeds, *spins)
     time, code = next_event(state, math.inf, law)
     after = after_event(state, time, code, law)
     assert time == pytest.approx(0.05)

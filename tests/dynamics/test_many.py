@@ -11,7 +11,7 @@ from marks import slow
 
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import all_pairs as many
-from twodiscs.dynamics.many import engine
+from twodiscs.dynamics.many import class_counts, many_rates
 from twodiscs.dynamics.runs import relative_errors
 from twodiscs.model.events import AXIS, EVENTS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
@@ -22,8 +22,8 @@ from twodiscs_paper.studies.more_discs.measure import known_derivatives
 
 def counted(scene, blocks, seed=1, events=None):
     """Return ({class: rate}, {class: standard error})."""
-    duration = engine.duration_of(scene, events)
-    sums, products = engine.run_classes(scene, seed, 0, blocks, duration, replicas=REPLICAS)
+    duration = many_rates.expected_duration(scene, events)
+    sums, products = class_counts.run_classes(scene, seed, 0, blocks, duration, replicas=REPLICAS)
     found = sums / (blocks * REPLICAS) / duration
     errors = found * np.where(sums > 0, relative_errors(sums, products, blocks * REPLICAS), 0.0)
     return dict(zip(SHELLS, found, strict=True)), dict(zip(SHELLS, errors, strict=True))
@@ -92,7 +92,9 @@ def test_counts_of_events_are_those_of_their_classes():
     of_axis = {"x": columns["right_wall"], "y": columns["top_wall"]}
     columns |= {wall: of_axis[AXIS[wall]] for wall in WALLS}
     by_event = np.array([columns[event] for event in EVENTS]).T
-    sums, products = engine.of_events(by_class.sum(axis=0), np.triu(by_class.T @ by_class))
+    sums, products = class_counts.combine_classes(
+        by_class.sum(axis=0), np.triu(by_class.T @ by_class)
+    )
     assert np.array_equal(sums, by_event.sum(axis=0))
     assert np.array_equal(products, np.triu(by_event.T @ by_event))
 
@@ -117,7 +119,7 @@ def test_orders_are_those_of_the_ergodic_components(scene):
         part = states[k * n : (k + 1) * n]
         part[:] = np.take_along_axis(part, order, axis=0)
     hops = np.zeros(2000) if scene.periodic else None  # as in other tests of these kernels
-    many.advance_states(states, np.zeros((n, 2000)), 200.0, many.law_of(scene), None, hops)
+    many.advance_states(states, np.zeros((n, 2000)), 200.0, many.many_disc_law(scene), None, hops)
     order = np.argsort(states[start : start + n], axis=0)
     if scene.periodic:  # up to a cyclic shift
         order = np.take_along_axis(order, (np.argmin(order, axis=0) + np.arange(n)[:, None]) % n, 0)
@@ -134,20 +136,20 @@ def test_states_of_one_block_at_a_time(monkeypatch):
         return count(states, *given)
 
     monkeypatch.setattr(many, "count_events", counting_events)
-    engine.run_classes(THREE, 7, 0, 3, 8.0, replicas=100)
+    class_counts.run_classes(THREE, 7, 0, 3, 8.0, replicas=100)
     assert sizes == [100, 100, 100]
 
 
 @pytest.mark.parametrize(("width", "discs"), [(1.0, 3), (3.0, 8)])
 def test_a_flight_on_a_ring_ends_before_a_third_image_comes_near(width, discs):
     """The largest relative speed is √2, and half the ring is the most between two looks."""
-    law = many.law_of(Scene(width, 1.0, 0.1, discs=discs, periodic="x"))
+    law = many.many_disc_law(Scene(width, 1.0, 0.1, discs=discs, periodic="x"))
     fastest = math.sqrt(2)
     assert law.ring[2] * fastest == pytest.approx(width / 2, rel=1e-15)
     # Two discs side by side, in opposite directions: they look again, then meet the next image.
     x, y = np.zeros((discs, 1)), np.linspace(-0.35, 0.35, discs)[:, None].copy()
     u, v = np.zeros((discs, 1)), np.zeros((discs, 1))
     u[0], u[1] = 1 / fastest, -1 / fastest
-    lanes = many.lanes_of(np.vstack([x, y, u, v]), np.full(1, np.inf), law)
+    lanes = many.new_lanes(np.vstack([x, y, u, v]), np.full(1, np.inf), law)
     many.find_events(lanes, law, None)
     assert lanes.times[0] * fastest <= width / 2 * (1 + 1e-15)

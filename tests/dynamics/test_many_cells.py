@@ -9,8 +9,8 @@ from marks import slow
 
 from twodiscs.dynamics.many import all_pairs as many
 from twodiscs.dynamics.many import cell_list as many_cells
-from twodiscs.dynamics.many import engine
-from twodiscs.dynamics.many.engine import mean_interval
+from twodiscs.dynamics.many import many_intervals, many_paths, many_rates
+from twodiscs.dynamics.many.many_intervals import mean_interval
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import many_initial_states
 from twodiscs.sampling.many.cell_grid import grid_of
@@ -46,11 +46,11 @@ THREE = Scene(1.5, 1.0, 0.26, discs=3)
 @pytest.mark.parametrize("scene", [THREE, *BORDER[:3], *map(slow, BORDER[3:] + SHORT)], ids=repr)
 def test_a_few_events_are_the_same_ones(scene):
     """From the same states, before roundings have grown: the same counts, every one of them."""
-    replicas, duration = 256, engine.duration_of(scene, 2 * scene.discs)
+    replicas, duration = 256, many_rates.expected_duration(scene, 2 * scene.discs)
     hops_x = None if scene.periodic else True
     given, law = (
         (many_initial_states.states(scene, replicas, 4), np.uint64(4), 0),
-        many.law_of(scene),
+        many.many_disc_law(scene),
     )
     one = many_cells.count_events(
         *given, duration, duration / 3, law, grid_of(scene), True, hops_x, None
@@ -80,18 +80,18 @@ def test_which_kernel_runs():
 def test_advanced_states_are_those_of_the_other_kernel(scene):
     """After some events of each disc, and there and back again; rounds of a ring as well."""
     start = many_initial_states.states(scene, 20, 9)
-    duration = engine.duration_of(scene, 4 * scene.discs)
+    duration = many_rates.expected_duration(scene, 4 * scene.discs)
     states, laps = start.copy(), np.zeros((scene.discs, 20))
     counts = scene.periodic and scene.moment_of_inertia is None
     hops, others = (np.zeros(20), np.zeros(20)) if counts else (None, None)
-    engine.advance_all(scene, states, laps, duration, None, hops)
+    many_paths.advance_all(scene, states, laps, duration, None, hops)
     other, rounds = start.copy(), np.zeros((scene.discs, 20))
-    many.advance_states(other, rounds, duration, many.law_of(scene), None, others)
+    many.advance_states(other, rounds, duration, many.many_disc_law(scene), None, others)
     assert np.array_equal(laps, rounds)
     assert np.array_equal(hops, others)
     assert states == pytest.approx(other, abs=1e-7 * scene.width)
     states[2 * scene.discs :] *= -1
-    engine.advance_all(scene, states, laps, duration, None, hops)
+    many_paths.advance_all(scene, states, laps, duration, None, hops)
     states[2 * scene.discs :] *= -1
     assert states == pytest.approx(start, abs=1e-7 * scene.width)
 
@@ -105,11 +105,11 @@ def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
     if scene.periodic:
         state[3] += 2 * scene.width
     # The rate that is guessed for short rings is far too high.
-    duration = engine.duration_of(scene, (10 if scene in SHORT else 5) * scene.discs)
-    monkeypatch.setattr(engine, "ENTRIES", 50)
-    found = [*engine.events_of(scene, state, duration)]
-    monkeypatch.setattr(engine, "large_grid", lambda scene: None)
-    other = [*engine.events_of(scene, state, duration)]
+    duration = many_rates.expected_duration(scene, (10 if scene in SHORT else 5) * scene.discs)
+    monkeypatch.setattr(many_paths, "ENTRIES", 50)
+    found = [*many_paths.path_events(scene, state, duration)]
+    monkeypatch.setattr(many_paths, "large_grid", lambda scene: None)
+    other = [*many_paths.path_events(scene, state, duration)]
     assert len(found) > (2 if scene in SHORT else 5) * scene.discs
     assert [row[1:4] for row in found] == [row[1:4] for row in other]
     for (time, *_, now), (same, *_, then) in zip(found, other, strict=True):
@@ -128,10 +128,10 @@ def test_intervals_are_those_of_the_other_kernel(scene, hop, monkeypatch):
     bins = mean / 16, np.arange(65) // 8 + 65
     given = 8 * mean, scene, hop, 3, 2, 4, 20, bins
     sums, other = np.zeros((2, 3, 74), np.int64)
-    monkeypatch.setattr(engine, "ENTRIES", 50)
-    found = engine.record_within(*given, sums, np.ones(1, np.bool_))
-    monkeypatch.setattr(engine, "large_grid", lambda scene: None)
-    same = engine.record_within(*given, other, np.ones(1, np.bool_))
+    monkeypatch.setattr(many_paths, "ENTRIES", 50)
+    found = many_intervals.record_within(*given, sums, np.ones(1, np.bool_))
+    monkeypatch.setattr(many_intervals, "large_grid", lambda scene: None)
+    same = many_intervals.record_within(*given, other, np.ones(1, np.bool_))
     assert found == pytest.approx(same, rel=1e-6)
     assert np.array_equal(found[1], same[1])
     assert found[1].sum() > 20
@@ -175,8 +175,8 @@ STAYING = {
 )
 def test_nothing_overlaps_or_drifts(name, events):
     scene, states = STAYING[name], many_initial_states.states(STAYING[name], 1, 1)
-    laps, part = np.zeros((scene.discs, 1)), engine.duration_of(scene, events)
+    laps, part = np.zeros((scene.discs, 1)), many_rates.expected_duration(scene, events)
     hops = np.zeros(1) if scene.periodic else None  # as the kernels that are compiled above
     for _ in range(5):
-        engine.advance_all(scene, states, laps, part, None, hops)
+        many_paths.advance_all(scene, states, laps, part, None, hops)
         check_state(scene, states)

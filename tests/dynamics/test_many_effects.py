@@ -15,7 +15,8 @@ from sampling.uniformity import assert_uniform_on_sphere
 
 import twodiscs as td
 from twodiscs.dynamics import paths
-from twodiscs.dynamics.many import engine
+from twodiscs.dynamics.ensemble import open_block_kicks
+from twodiscs.dynamics.many import all_pairs, class_counts, many_intervals, many_paths, many_rates
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import many_initial_states
 from twodiscs.theory.exact import replicas_needed
@@ -34,8 +35,8 @@ def test_two_discs_are_those_of_the_engine_of_two(periodic, inertia):
     start = many_initial_states.states(scene, 1, 5)[:, 0]
     # x1, x2, y1, y2, u1, u2, v1, v2, s1, s2 and x1, y1, x2, y2, u1, v1, u2, v2, s1, s2.
     order = [0, 2, 1, 3, 4, 6, 5, 7, 8, 9][: start.size]
-    found = [*engine.events_of(scene, start, 12.0)]
-    other = [*paths.events_of(scene, tuple(start[order]), 12.0)]
+    found = [*many_paths.path_events(scene, start, 12.0)]
+    other = [*paths.path_events(scene, tuple(start[order]), 12.0)]
     assert len(found) > 30
     for (time, *event, state), (due, *same, known) in zip(found, other, strict=True):
         assert event[0] == same[0]
@@ -52,8 +53,8 @@ def test_velocities_and_spins_are_on_a_sphere(scene, friction, time):
     scene, replicas, n = replace(scene, friction=friction), 4096, scene.discs
     states, laps = many_initial_states.states(scene, replicas, 7), np.zeros((n, replicas))
     if time:
-        kicks = engine.kicks_of(scene, replicas, 7)
-        engine.advance_all(scene, states, laps, time, kicks)
+        kicks = open_block_kicks(all_pairs.new_kicks(scene, replicas), 7)
+        many_paths.advance_all(scene, states, laps, time, kicks)
     unit = states[2 * n :].copy()
     unit[2 * n :] *= math.sqrt(scene.moment_of_inertia)
     assert np.sum(unit**2, axis=0) == pytest.approx(1, abs=1e-12)
@@ -97,7 +98,7 @@ def test_a_kick_keeps_places_energy_and_momentum(scene):
         # Another momentum along the ring, which has to stay.
         start[2 * scene.discs : 3 * scene.discs] += 0.1
         start[2 * scene.discs :] /= np.linalg.norm(start[2 * scene.discs :])
-    rows = [*engine.events_of(scene, start, time, seed=3)]
+    rows = [*many_paths.path_events(scene, start, time, seed=3)]
     names = Counter(row[1] for row in rows)
     assert abs(names["kick"] - scene.friction * time) <= 5 * math.sqrt(scene.friction * time)
     momentum = start[2 * scene.discs : 3 * scene.discs].sum()
@@ -111,7 +112,7 @@ def test_a_kick_keeps_places_energy_and_momentum(scene):
             old_x, old_y, old_u, _ = np.split(old, 4)
             assert x == pytest.approx(old_x + old_u * (now - before), abs=1e-9)
             assert y == pytest.approx(old_y + w * (now - before), abs=1e-9)
-    other = [*engine.events_of(scene, start, time, seed=4)]
+    other = [*many_paths.path_events(scene, start, time, seed=4)]
     assert np.array_equal(other[0][-1], rows[0][-1])
     assert not np.array_equal(other[-1][-1], rows[-1][-1])
 
@@ -122,19 +123,21 @@ def test_kicks_belong_to_replicas_not_to_blocks(monkeypatch):
     Both kernels count the same before roundings have grown, and after some kicks.
     """
     scene = replace(RING, moment_of_inertia=None, friction=4.0)
-    duration, found = engine.duration_of(scene, 160), []
+    duration, found = many_rates.expected_duration(scene, 160), []
     assert duration * scene.friction > 3
     state = many_initial_states.states(scene, 1, 1)
-    monkeypatch.setattr(engine, "states_of", lambda _, number, *__: np.repeat(state, number, 1))
+    monkeypatch.setattr(
+        class_counts, "states_of", lambda _, number, *__: np.repeat(state, number, 1)
+    )
     for _ in range(2):
-        first, _ = engine.run_classes(scene, 5, 0, 1, duration, replicas=4)
-        halves = engine.run_classes(scene, 5, 0, 2, duration, replicas=4)
-        whole = engine.run_classes(scene, 5, 0, 1, duration, replicas=8)
+        first, _ = class_counts.run_classes(scene, 5, 0, 1, duration, replicas=4)
+        halves = class_counts.run_classes(scene, 5, 0, 2, duration, replicas=4)
+        whole = class_counts.run_classes(scene, 5, 0, 1, duration, replicas=8)
         assert np.array_equal(halves[0], whole[0])
         assert np.array_equal(halves[1], whole[1])
         assert not np.array_equal(halves[0], 2 * first)
         found.append(whole)
-        monkeypatch.setattr(engine, "large_grid", lambda scene: None)
+        monkeypatch.setattr(class_counts, "large_grid", lambda scene: None)
     for one, other in zip(*found, strict=True):
         assert np.array_equal(one, other)
 
@@ -142,11 +145,13 @@ def test_kicks_belong_to_replicas_not_to_blocks(monkeypatch):
 @pytest.mark.slow
 def test_chains_of_different_blocks_have_different_kicks(monkeypatch):
     """From one and the same state, chains differ by their kicks alone, in all blocks."""
-    chains, mean = 4, engine.mean_interval(FEW, "vertical_hop")
+    chains, mean = 4, many_intervals.mean_interval(FEW, "vertical_hop")
     states = many_initial_states.states_of(many_initial_states.initial_of(FEW), 1, 3, 0)
-    monkeypatch.setattr(engine, "states_of", lambda *given: np.repeat(states, chains, axis=1))
+    monkeypatch.setattr(
+        many_intervals, "states_of", lambda *given: np.repeat(states, chains, axis=1)
+    )
     bins = mean / 16, np.arange(65) // 8 + 65
     sums = np.zeros((3, 74), np.int64)
     given = 8 * mean, FEW, "vertical_hop", 3, 0, 2, chains, bins, sums
-    times, _ = engine.record_within(*given, np.ones(1, np.bool_))
+    times, _ = many_intervals.record_within(*given, np.ones(1, np.bool_))
     assert np.unique(times).size == 2 * chains

@@ -74,7 +74,9 @@ def test_relative_speeds_on_the_surface_have_the_law_of_the_flux(periodic, compo
     scene = Scene(1.5, 1.0, 0.2, discs=2, periodic=periodic)
     states = np.zeros((8, 2**14))
     stream = many_hop_clusters.open_stream(np.uint64(1), 0)
-    many_hop_clusters.draw_on_surface(stream, many_hop_clusters.pair_of(scene, HOP), states, -1)
+    many_hop_clusters.draw_on_surface(
+        stream, many_hop_clusters.surface_pair(scene, HOP), states, -1
+    )
     law = (1 - (states[4] - states[5]) ** 2 / 2) ** ((components - 1) / 2)
     five(law.mean(), 0.5, 1 / math.sqrt(12 * law.size))
 

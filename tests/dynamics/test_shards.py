@@ -10,8 +10,8 @@ from commands import python
 from effect_scenes import ALL, SCENES
 from marks import slow
 
-from twodiscs.dynamics import runs
-from twodiscs.dynamics.many import engine
+from twodiscs.dynamics.engine import find_engine
+from twodiscs.dynamics.many import class_counts
 from twodiscs.dynamics.two import strip
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
@@ -34,13 +34,13 @@ MANY = {
 
 
 def of_two(scene):
-    return lambda first, stop, **lanes: runs.engine_of(scene).run_blocks(
+    return lambda first, stop, **lanes: find_engine(scene).run_blocks(
         scene, EVENTS, 3, first, stop, 8.0, replicas=100, **lanes
     )
 
 
 def of_many(scene):
-    return lambda first, stop, **lanes: engine.run_classes(
+    return lambda first, stop, **lanes: class_counts.run_classes(
         scene,
         7,
         first,
@@ -53,7 +53,7 @@ def of_many(scene):
 
 def of_strip(first, stop, **lanes):
     scene, hop = PAPER.with_radius(0.245), "horizontal_hop"
-    band = strip.strip_of(scene, hop)
+    band = strip.choose_strip(scene, hop)
     found, events = strip.run_blocks(scene, hop, band, 7, first, stop, replicas=100, **lanes)
     return *found, events
 
@@ -85,7 +85,7 @@ BITS = """
 import hashlib
 from factory import sample_point
 from twodiscs.dynamics import runs
-from twodiscs.dynamics.many import engine
+from twodiscs.dynamics.many import class_counts
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.points.base import file_content
@@ -104,7 +104,7 @@ for point in (
 scenes = [Scene(1.5, 1.0, 0.15, discs=3), Scene(2.3, 0.6, 0.18, discs=8)]
 scenes += [Scene(1.5, 1.0, 0.2, discs=6), Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.3)]
 for scene in [*scenes, Scene(1.5, 1.0, 0.15, discs=4, periodic="x")]:
-    counts = engine.run_classes(scene, 5, 0, 1, 16.0, replicas=64)
+    counts = class_counts.run_classes(scene, 5, 0, 1, 16.0, replicas=64)
     states = many_initial_states.states(scene, 50, 3)
     for part in (*counts, *insertions.run_blocks(scene, 5, 0, 1), states):
         print(hashlib.sha256(part.tobytes()).hexdigest())

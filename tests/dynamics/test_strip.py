@@ -55,7 +55,7 @@ class Endless(strip.Strip):
 
 def check_rate(scene, hop, band, found):
     """Five sigma."""
-    mean, error = stratified_mean(strip.fractions_of(scene, hop, band), *found)
+    mean, error = stratified_mean(strip.stratum_fractions(scene, hop, band), *found)
     assert error / mean < 0.05
     true = exact.rate(scene, hop) * 2 * band.time / band.fraction
     assert abs(mean - true) < 5 * error
@@ -65,7 +65,7 @@ def check_rate(scene, hop, band, found):
 @pytest.mark.parametrize("shorter", [1, 8])
 def test_any_strip_has_the_exact_rate(scene, hop, shorter):
     """A path ends only where no hop can follow."""
-    band = strip.strip_of(scene, hop)
+    band = strip.choose_strip(scene, hop)
     band = strip.strip_around(scene, hop, band.time / shorter)
     assert band.within == scene.fastest * band.time
     found, events = strip.run_blocks(scene, hop, band, 1, 0, 24)
@@ -77,15 +77,15 @@ def test_any_strip_has_the_exact_rate(scene, hop, shorter):
 
 @pytest.mark.parametrize(("scene", "hop"), COUNTED)
 def test_strips_of_effects_have_the_exact_rate(scene, hop):
-    band = strip.strip_of(scene, hop)
+    band = strip.choose_strip(scene, hop)
     check_rate(scene, hop, band, strip.run_blocks(scene, hop, band, 1, 0, 24)[0])
 
 
 @pytest.mark.parametrize(("scene", "hop"), [(PAPER, "vertical_hop"), *COUNTED])
 def test_starts_fill_the_strata_as_their_exact_shares_say(scene, hop):
     """χ² of the numbers of starts in all strata; one false alarm in 10⁶."""
-    band = strip.strip_of(scene, hop)
-    shares = strip.fractions_of(scene, hop, band)
+    band = strip.choose_strip(scene, hop)
+    shares = strip.stratum_fractions(scene, hop, band)
     (starts, _, _), _ = strip.run_blocks(scene, hop, band, 4, 0, 100)
     assert starts.sum() == 100 * REPLICAS
     expected = starts.sum() * shares
@@ -145,7 +145,7 @@ def test_starts_in_a_strip_are_those_from_everywhere_that_are_in_it(scene, hop):
 
 @at_places
 def test_events_are_about_as_many_as_expected(scene, hop):
-    band = Endless(*strip.strip_of(scene, hop))
+    band = Endless(*strip.choose_strip(scene, hop))
     events = strip.run_blocks(scene, hop, band, 1, 0, 24)[1] / (24 * REPLICAS)
     # The choice of T needs no more than that.
     assert events == pytest.approx(strip.expected_events(scene, hop, band), rel=0.2)
@@ -154,8 +154,8 @@ def test_events_are_about_as_many_as_expected(scene, hop):
 @at_places
 def test_intervals_cover_as_they_say(scene, hop):
     """95 % intervals of 800 blocks: between 92 and 98 %, which is four standard errors."""
-    band, true = strip.strip_of(scene, hop), exact.mean_times(scene)[hop]
-    shares, covered = strip.fractions_of(scene, hop, band), []
+    band, true = strip.choose_strip(scene, hop), exact.mean_times(scene)[hop]
+    shares, covered = strip.stratum_fractions(scene, hop, band), []
     for block in range(800):
         found, _ = strip.run_blocks(scene, hop, band, 9, block, block + 1)
         total, squares = int(found[1].sum()), int(found[2].sum())
@@ -200,7 +200,7 @@ def test_the_target_is_reached_at_any_distance_from_a_threshold(hop, distance):
 def test_planned_blocks_are_enough_and_not_far_too_many(effects):
     """Shards do these and no more: fewer would miss the error that was asked for."""
     scene, hop = Scene(1.5, 1.0, 0.2475, **effects), "horizontal_hop"
-    run = strip.run_of(scene, hop, 0.01, 10**9, 1)
+    run = strip.strip_run(scene, hop, 0.01, 10**9, 1)
     (excess,) = run.error_over_target(run.work(0, run.planned), run.planned)
     assert 0.5 < excess <= 1
 

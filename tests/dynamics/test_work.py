@@ -7,8 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from twodiscs.dynamics import paths, runs
+from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.two import event_counts, strip
+from twodiscs.dynamics.two import strip, two_rates
 from twodiscs.model.box import Box
 from twodiscs.model.checks import LONGEST, SHORTEST, InputError
 from twodiscs.model.two_geometry import LEAST_DISTANCE
@@ -69,10 +70,10 @@ def test_the_work_of_a_replica_is_bounded(width, height, effects, share):
         require_initial_states(scene)
     except InputError:
         return
-    events, leaves = passes(scene, runs.engine_of(scene).replica_duration(scene))
+    events, leaves = passes(scene, find_engine(scene).replica_duration(scene))
     # A duration is rounded to a power of two.
-    assert events <= 2**0.5 * event_counts.EVENTS_PER_REPLICA
-    assert leaves <= 2**0.5 * event_counts.EVENTS_PER_REPLICA * CROSSINGS_PER_EVENT
+    assert events <= 2**0.5 * two_rates.EVENTS_PER_REPLICA
+    assert leaves <= 2**0.5 * two_rates.EVENTS_PER_REPLICA * CROSSINGS_PER_EVENT
     assert exact.work_per_event(scene) >= 1.0
 
 
@@ -113,7 +114,7 @@ def test_draws_are_within_the_price_of_a_budget(drawn):
         if name == "all":
             chance = exact.free_fraction(scene)
         else:
-            chance = strip.acceptance(scene, name, strip.strip_of(scene, name))
+            chance = strip.acceptance(scene, name, strip.choose_strip(scene, name))
         assert chance >= exact.MIN_FRACTION
         proposals += starts / chance
     assert proposals <= 1.01 * strip.PROPOSALS_PER_EVENT * 10**9
@@ -125,5 +126,5 @@ def test_a_strip_is_no_longer_than_its_events_allow():
         0.2015647165811781, 10.778181887736503,
         {"depth": 0.3495539972883679, "mass_ratio": 109.0, "radius_ratio": 2.417163684327618},
     ).scene(0.041694469802592275)  # fmt: skip
-    found = strip.strip_of(scene, "vertical_hop")
+    found = strip.choose_strip(scene, "vertical_hop")
     assert 2 * found.time * exact.event_rate(scene) <= strip.EVENTS_OF_PATH

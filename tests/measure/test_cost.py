@@ -6,8 +6,9 @@ import pytest
 
 import twodiscs as td
 from twodiscs.analysis.tables import shortfall
+from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.runs import DAY, DynamicsRun, engine_of
+from twodiscs.dynamics.runs import DAY, DynamicsRun
 from twodiscs.measure import cost
 from twodiscs.model.box import job_seed
 from twodiscs.model.checks import format_seconds
@@ -54,7 +55,7 @@ def test_a_rare_hop_has_a_price_from_ordinary_states_too(blocks):
     strips, ordinary = (found["horizontal_hop_time", m] for m in ("strips", "dynamics"))
     assert ordinary.c > 1e4 * strips.c
     # Few counts do not tell their variance; it then follows from the exact rate.
-    block = td.rate(NEAR, "horizontal_hop") * engine_of(NEAR).replica_duration(NEAR) * REPLICAS
+    block = td.rate(NEAR, "horizontal_hop") * find_engine(NEAR).replica_duration(NEAR) * REPLICAS
     assert ordinary.c == pytest.approx(cost.CLUSTER / block * 1e-3)
 
 

@@ -127,7 +127,7 @@ import sys, numba
 from twodiscs.model.box import Box
 from twodiscs.dynamics import runs
 scene = Box(1.5, 1.0).scene(0.2)
-runs.engine_of(scene).run_blocks(scene, ("any_wall",), 1, 0, 0, 1.0)
+find_engine(scene).run_blocks(scene, ("any_wall",), 1, 0, 0, 1.0)
 print("scipy.linalg" in sys.modules)
 import numpy as np
 import scipy.linalg.cython_blas
@@ -143,13 +143,13 @@ print(np.allclose(numba.njit(product)(a), product(a), rtol=1e-9, atol=0))
 #: Print how often each machine instruction stands in the kernel that counts all events of a scene.
 INSTRUCTIONS = """
 import collections, json, re, sys
-from twodiscs.dynamics.two.follow import loop_of
+from twodiscs.dynamics.two.follow import compile_loop
 from twodiscs.dynamics.two.event_counts import Counts, run_blocks
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 scene = Scene(1.5, 1.0, 0.2, **json.loads(sys.argv[1]))
 run_blocks(scene, EVENTS, 1, 0, 1, 1.0, replicas=1)
-(assembly,) = loop_of(Counts).inspect_asm().values()
+(assembly,) = compile_loop(Counts).inspect_asm().values()
 names = re.findall(r"^\\t([a-z]\\w+)", assembly, re.MULTILINE)
 json.dump(collections.Counter(names), sys.stdout)
 """

@@ -285,7 +285,7 @@ def accepted(state, prism, proposals):
 )
 def test_the_chance_of_a_proposal_is_exact(scene, hop):
     """At 5 sigma."""
-    band, proposals = strip.strip_of(scene, hop), 200_000
+    band, proposals = strip.choose_strip(scene, hop), 200_000
     prism, chance = rejection_sampler(scene, hop, band.within), strip.acceptance(scene, hop, band)
     assert 0.001 < chance <= 1
     found = accepted(open_stream(np.uint64(1), 0), prism, proposals) / proposals

@@ -10,7 +10,7 @@ import pytest
 from factory import empty, of
 from figure_cases import points
 
-from twodiscs.dynamics import runs
+from twodiscs.dynamics.engine import find_engine
 from twodiscs.figures import style
 from twodiscs.figures.style import LOOKS
 from twodiscs.model.events import EVENTS
@@ -124,10 +124,10 @@ def test_the_scalar_engine_counts_the_same(radius):
     Chaos would turn a difference in the last bit into other counts after some tens of events.
     """
     scene = PAPER.with_radius(radius)
-    duration = runs.engine_of(scene).replica_duration(scene)
+    duration = find_engine(scene).replica_duration(scene)
     arguments = (duration, scene.contact_distance, conditioned_sampler(scene), (0, 0))
     usual = scalar.count_blocks(np.uint64(3), 0, 1, 1024, *arguments)
-    sums, products = runs.engine_of(scene).run_blocks(scene, EVENTS, 3, 0, 1, duration)[:2]
+    sums, products = find_engine(scene).run_blocks(scene, EVENTS, 3, 0, 1, duration)[:2]
     at = [EVENTS.index(event) for event in scalar.COUNTED]
     np.testing.assert_array_equal(usual[0], sums[at])
     np.testing.assert_array_equal(usual[1], products[np.ix_(at, at)])

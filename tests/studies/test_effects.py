@@ -13,7 +13,7 @@ from numba.core.errors import NumbaError
 
 from twodiscs.analysis.tables import MeanTimesTable
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.paths import events_of
+from twodiscs.dynamics.paths import path_events
 from twodiscs.figures import curves, style
 from twodiscs.model.box import Box, key, stream_seed
 from twodiscs.model.events import EVENTS, WALLS
@@ -52,7 +52,7 @@ def test_unmet_starts_are_those_whose_paths_have_no_collision(scene, monkeypatch
     components = 8 if scene.moment_of_inertia is None else 10
     first = []
     for start in starts.T:
-        rows = events_of(scene, tuple(map(float, start[:components])), times[-1])
+        rows = path_events(scene, tuple(map(float, start[:components])), times[-1])
         first.append(next((row[0] for row in rows if row[1] == "disc_collision"), np.inf))
     expected = [sum(moment > time for moment in first) for time in times]
     assert effects.survivors(scene, times, 1, 3) == expected

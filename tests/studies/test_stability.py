@@ -12,7 +12,7 @@ from factory import conditioned_point, sample_point, written
 from marks import slow
 from mpmath import mpf
 
-from twodiscs.dynamics.law import Law, law_of
+from twodiscs.dynamics.law import Law, two_disc_law
 from twodiscs.figures import style
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
@@ -243,7 +243,7 @@ def test_energy_error_grows_like_a_random_walk():
 
 def audited(starts, shortest=0.0):
     columns = np.array(starts, float).T.copy()
-    return stability.audit(columns, 1, 50, law_of(SCENE), shortest)
+    return stability.audit(columns, 1, 50, two_disc_law(SCENE), shortest)
 
 
 GOOD = (-0.4, 0.1, 0.4, -0.1, 0.6, 0.48, -0.64, 0.0)
@@ -284,7 +284,7 @@ def test_events_retraced_are_those_the_exponent_allows(monkeypatch):
 
 def test_growth_is_that_of_the_tangent_space_and_ends_where_the_events_differ():
     """It is the same for separations of 1e-7, 1e-8 and 1e-9."""
-    starts, law = states(SCENE, 50, 1), law_of(SCENE)
+    starts, law = states(SCENE, 50, 1), two_disc_law(SCENE)
     logs = [np.log(stability.growth(starts, 5, 20, size, law)) for size in (1e-7, 1e-8, 1e-9)]
     assert np.median(logs[1]) > 3
     for other in (logs[0], logs[2]):

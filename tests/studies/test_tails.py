@@ -70,7 +70,7 @@ def test_a_stratum_without_a_longer_interval_adds_its_bound():
     (found,) = tails.tail(scene, event, times, samples, 3, blocks)
     strata = 8
     sums, longest = tails.length_biased(
-        np.uint64(3), 0, blocks, strata, samples, np.array(times), tails.law_of(scene),
+        np.uint64(3), 0, blocks, strata, samples, np.array(times), tails.two_disc_law(scene),
         tails.conditioned_sampler(scene), False,
     )  # fmt: skip
     mean = exact.mean_times(scene)[event]

@@ -639,12 +639,12 @@ class TrajectoryTable(Table):
     @staticmethod
     def rows(box, radius, seed):
         """Return the events of one trajectory in a ``Box``, in order."""
-        from twodiscs.dynamics.paths import followed  # which compiles
+        from twodiscs.dynamics.paths import follow_trajectory  # which compiles
         from twodiscs.sampling.initial_states import components
 
         scene, rows = box.scene(radius), []
         parts, columns = components(scene), trajectory_columns(scene.discs)
-        for time, event, first, second, state in followed(scene, seed):
+        for time, event, first, second, state in follow_trajectory(scene, seed):
             known = dict(zip(parts, map(float, state), strict=True))
             known |= {"time": time, "event": event, "first": first, "second": second}
             rows.append({name: known.get(name) for name in columns})

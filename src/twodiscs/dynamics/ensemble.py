@@ -94,7 +94,7 @@ def renew_kicks(i, kicks):
 
 
 @optional(lambda remaining, i, kicks: remaining)
-def before_kick(remaining, i, kicks):
+def kick_limit(remaining, i, kicks):
     """Return the ``remaining`` time of lane ``i``, or the time to its next kick if it is less."""
     wait = kicks.waits[i]
     return remaining if remaining < wait else wait
@@ -107,7 +107,7 @@ def open_all(seed, first, kicks):
         open_kicks(i, seed, first + i, kicks)
 
 
-def opened(kicks, seed, block):
+def open_block_kicks(kicks, seed, block=0):
     """Return ``kicks`` (None stays None) with those of a ``block`` of as many states begun."""
     if kicks is not None:
         open_all(np.uint64(seed), block * kicks.waits.size, kicks)

@@ -81,7 +81,7 @@ def divided(whole, first, second):
     return (larger, whole - larger) if first > second else (whole - larger, larger)
 
 
-def law_of(scene):
+def two_disc_law(scene):
     """Return the ``Law`` of a ``Scene``."""
     m1, m2 = scene.masses[:2]
     fractions = divided(1.0, m2, m1)

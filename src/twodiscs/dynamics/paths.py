@@ -1,10 +1,10 @@
-"""One trajectory, event by event: ``two.path`` follows two discs, ``many.engine`` more."""
+"""One trajectory, event by event, of two discs or more."""
 
 from itertools import islice, repeat
 
 import numpy as np
 
-from twodiscs.dynamics.two import path
+from twodiscs.dynamics.engine import find_engine
 from twodiscs.model.checks import InputError, check_length, format_number
 from twodiscs.model.two_geometry import ENERGY
 from twodiscs.sampling.initial_states import MOST_NUMBERS, ROUNDING, components, given_state, states
@@ -18,48 +18,32 @@ MOST_EVENTS = 1e7
 ROWS = 1000
 
 
-def path_of(scene):
-    """Return the module that follows one path of a ``Scene``: of two discs, or of many.
-
-    Its ``advance_all(scene, states, wraps, time, kicks)`` advances the columns of ``states`` by a
-    ``time`` > 0; each centre stays in its cell. ``wraps``, from ``new_wraps(scene, number)``, count
-    how often a centre was moved back along a periodic axis. ``unwrap(scene, columns, wraps)`` adds
-    these moves to the centres in ``columns``, arrays by name. ``kicks_of(scene, number, seed,
-    block)`` returns the kicks of the states of a block, from the streams of ``seed``; they go on
-    from one call to the next, and are None without friction.
-    """
-    if scene.discs == 2:
-        return path
-    from twodiscs.dynamics.many import engine
-
-    return engine
-
-
-def events_of(scene, state, duration, seed=0):
+def path_events(scene, state, duration, seed=0):
     """Yield (time, event, first, second, state) of each event within ``duration``.
 
-    ``state`` is one of ``starts.states`` as a tuple or column. The first event is "start", the last
-    one "end"; hops are events, walls are named by axis and disc, "wall_x1" say. With friction
-    "kick" is an event, because a path turns there; kicks come from the streams of ``seed``.
+    ``state`` is one of ``initial_states.states`` as a tuple or column. The first event is "start",
+    the last one "end"; hops are events, walls are named by axis and disc, "wall_x1" say. With
+    friction "kick" is an event, because a path turns there; kicks come from the streams of
+    ``seed``.
     """
-    return path_of(scene).events_of(scene, state, duration, seed)
+    return find_engine(scene).path_events(scene, state, duration, seed)
 
 
-def state_of(scene, start):
-    """Return ``start`` as a state of the ``Scene``, in the form that ``events_of`` takes.
+def check_start(scene, start):
+    """Return ``start`` as a state of the ``Scene``, in the form that ``path_events`` takes.
 
-    ``start`` is one of ``starts.as_records``, or as many numbers. On periodic axes any image
-    serves, and it stays. Raises ``InputError`` for anything else, for discs that overlap or lie
-    outside, and for another energy than 1/2.
+    ``start`` is one of ``initial_states.as_records``, or as many numbers. On periodic axes any
+    image serves, and it stays. Raises ``InputError`` for anything else, for discs that overlap or
+    lie outside, and for another energy than 1/2.
     """
     state = dict(zip(components(scene), given_state(scene, start), strict=True))
 
-    def of_discs(name):
+    def values(name):
         return np.array([state[f"{name}{disc}"] for disc in range(1, scene.discs + 1)])
 
     radii, masses, distances = np.array(scene.radii), np.array(scene.masses), 0.0
     for axis in scene.axes:
-        side, centres = scene.side(axis), of_discs(axis)
+        side, centres = scene.side(axis), values(axis)
         apart = centres[:, None] - centres
         if axis in scene.periodic:
             apart -= side * np.round(apart / side)
@@ -78,30 +62,31 @@ def state_of(scene, start):
             f"start must have the discs apart, with {contact!r} or more between their centres, not "
             f"{float(distance)!r}"
         )
-    energy = masses @ sum(of_discs(name) ** 2 for name in "uvw"[: len(scene.axes)]) / 2
+    energy = masses @ sum(values(name) ** 2 for name in "uvw"[: len(scene.axes)]) / 2
     if scene.moment_of_inertia is not None:
-        energy += scene.moment_of_inertia * (masses @ of_discs("s") ** 2) / 2
+        energy += scene.moment_of_inertia * (masses @ values("s") ** 2) / 2
     if scene.field:
-        energy += scene.field * (masses @ (of_discs("y") + scene.height / 2 - radii))
+        energy += scene.field * (masses @ (values("y") + scene.height / 2 - radii))
     if abs(energy - ENERGY) > ROUNDING:
         raise InputError(f"start must have a total energy of {ENERGY}, not {float(energy)!r}")
     return tuple(state.values())
 
 
-def followed(scene, seed, start=None, duration=None, progress=None):
-    """Return one trajectory of a ``Scene``, as a list of what ``events_of`` yields.
+def follow_trajectory(scene, seed, start=None, duration=None, progress=None):
+    """Return one trajectory of a ``Scene``, as a list of what ``path_events`` yields.
 
     It starts from the invariant measure, with the random stream of ``seed``, unless a ``start`` is
-    given (see ``state_of``). Without a ``duration`` it has the ``usual_duration``. Raises
+    given (see ``check_start``). Without a ``duration`` it has the ``usual_duration``. Raises
     ``InputError`` for anything that is not a ``Scene``, for a seed that is not an integer ≥ 0, and
     for a start that is no state. The same holds for a duration that is no length or takes
     ``MOST_EVENTS``. ``progress``, if given, is called now and then with the time that it has
     reached, and the ``duration``.
     """
-    rate = path_of(scene).trajectory_rate(scene)
+    engine = find_engine(scene)
+    rate = engine.trajectory_rate(scene)
     most = min(MOST_EVENTS, MOST_NUMBERS / len(components(scene)))
     if duration is None:
-        duration = path_of(scene).usual_duration(scene)
+        duration = engine.usual_duration(scene)
     elif check_length("duration", duration) * rate > most:
         raise InputError(
             f"duration must be below {format_number(most / rate, '.3g')}, where "
@@ -110,8 +95,8 @@ def followed(scene, seed, start=None, duration=None, progress=None):
     if start is None:
         start = tuple(map(float, states(scene, 1, seed)[: len(components(scene)), 0]))
     else:
-        start = state_of(scene, start)
-    rows, events = [], events_of(scene, start, float(duration), seed)
+        start = check_start(scene, start)
+    rows, events = [], path_events(scene, start, float(duration), seed)
     for some in map_in_threads(lambda: [*islice(events, ROWS)], repeat(())):
         rows += some
         if progress is not None:

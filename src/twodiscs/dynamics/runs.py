@@ -1,7 +1,7 @@
 """Runs: counts of events to an error or in a time, and intervals between hops.
 
 A run has its work as ``SequentialRun`` of blocks, ``parts``, and makes the point of their sums. The
-kernels are those of ``two`` or ``many`` discs (``engine_of``).
+kernels are those of an ``Engine``, of two discs or of many.
 
 The mean count in a time T is rate × T exactly, for every T and without burn-in; the spread between
 independent replicas gives its error.
@@ -19,8 +19,9 @@ from functools import cached_property
 
 import numpy as np
 
+from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import RETURNS, nearest_power_of_two
-from twodiscs.dynamics.two import event_counts, returns, strip
+from twodiscs.dynamics.two import strip
 from twodiscs.model.box import job_seed
 from twodiscs.model.checks import InputError, format_number
 from twodiscs.model.events import EVENTS
@@ -38,15 +39,6 @@ CHAINS, BUDGET = 256, 10**11
 DAY = 86400 * 10**8
 
 # Counts -----------------------------------------------------------------------------------------
-
-
-def engine_of(scene):
-    """Return the module that counts the events of a ``Scene``: of two discs, or of many."""
-    if scene.discs == 2:
-        return event_counts
-    from twodiscs.dynamics.many import engine
-
-    return engine
 
 
 @dataclass(frozen=True)
@@ -84,7 +76,7 @@ class DynamicsRun(Run):
     @property
     def most_events(self):
         """The budget, or without one the number of events of a day, roughly."""
-        return self.budget or DAY / engine_of(self.scene).cost_ratio(self.scene)
+        return self.budget or DAY / find_engine(self.scene).cost_ratio(self.scene)
 
     @property
     def _events(self):
@@ -106,11 +98,11 @@ class DynamicsRun(Run):
         for all of them, each has the same fraction of its events. Without a budget, this is true of
         the work of a day.
         """
-        each = engine_of(self.scene).work_per_event(self.scene)
+        each = find_engine(self.scene).work_per_event(self.scene)
         budget = max(1, int(self.most_events / each))
         runs = {"all": self._everything(budget)}
         for hop in self._rare:
-            runs[hop] = strip.run_of(self.scene, hop, self.target[hop], budget, self.seed)
+            runs[hop] = strip.strip_run(self.scene, hop, self.target[hop], budget, self.seed)
         events = {name: run.planned * run.block_events for name, run in runs.items()}
         total = sum(events.values())
         if self.budget is None:
@@ -127,7 +119,7 @@ class DynamicsRun(Run):
         }
 
     def _everything(self, budget):
-        scene, engine = self.scene, engine_of(self.scene)
+        scene, engine = self.scene, find_engine(self.scene)
         duration, each = engine.replica_duration(scene), engine.block_replicas(scene)
         index = [EVENTS.index(event) for event in self._waited]
         goals = np.array([self.target[event] for event in self._waited])
@@ -165,7 +157,7 @@ class DynamicsRun(Run):
 
     def point(self, pieces):
         """Return the ``DynamicsPoint``, given {name: pieces} of all parts."""
-        engine = engine_of(self.scene)
+        engine = find_engine(self.scene)
         constants = {
             "duration": engine.replica_duration(self.scene),
             "replicas": engine.block_replicas(self.scene),
@@ -217,7 +209,7 @@ class TimedRun(DynamicsRun):
 
     def __post_init__(self):
         super().__post_init__()
-        rate = engine_of(self.scene).expected_event_rate(self.scene)
+        rate = find_engine(self.scene).expected_event_rate(self.scene)
         if self.duration * rate > self.most_events:
             raise InputError(
                 f"duration must be below {format_number(self.most_events / rate, '.3g')}, where "
@@ -236,7 +228,7 @@ class TimedRun(DynamicsRun):
     @cached_property
     def parts(self):
         """The ``SequentialRun`` of all blocks, {"all": run}."""
-        engine = engine_of(self.scene)
+        engine = find_engine(self.scene)
         each = engine.replica_duration(self.scene) * engine.block_replicas(self.scene)
         blocks, run = max(1, math.ceil(self.duration / each)), self._everything(self.most_events)
         return {"all": fixed(run.work, blocks, run.block_events, run.cost_ratio)}
@@ -245,12 +237,7 @@ class TimedRun(DynamicsRun):
 # Intervals --------------------------------------------------------------------------------------
 
 
-def chains_of(scene):
-    """Return the module that records the intervals of a ``Scene``: of two discs, or of many."""
-    return returns if scene.discs == 2 else engine_of(scene)
-
-
-def recorded(scene, event, seed, first, stop, going):
+def record_blocks(scene, event, seed, first, stop, going):
     """Return (times of the chains, sums in bins) of the blocks ``first`` … ``stop`` − 1.
 
     Each block has ``CHAINS`` chains of ``RETURNS`` intervals, see ``record_intervals``. ``going``
@@ -261,9 +248,10 @@ def recorded(scene, event, seed, first, stop, going):
     last = BINS + len(edges)
     wide = np.full(BINS + 1, last)
     wide[: edges[-1]] = BINS + np.repeat(np.arange(1, len(edges)), np.diff(edges))
-    sums = np.zeros((chains_of(scene).INTERVAL_SUMS, last + 1), np.int64)
-    record, bins = chains_of(scene).record_intervals, (_width(scene, event), wide)
-    return record(scene, event, seed, first, stop, CHAINS, bins, sums, going), sums
+    engine, bins = find_engine(scene), (_width(scene, event), wide)
+    sums = np.zeros((engine.interval_sums, last + 1), np.int64)
+    totals = engine.record_intervals(scene, event, seed, first, stop, CHAINS, bins, sums, going)
+    return totals, sums
 
 
 @dataclass(frozen=True)
@@ -307,12 +295,12 @@ class IntervalsRun(Run):
 
     @property
     def _events(self):
-        return chains_of(self.scene).events_per_interval(self.scene, self.event)
+        return find_engine(self.scene).events_per_interval(self.scene, self.event)
 
     @property
     def _each(self):
         """The number of intervals of a block."""
-        return CHAINS * chains_of(self.scene).intervals_of_chain(self.scene, self.event)
+        return CHAINS * find_engine(self.scene).intervals_of_chain(self.scene, self.event)
 
     @property
     def _blocks(self):
@@ -334,7 +322,9 @@ class IntervalsRun(Run):
         """
 
         def work(first, stop):
-            totals, sums = recorded(self.scene, self.event, self.seed, first, stop, self._going)
+            totals, sums = record_blocks(
+                self.scene, self.event, self.seed, first, stop, self._going
+            )
             totals, *numbers = np.atleast_2d(totals)
             # Integers in the finest unit that doubles have.
             times = [int(time) for time in totals / (_width(self.scene, self.event) * GRAIN)]
@@ -345,7 +335,7 @@ class IntervalsRun(Run):
                 moments += [joint, sum(n), sum(each * each for each in n)]
             return sums, np.array(moments, object)
 
-        ratio = chains_of(self.scene).cost_ratio(self.scene)
+        ratio = find_engine(self.scene).chain_cost_ratio(self.scene)
         return {"all": fixed(work, self._blocks, self._each * self._events, ratio)}
 
     def point(self, pieces):
@@ -369,4 +359,4 @@ class IntervalsRun(Run):
 
 
 def _width(scene, event):
-    return nearest_power_of_two(chains_of(scene).mean_interval(scene, event) / 16)
+    return nearest_power_of_two(find_engine(scene).mean_interval(scene, event) / 16)

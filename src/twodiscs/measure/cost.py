@@ -103,9 +103,10 @@ def pilots(run, seconds=PILOT):
 
 
 def _pilot(run, name, seconds):
-    from twodiscs.dynamics.runs import engine_of, relative_errors
+    from twodiscs.dynamics.engine import find_engine
+    from twodiscs.dynamics.runs import relative_errors
 
-    scene, engine, part = run.scene, engine_of(run.scene), run.parts[name]
+    scene, engine, part = run.scene, find_engine(run.scene), run.parts[name]
     replicas = engine.block_replicas(scene)
     sums, blocks, each = timed(part.work, seconds, -(-FEWEST_REPLICAS // replicas))
     if name == "all":

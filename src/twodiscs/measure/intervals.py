@@ -103,9 +103,9 @@ class Intervals(Result):
         at_zero, error, status = density.value, density.stderr, "extrapolated"
         if min(self.counts[:2]) < MIN_EVENTS:
             error, status = None, "too-few"
-        from twodiscs.dynamics.runs import engine_of
+        from twodiscs.dynamics.engine import find_engine
 
-        events_of_pair = engine_of(scene).expected_event_rate(scene) * 2 / scene.discs
+        events_of_pair = find_engine(scene).expected_event_rate(scene) * 2 / scene.discs
         if events_of_pair * point.bin_width > RESOLVED_EVENTS:
             at_zero, error, status = None, None, "not-resolved"
         values = at_zero, error, exact, None, sum(self.counts[:2]), status, "1/time"

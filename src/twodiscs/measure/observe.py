@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from twodiscs.dynamics.paths import MOST_EVENTS, path_of
-from twodiscs.dynamics.runs import engine_of
+from twodiscs.dynamics.engine import find_engine
+from twodiscs.dynamics.ensemble import open_block_kicks
+from twodiscs.dynamics.paths import MOST_EVENTS
 from twodiscs.measure.result import Immutable, note_of_number, progress_bar
 from twodiscs.model.box import job_seed
 from twodiscs.model.checks import (
@@ -288,27 +289,28 @@ def averages(
     stream, times = job_seed(check_scene(scene), "observe", seed, name), _times(times)
     if not callable(function):
         raise InputError(f"function must take two arrays of states, not be {quote(function)}")
-    each = BLOCK if scene.discs < LARGE else engine_of(scene).block_replicas(scene)
+    engine = find_engine(scene)
+    each = BLOCK if scene.discs < LARGE else engine.block_replicas(scene)
     blocks = -(-check_count("replicas", replicas, most=10**9) // each)
-    rate = engine_of(scene).expected_event_rate(scene) + scene.friction
+    rate = engine.expected_event_rate(scene) + scene.friction
     if times[-1] * rate > MOST_EVENTS:
         raise InputError(
             f"times must be below {format_number(MOST_EVENTS / rate, '.3g')}, where "
             f"{format_number(MOST_EVENTS, 'g')} events are due, not {format_number(times[-1], 'g')}"
         )
 
-    steps, path = np.diff(times, prepend=0.0), path_of(scene)
+    steps = np.diff(times, prepend=0.0)
 
     def snapshots(block):
         """Yield (states at time 0, states at a time) of a block, for all ``times``."""
-        filled, wraps = states(scene, each, stream, block), path.new_wraps(scene, each)
-        kicks = path.kicks_of(scene, each, stream, block)
+        filled, wraps = states(scene, each, stream, block), engine.new_wraps(scene, each)
+        kicks = open_block_kicks(engine.new_kicks(scene, each), stream, block)
         start = as_records(scene, filled)
         for step in steps:
             if step:
-                path.advance_all(scene, filled, wraps, step, kicks)
+                engine.advance_all(scene, filled, wraps, step, kicks)
             now = as_records(scene, filled)
-            path.unwrap(scene, now, wraps)
+            engine.unwrap(scene, now, wraps)
             yield start, now
 
     def moments(block, first, pairs, before):

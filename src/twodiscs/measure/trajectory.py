@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from twodiscs.analysis.tables import trajectory_columns
-from twodiscs.dynamics.paths import followed
+from twodiscs.dynamics.paths import follow_trajectory
 from twodiscs.measure.result import progress_bar
 from twodiscs.model.box import job_seed, parameters_of, scene_of
 from twodiscs.model.checks import InputError, as_list, checked_call, quote, writing_to
@@ -324,7 +324,7 @@ def trajectory(
     """
     seed = job_seed(scene, "trajectory", seed, name)
     with progress_bar(progress, f"trajectory r = {scene.radius:g}") as progress:
-        rows = followed(scene, seed, start, duration, progress)
+        rows = follow_trajectory(scene, seed, start, duration, progress)
     times, events, first, second, states = zip(*rows, strict=True)
     known = dict(zip(components(scene), np.array(states).T, strict=True))
     known |= {"time": times, "event": events}

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK
-from twodiscs.dynamics.runs import chains_of, engine_of
 from twodiscs.dynamics.two.hop_clusters import LARGEST_CLUSTER, SUMS
 from twodiscs.measure.result import Result, note_of_number, progress_bar
 from twodiscs.model.box import key, stream_name, stream_seed
@@ -259,32 +259,19 @@ def _text_of(estimate):
     return f"{estimate.value:.6g} ± {estimate.stderr:.2g}"
 
 
-def passages_of(scene):
-    """Return the module that follows the hops of a ``Scene``."""
-    if scene.discs > 2:
-        from twodiscs.dynamics.many import many_hop_clusters
-
-        return many_hop_clusters
-    from twodiscs.dynamics.two import hop_clusters
-
-    return hop_clusters
-
-
 def parts_of(scene, hop, mean, gap, times, blocks, name, seed):
     """Return {"times": run} for ``blocks`` of hops, and "clusters", too, if hops are rare."""
     seeds = {what: hop_seed(scene, hop, name, seed, what) for what in ("clusters", "times")}
-    hop_clusters, engine = passages_of(scene), engine_of(scene)
+    engine = find_engine(scene)
     events = HOPS_OF_BLOCK * engine.expected_event_rate(scene)
-    work = engine.work_per_event(scene) * chains_of(scene).cost_ratio(scene)
+    work = engine.work_per_event(scene) * engine.chain_cost_ratio(scene)
 
     def clusters(first, stop):
-        sizes, _ = hop_clusters.cluster_sizes(
-            scene, hop, gap, stop - first, seeds["clusters"], first
-        )
+        sizes, _ = engine.cluster_sizes(scene, hop, gap, stop - first, seeds["clusters"], first)
         return (sizes,)
 
     def curve(first, stop):
-        sums, _ = hop_clusters.hop_sums(scene, hop, times, stop - first, seeds["times"], first)
+        sums, _ = engine.hop_sums(scene, hop, times, stop - first, seeds["times"], first)
         return (sums.sum(axis=0),)
 
     parts = {"times": fixed(curve, blocks, times[-1] * events, work)}
@@ -352,10 +339,11 @@ def transmission(
 
 def run_transmission(scene, hop, hops, seed, name, cores=1, progress=None, resume_from=None):
     """Return the ``Transmission`` of ``transmission``, which goes on from ``resume_from``."""
-    passages_of(check_scene(scene)).require_coefficient(scene, check_choice("hop", hop, HOPS))
+    engine = find_engine(check_scene(scene))
+    engine.require_coefficient(scene, check_choice("hop", hop, HOPS))
     blocks = -(-check_count("hops", hops, most=10**9) // HOPS_OF_BLOCK)
     mean, gap = exact.mean_times(scene)[hop], quiet_time(scene, hop)
-    neighbour_mean, others = passages_of(scene).neighbours(scene, hop)
+    neighbour_mean, others = engine.neighbours(scene, hop)
     times = tuple(box_time(scene, hop) * time for time in TIMES)
     runs = parts_of(scene, hop, neighbour_mean, gap, times, blocks, stream_name(scene, name), seed)
     settings = {"hop": hop, "hops": int(hops), "seed": int(seed), "name": name}

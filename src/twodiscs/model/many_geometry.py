@@ -1,7 +1,4 @@
-"""The geometry of N equal discs in the plane, between walls or on a ring along x.
-
-Functions have the same names as in ``model.two``.
-"""
+"""The geometry of N equal discs in the plane, between walls or on a ring along x."""
 
 import math
 from fractions import Fraction
@@ -65,11 +62,6 @@ def require_followable(scene):
 def open_axes(scene):
     """Return the axes with walls along which geometry does not keep the discs from passing."""
     return tuple(axis for axis in scene.walled if can_be_level(scene, axis))
-
-
-def confined(scene):
-    """Return (False, False), see ``Scene``."""
-    return False, False
 
 
 def multiplicity(scene, event):

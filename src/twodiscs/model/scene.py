@@ -17,7 +17,6 @@ from dataclasses import KW_ONLY, dataclass, fields, replace
 from fractions import Fraction
 from functools import cached_property
 
-from twodiscs.model import many_geometry, two_geometry
 from twodiscs.model.checks import (
     LONGEST,
     MOST_DISCS,
@@ -32,6 +31,8 @@ from twodiscs.model.checks import (
 )
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS
+from twodiscs.model.geometry import MANY_DISCS, TWO_DISCS
+from twodiscs.model.two_geometry import ENERGY
 
 #: The most kicks by friction in the time that a disc of speed 1 takes along the shortest side.
 MOST_KICKS = 1e6
@@ -276,8 +277,8 @@ class Scene:
 
     @property
     def _geometry(self):
-        """The module with the geometry of the discs."""
-        return many_geometry if self.discs > 2 else two_geometry
+        """The ``Geometry`` of the discs."""
+        return MANY_DISCS if self.discs > 2 else TWO_DISCS
 
     @property
     def calls_for(self):
@@ -408,7 +409,7 @@ class Scene:
 
         It is also the length of the gradient of a separation, in the metric of the masses.
         """
-        return math.sqrt(sum(2 * two_geometry.ENERGY / mass for mass in self.masses[:2]))
+        return math.sqrt(sum(2 * ENERGY / mass for mass in self.masses[:2]))
 
     @cached_property
     def vertical_hops(self):
@@ -509,7 +510,7 @@ class Scene:
         if declared.kind == "hop":
             return declared.axis in self.open_axes
         if self.field and (declared.axis, declared.side) == ("y", +1):
-            return self.field * (self.height - 2 * self.radius) < two_geometry.ENERGY
+            return self.field * (self.height - 2 * self.radius) < ENERGY
         return True
 
 

@@ -3,7 +3,7 @@
 import math
 
 from twodiscs.dynamics.law import DISC, after_event, crosses, crossing_time, next_event
-from twodiscs.dynamics.two.follow import across
+from twodiscs.dynamics.two.follow import relative_motion
 from twodiscs.sampling.jit import compiled
 from twodiscs.theory.exact import areas
 from twodiscs.theory.plain import Arc
@@ -22,10 +22,14 @@ def advance_to(state, law, hop):
 
     It is the time of a disc collision if not ``hop``, and −1 if the event did not come.
     """
-    before, rising = across(state, None)
+    before, rising = relative_motion(state, None)
     state, time, code = advance(state, law)
     if hop:
-        met = crossing_time(before, rising) if crosses(before, across(state, None)[0]) else -1.0
+        met = (
+            crossing_time(before, rising)
+            if crosses(before, relative_motion(state, None)[0])
+            else -1.0
+        )
     else:
         met = time if code == DISC else -1.0
     return state, time, code, met

@@ -30,6 +30,7 @@ from twodiscs.dynamics.law import (
     snap_to_wall,
     wall_quotient,
 )
+from twodiscs.model.events import by_kind
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import many_initial_states
 
@@ -40,6 +41,17 @@ LOOK_AGAIN = -1.0
 CLASSES = ("vertical_hop", "horizontal_hop", "disc_collision", "right_wall", "top_wall")
 N = len(CLASSES)
 VERTICAL, HORIZONTAL, COLLISIONS, BESIDE, ABOVE = range(N)
+
+#: The classes whose counts are those of an event, in the order of ``EVENTS``.
+EVENT_CLASSES = by_kind(
+    "dynamics/many/all_pairs.py",
+    {
+        "hop": lambda event: ("vertical_hop" if event.axis == "y" else "horizontal_hop",),
+        "collision": lambda event: ("disc_collision",),
+        "wall": lambda event: ("right_wall" if event.axis == "x" else "top_wall",),
+        "walls": lambda event: ("right_wall", "top_wall"),
+    },
+)
 
 
 class ManyLaw(NamedTuple):
@@ -79,7 +91,7 @@ class Lanes(NamedTuple):
 
 
 @compiled
-def lanes_of(states, remaining, law):
+def new_lanes(states, remaining, law):
     """Return the ``Lanes`` that move the columns of ``states`` (rows, lanes) for these times."""
     n, lanes = discs_in(states, law.rough), remaining.size
     return Lanes(
@@ -90,7 +102,7 @@ def lanes_of(states, remaining, law):
     )  # fmt: skip
 
 
-def law_of(scene):
+def many_disc_law(scene):
     """Return the ``ManyLaw`` of a ``Scene``."""
     half_x, ring, rough, spin = scene.range_x / 2, None, None, many_initial_states.spin_of(scene)
     if scene.periodic:
@@ -226,7 +238,7 @@ def rub_walls(u, v, l, on_x, on_y, s, rough):
 
 
 @optional(lambda gap, speed, code, sooner_gap, sooner_speed, number, half: (gap, speed, code))
-def first_of(gap, speed, code, other_gap, other_speed, number, half):
+def earlier_event(gap, speed, code, other_gap, other_speed, number, half):
     """Return (gap, speed, code) of the earlier event; without ``half`` (None) of the first one."""
     sooner = other_gap * speed < gap * other_speed
     gap, speed = other_gap if sooner else gap, other_speed if sooner else speed
@@ -259,18 +271,18 @@ def changes_order(before, after, ring):
     return crosses(before, after) & (abs(after - before) < ring[1])
 
 
-@optional(lambda dx, dy, du, dv, sigma, ring: contact_of(dx, dy, du, dv, sigma))
-def meeting_of(dx, dy, du, dv, sigma, ring):
+@optional(lambda dx, dy, du, dv, sigma, ring: pair_contact(dx, dy, du, dv, sigma))
+def pair_meeting(dx, dy, du, dv, sigma, ring):
     """Return (gap, speed) of two discs; on a ring, of the image that is met first."""
-    gap, speed = contact_of(dx, dy, du, dv, sigma)
-    other_gap, other_speed = contact_of(dx - math.copysign(ring[0], dx), dy, du, dv, sigma)
+    gap, speed = pair_contact(dx, dy, du, dv, sigma)
+    other_gap, other_speed = pair_contact(dx - math.copysign(ring[0], dx), dy, du, dv, sigma)
     # If one speed is not a number, the other image is met.
     other = (other_gap * speed < gap * other_speed) | (speed != speed)
     return other_gap if other else gap, other_speed if other else speed
 
 
 @inlined
-def contact_of(dx, dy, du, dv, sigma):
+def pair_contact(dx, dy, du, dv, sigma):
     """Return (gap, speed) of two discs; the gap is infinite if they separate."""
     gap, speed, approach = contact_quotient(dx, dy, None, du, dv, None, sigma)
     return gap if approach else NEVER, speed
@@ -293,7 +305,7 @@ def find_events(all_lanes, law, kicks=None):
     times, codes, speeds = all_lanes.times, all_lanes.codes, all_lanes.speeds
     discs, lanes = x.shape
     for l in range(lanes):
-        left = ensemble.before_kick(all_lanes.remaining[l], l, kicks)
+        left = ensemble.kick_limit(all_lanes.remaining[l], l, kicks)
         times[l], codes[l] = soonest(left, END_OF_TIME, law.ring)
         speeds[l] = 1.0
     number = 1.0
@@ -301,11 +313,11 @@ def find_events(all_lanes, law, kicks=None):
         xi, yi, ui, vi = x[i], y[i], u[i], v[i]
         for l in range(lanes):
             gap, speed = walled_quotient(xi[l], ui[l], law.half_x)
-            gap, speed, code = first_of(
+            gap, speed, code = earlier_event(
                 times[l], speeds[l], codes[l], gap, speed, number, law.half_x
             )
             gap_y, speed_y = wall_quotient(yi[l], vi[l], law.half_y)
-            times[l], speeds[l], codes[l] = first_of(
+            times[l], speeds[l], codes[l] = earlier_event(
                 gap, speed, code, gap_y, speed_y, number + 1.0, law.half_y
             )
         number += 2.0
@@ -314,11 +326,11 @@ def find_events(all_lanes, law, kicks=None):
         for j in range(i):
             xj, yj, uj, vj = x[j], y[j], u[j], v[j]
             for l in range(lanes):
-                gap, speed = meeting_of(
+                gap, speed = pair_meeting(
                     nearest(xi[l] - xj[l], law.ring), yi[l] - yj[l], ui[l] - uj[l], vi[l] - vj[l],
                     law.sigma, law.ring,
                 )  # fmt: skip
-                times[l], speeds[l], codes[l] = first_of(
+                times[l], speeds[l], codes[l] = earlier_event(
                     times[l], speeds[l], codes[l], gap, speed, number, law.half_y
                 )
             number += 1.0
@@ -404,7 +416,7 @@ def count_events(states, seed, first, lanes, duration, law, hops_x, kicks):
     """
     rows, replicas = states.shape
     now, remaining, busy = np.zeros((rows, lanes)), np.zeros(lanes), np.zeros(lanes, np.bool_)
-    moving = lanes_of(now, remaining, law)
+    moving = new_lanes(now, remaining, law)
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
     count = np.zeros(N, np.int64)
     used, running = 0, 0
@@ -443,7 +455,7 @@ def count_laps(laps, lanes, ring):
 
 
 @optional(lambda first, stop, kicks: None)
-def of_lanes(first, stop, kicks):
+def lane_kicks(first, stop, kicks):
     """Return the ``Kicks`` of the lanes ``first`` … ``stop`` − 1, which share their memory."""
     waits, streams = kicks.waits[first:stop], kicks.streams[first:stop]
     return ensemble.Kicks(
@@ -469,8 +481,8 @@ def advance_states(states, laps, time, law, kicks, hops, lanes=ensemble.LANES):
     for first in range(0, replicas, lanes):
         stop = min(first + lanes, replicas)
         some, rounds = states[:, first:stop].copy(), np.zeros((discs, stop - first))
-        moving = lanes_of(some, np.full(stop - first, time), law)
-        some_kicks = of_lanes(first, stop, kicks)
+        moving = new_lanes(some, np.full(stop - first, time), law)
+        some_kicks = lane_kicks(first, stop, kicks)
         while np.max(moving.remaining) > 0.0:
             find_events(moving, law, some_kicks)
             count_laps(rounds, moving, law.ring)
@@ -508,7 +520,7 @@ def record_intervals(states, seed, first, window, law, hops_x, bins, sums, going
 
     The hops are vertical ones, or horizontal ones if ``hops_x`` is True instead of None. All
     intervals that begin within a ``window`` of time are followed to their end. ``bins`` are
-    (width, wide) as in ``two.returns``. A replica has n intervals, c of them in a bin. Σ c, Σ c²
+    (width, wide) as in ``returns``. A replica has n intervals, c of them in a bin. Σ c, Σ c²
     and Σ c n are added to ``sums`` (3, bins; int64). Returns their total time and number,
     (2, replicas) doubles. ``kicks`` are those of ``LANES`` lanes, with the streams of
     ``count_events``.
@@ -519,7 +531,7 @@ def record_intervals(states, seed, first, window, law, hops_x, bins, sums, going
     for start in range(0, states.shape[1], ensemble.LANES):
         some, own = states[:, start : start + ensemble.LANES].copy(), totals[:, start:]
         lanes = some.shape[1]
-        moving, counted = lanes_of(some, np.full(lanes, np.inf), law), np.zeros(lanes)
+        moving, counted = new_lanes(some, np.full(lanes, np.inf), law), np.zeros(lanes)
         times = moving.times
         for l in range(lanes):
             ensemble.open_kicks(l, seed, first + start + l, kicks)

@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import before_kick, open_kicks
+from twodiscs.dynamics.ensemble import kick_limit, open_kicks
 from twodiscs.dynamics.law import NEVER, VANISHING, contact_quotient, crosses, crossing_time
 from twodiscs.dynamics.many import all_pairs
 from twodiscs.dynamics.many.all_pairs import ABOVE, BESIDE, COLLISIONS, HORIZONTAL, VERTICAL, N
@@ -112,7 +112,7 @@ def note_event(time, kind, i, j, motion, laps, ring, log):
     note_hop(time, kind, i, j, log)
     states = log.states[log.size[0] - 1]
     for k, disc in enumerate((i, j)):
-        states[k, 0], states[k, 1] = beyond(motion.x[disc], laps[disc], ring), motion.y[disc]
+        states[k, 0], states[k, 1] = unfold_x(motion.x[disc], laps[disc], ring), motion.y[disc]
         states[k, 2], states[k, 3] = motion.u[disc], motion.v[disc]
         note_spin(states, k, disc, motion.s)
 
@@ -124,7 +124,7 @@ def note_spin(states, k, disc, s):
 
 
 @optional(lambda x, laps, ring: x)
-def beyond(x, laps, ring):
+def unfold_x(x, laps, ring):
     """Return ``x`` after a number of ``laps`` around a ring."""
     return x + laps * ring[0]
 
@@ -154,7 +154,7 @@ def new_motion(discs, grid, rough=None):
 
 
 @optional(lambda apart, column, columns, ring: apart)
-def apart_in(apart, column, columns, ring):
+def image_separation(apart, column, columns, ring):
     """Return the separation to the image in a ``column``, which may be one turn too low or high.
 
     It need not be the nearest image on a ring of less than four columns.
@@ -181,7 +181,7 @@ def find_contact(i, now, columns, rows, motion, grid, law):
             k = motion.places.head[cell]
             while k >= 0:
                 lag = now - motion.time[k]
-                dx = apart_in(motion.x[k] + motion.u[k] * lag - x, column, across, law.ring)
+                dx = image_separation(motion.x[k] + motion.u[k] * lag - x, column, across, law.ring)
                 dy = motion.y[k] + motion.v[k] * lag - y
                 other_gap, other_speed, approach = contact_quotient(
                     dx, dy, None, motion.u[k] - u, motion.v[k] - v, None, law.sigma
@@ -246,7 +246,7 @@ def first_disc(tree):
 
 
 @optional(lambda ring: NEVER)
-def apart_from_itself(ring):
+def self_separation(ring):
     """Return a separation that is far from any change of order."""
     return ring[1]
 
@@ -269,11 +269,11 @@ def exchange_time(before, velocity, number, ring):
 
 
 @optional(lambda i, at, now, positions, velocities, times, kind, ring, log, hops: 0)
-def hops_of(i, at, now, positions, velocities, times, kind, ring, log, hops):
+def count_hops(i, at, now, positions, velocities, times, kind, ring, log, hops):
     """Return how many times disc ``i``, now ``at`` a place, has changed order with another one."""
     start, speed, since, count = positions[i], velocities[i], times[i], 0
     # A disc has not changed order with itself.
-    positions[i] = start - apart_from_itself(ring)
+    positions[i] = start - self_separation(ring)
     for k in range(positions.size):
         last = max(since, times[k])
         there = positions[k] + velocities[k] * (now - times[k])
@@ -290,8 +290,8 @@ def hops_of(i, at, now, positions, velocities, times, kind, ring, log, hops):
 def put(i, x, y, now, motion, counts, ring, log, hops, hops_x):
     """Put disc ``i`` at (x, y), where it has come by now, and count its hops."""
     times = motion.time
-    counts[VERTICAL] += hops_of(i, y, now, motion.y, motion.v, times, VERTICAL, None, log, hops)
-    counts[HORIZONTAL] += hops_of(
+    counts[VERTICAL] += count_hops(i, y, now, motion.y, motion.v, times, VERTICAL, None, log, hops)
+    counts[HORIZONTAL] += count_hops(
         i, x, now, motion.x, motion.u, times, HORIZONTAL, ring, log, hops_x
     )  # fmt: skip
     motion.x[i], motion.y[i], motion.time[i] = x, y, now
@@ -321,7 +321,7 @@ def collide(i, j, motion, law):
 
 
 @optional(lambda i, column, columns, motion, laps, ring: column)
-def across_seam(i, column, columns, motion, laps, ring):
+def pass_seam(i, column, columns, motion, laps, ring):
     """Return the number of a column; a disc that has passed the seam of a ring is put back."""
     step = 1.0 if column == columns else (-1.0 if column < 0 else 0.0)
     motion.x[i] -= step * ring[0]
@@ -390,7 +390,7 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
     discs, tree = motion.x.size, motion.tree
     columns, rows = grid.x.size - 1, grid.y.size - 1
     while True:
-        end = before_kick(min(duration, epoch), lane, kicks)
+        end = kick_limit(min(duration, epoch), lane, kicks)
         while True:
             now = tree[1]
             full = is_full(discs, log)
@@ -411,7 +411,7 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
                         r = ahead
                         wide, high = (c - 1, c + 1), (r + step, r + step)
                     else:
-                        c = across_seam(i, ahead, columns, motion, laps, law.ring)
+                        c = pass_seam(i, ahead, columns, motion, laps, law.ring)
                         wide, high = (c + step, c + step), (r - 1, r + 1)
                     grids.enter(i, c, r, motion.places, grid)
                     time, partner = find_contact(i, now, wide, high, motion, grid, law)

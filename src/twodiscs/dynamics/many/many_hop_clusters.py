@@ -1,4 +1,4 @@
-"""Which hops of two of N discs are passages: ``two.passages`` for a pair among others.
+"""Which hops of two of N discs are passages: ``hop_clusters`` for a pair among others.
 
 Discs 1 and 2 begin on the surface x1 = x2, with the law of the flux through it: a random hop is one
 of theirs, because all discs are equal. The correlations C(t) and the clusters are those of this
@@ -19,7 +19,7 @@ import numpy as np
 from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK, open_kicks, renew_kicks
 from twodiscs.dynamics.law import crossing_time
 from twodiscs.dynamics.many import all_pairs
-from twodiscs.dynamics.many.all_pairs import COLLISIONS, ManyLaw, law_of
+from twodiscs.dynamics.many.all_pairs import COLLISIONS, ManyLaw, many_disc_law
 from twodiscs.dynamics.two.hop_clusters import LARGEST_CLUSTER, SUMS
 from twodiscs.model.checks import InputError
 from twodiscs.model.many_geometry import LARGE
@@ -47,12 +47,11 @@ class Pair(NamedTuple):
     law: ManyLaw
 
 
-def pair_of(scene, hop):
+def surface_pair(scene, hop):
     """Return the ``Pair`` of a ``Scene``, turned by a quarter if the ``hop`` is along y."""
     scene, hop = hopping_along(scene, hop, "x")
-    return Pair(
-        many_initial_states.initial_of(scene, "rejection"), scene.clearance(hop), law_of(scene)
-    )
+    sampler = many_initial_states.initial_of(scene, "rejection")
+    return Pair(sampler, scene.clearance(hop), many_disc_law(scene))
 
 
 @compiled
@@ -98,7 +97,7 @@ def follow_pair(states, remaining, gap, net, hops, law, kicks):
     (above 0) a lane goes on after each hop for this time, up to ``LARGEST_CLUSTER`` hops. Returns
     the number of wall hits and collisions.
     """
-    lanes = all_pairs.lanes_of(states, remaining, law)
+    lanes = all_pairs.new_lanes(states, remaining, law)
     x, u, old_x, times = lanes.x, lanes.u, lanes.old_x, lanes.times
     rising = np.zeros(remaining.size)
     while np.max(remaining) > 0.0:
@@ -137,7 +136,7 @@ def begin(n, states, side, net, hops):
 def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes, kicks):
     """Follow the hops of blocks ``first`` … ``stop`` − 1; return the wall hits and collisions.
 
-    Without a ``gap`` (0), ``sums`` gets the sums of ``two.passages.NetHops`` at ``times``.
+    Without a ``gap`` (0), ``sums`` gets the sums of ``hop_clusters.NetHops`` at ``times``.
     With a gap, which is then the only time, ``sizes`` gets the numbers of clusters of each size.
     The other of the two arrays is overwritten and has no meaning. ``kicks`` are those of
     ``HOPS_OF_BLOCK`` lanes, None without friction.
@@ -179,18 +178,18 @@ def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes, kicks):
 def _followed(scene, hop, times, gap, blocks, seed, first):
     sums = np.zeros((blocks, SUMS, len(times)), np.int64)
     sizes = np.zeros(LARGEST_CLUSTER + 1, np.int64)
-    run = np.uint64(seed), first, first + blocks, np.array(times), gap, pair_of(scene, hop)
+    run = np.uint64(seed), first, first + blocks, np.array(times), gap, surface_pair(scene, hop)
     return sums, sizes, follow_blocks(*run, sums, sizes, all_pairs.new_kicks(scene, HOPS_OF_BLOCK))
 
 
 def hop_sums(scene, hop, times, blocks, seed, first=0):
-    """Return (sums, events) of ``blocks`` of hops, see ``two.passages``."""
+    """Return (sums, events) of ``blocks`` of hops, see ``hop_clusters``."""
     sums, _, events = _followed(scene, hop, times, 0.0, blocks, seed, first)
     return sums, events
 
 
 def cluster_sizes(scene, hop, gap, blocks, seed, first=0):
-    """Return (sizes, events) of ``blocks`` of hops, see ``two.passages``."""
+    """Return (sizes, events) of ``blocks`` of hops, see ``hop_clusters``."""
     _, sizes, events = _followed(scene, hop, [gap], gap, blocks, seed, first)
     return sizes, events
 
@@ -216,7 +215,7 @@ def require_coefficient(scene, hop):
 @lru_cache(maxsize=64)
 def surface_fraction(scene, hop):
     """Return (accepted, proposals) of states on the surface of a ``hop``, from the stream 0."""
-    pair = pair_of(scene, hop)
+    pair = surface_pair(scene, hop)
     states = np.zeros((pair.sampler.rows, STATES))
     return draw_on_surface(open_stream(np.uint64(0), 0), pair, states, PROPOSALS)
 

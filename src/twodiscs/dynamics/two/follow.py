@@ -7,9 +7,9 @@ whose trajectory has ended idles for a few sweeps and then takes the next initia
 **One lane, one event.** In a box of 1.5 × 1 with discs of radius 0.2, a lane has this state: the
 discs are next to each other, and disc 1 is lower by 0.05 and rises faster.
 
->>> from twodiscs.dynamics.law import WALL_Y2, after_event, law_of, next_event
+>>> from twodiscs.dynamics.law import WALL_Y2, after_event, next_event, two_disc_law
 >>> from twodiscs.model.scene import Scene
->>> law = law_of(Scene(1.5, 1.0, 0.2))
+>>> law = two_disc_law(Scene(1.5, 1.0, 0.2))
 >>> before = (-0.5, 0.0, 0.5, 0.05, 0.5, 0.1, -0.5, -0.7)  # x1, y1, x2, y2, u1, v1, u2, v2
 
 ``find_events`` asks ``law`` for the end of the flight. Disc 2 falls on the lower wall, where its
@@ -38,8 +38,15 @@ from types import FunctionType
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import before_kick, idle_kicks, open_kicks, renew_kicks
-from twodiscs.dynamics.law import after_event, first_event, kick_sampler, law_of, meeting, redrawn
+from twodiscs.dynamics.ensemble import idle_kicks, kick_limit, open_kicks, renew_kicks
+from twodiscs.dynamics.law import (
+    after_event,
+    first_event,
+    kick_sampler,
+    meeting,
+    redrawn,
+    two_disc_law,
+)
 from twodiscs.sampling.initial_states import COMPONENTS, draw_states
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.streams import exponential, open_stream
@@ -87,15 +94,15 @@ def follow(experiment, scene, sampler, seed, first, stop, replicas, lanes, sweep
     ``seed``. After every few ``sweeps`` the loop looks for lanes whose time is over. It returns
     early, with half of the work, if the array ``going``, if given, becomes false.
     """
-    follow_lanes = loop_of(type(experiment))
+    follow_lanes = compile_loop(type(experiment))
     follow_lanes(
-        experiment, np.uint64(seed), first, stop, replicas, lanes, sweeps, sampler, law_of(scene),
-        new_kicks(scene, lanes), going,
+        experiment, np.uint64(seed), first, stop, replicas, lanes, sweeps, sampler,
+        two_disc_law(scene), new_kicks(scene, lanes), going,
     )  # fmt: skip
 
 
 @cache
-def loop_of(experiment):
+def compile_loop(experiment):
     """Return ``_follow_lanes``, compiled with the functions of an ``experiment`` (a class)."""
     functions = {
         "begin": inlined(_owned(experiment, experiment.begin)),
@@ -249,7 +256,7 @@ def find_events(rows, remaining, times, codes, law, kicks=None):
         times[i], codes[i] = meeting(state_at(rows, i, law), law)
     for i in range(times.size):
         times[i], codes[i] = first_event(
-            state_at(rows, i, law), before_kick(remaining[i], i, kicks), times[i], codes[i], law
+            state_at(rows, i, law), kick_limit(remaining[i], i, kicks), times[i], codes[i], law
         )
 
 
@@ -291,7 +298,7 @@ def kick_lanes(rows, times, law, kicks):
 
 
 @inlined
-def across(state, horizontal):
+def relative_motion(state, horizontal):
     """Return the separation and relative velocity along y, or along x if ``horizontal``."""
     if horizontal is None:
         return state[1] - state[3], state[5] - state[7]

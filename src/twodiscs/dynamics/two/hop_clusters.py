@@ -36,14 +36,13 @@ import numpy as np
 
 from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK, LANES, SHORT_SWEEPS
 from twodiscs.dynamics.law import END_OF_TIME, WRAP_X, WRAP_Y, crosses, crossing_time
-from twodiscs.dynamics.two.follow import across, follow
+from twodiscs.dynamics.two.follow import follow, relative_motion
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import AXIS
 from twodiscs.model.scene import hopping_along
 from twodiscs.sampling.initial_states import StartSampler, require_initial_states
 from twodiscs.sampling.jit import inlined
 from twodiscs.sampling.rejection import rejection_sampler
-from twodiscs.theory import exact
 
 #: Clusters of this many hops, or more, are in one class. It counts as even, which makes κ too small
 #: by less than the fraction of hops in it over their number.
@@ -54,15 +53,15 @@ SUMS = 4
 
 
 @inlined
-def hop_of(before, after, code, axis):
+def find_hop(before, after, code, axis):
     """Return (whether a flight has a hop, Δ before it, Δ̇) along an axis.
 
     ``axis`` is (``horizontal``, the code of a jump along it), with True for x and None for y.
     """
     horizontal, jump = axis
-    apart, rising = across(before, horizontal)
+    apart, rising = relative_motion(before, horizontal)
     # Half a period apart the separation changes its sign without a hop.
-    end = rising if code == jump else across(after, horizontal)[0]
+    end = rising if code == jump else relative_motion(after, horizontal)[0]
     return crosses(apart, end), apart, rising
 
 
@@ -88,7 +87,7 @@ class NetHops(NamedTuple):
 
     def begin(self, i, state):
         """Find the direction of the hop at time 0."""
-        falls = 1.0 if self.hopping and across(state, self.axis[0])[1] < 0.0 else 0.0
+        falls = 1.0 if self.hopping and relative_motion(state, self.axis[0])[1] < 0.0 else 0.0
         # Zero counts as positive, so a hop that falls is counted after time 0: one too many.
         self.rises[i], self.hops[i], self.falls[i] = falls, -falls, falls
         return self.times[0]
@@ -96,7 +95,7 @@ class NetHops(NamedTuple):
     def note(self, i, before, after, code, time, left):
         """Count a hop in its direction."""
         rises, hops, events = self.rises[i], self.hops[i], self.events[i]
-        hop, _, rising = hop_of(before, after, code, self.axis)
+        hop, _, rising = find_hop(before, after, code, self.axis)
         self.rises[i] = rises + (math.copysign(1.0, rising) if hop else 0.0)
         self.hops[i] = hops + (1.0 if hop else 0.0)
         self.events[i] = events + (1.0 if code > END_OF_TIME else 0.0)
@@ -133,14 +132,14 @@ class Clusters(NamedTuple):
     def begin(self, i, state):
         """Begin a cluster with the hop at time 0."""
         # Zero counts as positive, so a hop that falls will be counted: begin without it.
-        falls = 1.0 if across(state, self.axis[0])[1] < 0.0 else 0.0
+        falls = 1.0 if relative_motion(state, self.axis[0])[1] < 0.0 else 0.0
         self.hops[i], self.falls[i] = 1.0 - falls, falls
         return self.gap
 
     def note(self, i, before, after, code, time, left):
         """Count a hop, and wait for the next one for the gap."""
         hops, events = self.hops[i], self.events[i]
-        hop, apart, rising = hop_of(before, after, code, self.axis)
+        hop, apart, rising = find_hop(before, after, code, self.axis)
         hops += 1.0 if hop else 0.0
         self.hops[i], self.events[i] = hops, events + (1.0 if code > END_OF_TIME else 0.0)
         left = self.gap - (time - crossing_time(apart, rising)) if hop else left
@@ -171,11 +170,6 @@ def require_coefficient(scene, hop):
         raise InputError(
             f"hop {hop!r} must be open for passages, but is blocked at radius {scene.radius!r}"
         )
-
-
-def neighbours(scene, hop):
-    """Return the mean time between hops of two neighbours, and no pairs that change this."""
-    return exact.mean_times(scene)[hop], 0
 
 
 def _axis(hop):

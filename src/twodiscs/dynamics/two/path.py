@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from twodiscs.dynamics import law as codes
-from twodiscs.dynamics.ensemble import before_kick, nearest_power_of_two, opened
-from twodiscs.dynamics.law import after_event, crosses, crossing_time, law_of, next_event
-from twodiscs.dynamics.two.follow import across, kicked, new_kicks, put_state, state_at
+from twodiscs.dynamics.ensemble import kick_limit, nearest_power_of_two, open_block_kicks
+from twodiscs.dynamics.law import after_event, crosses, crossing_time, next_event, two_disc_law
+from twodiscs.dynamics.two.follow import kicked, new_kicks, put_state, relative_motion, state_at
 from twodiscs.model.events import HOPS
 from twodiscs.sampling.initial_states import components
 from twodiscs.sampling.jit import compiled, optional
@@ -57,7 +57,7 @@ def advance_states(states, wraps, time, law, kicks):
     for i in range(states.shape[1]):
         state, left, code = state_at(states, i, law), time, 1.0
         while code != codes.END_OF_TIME or is_left(left, kicks):
-            flight, code = next_event(state, before_kick(left, i, kicks), law)
+            flight, code = next_event(state, kick_limit(left, i, kicks), law)
             state = after_event(state, flight, code, law)
             state = kicked(state, i, flight, law, kicks)
             left -= flight
@@ -71,23 +71,13 @@ def advance_states(states, wraps, time, law, kicks):
 
 
 def advance_all(scene, states, wraps, time, kicks):
-    """Advance the columns of ``states``, see ``trajectory.path_of``."""
-    advance_states(states, wraps, time, law_of(scene), kicks)
-
-
-def new_wraps(scene, number):
-    """Return the jumps that ``number`` states have made along x, y and z, all 0."""
-    return np.zeros((3, number))
-
-
-def kicks_of(scene, number, seed, block=0):
-    """Return the ``Kicks`` of ``number`` states, see ``trajectory.path_of``."""
-    return opened(new_kicks(scene, number), seed, block)
+    """Advance the columns of ``states``, see ``Engine``."""
+    advance_states(states, wraps, time, two_disc_law(scene), kicks)
 
 
 def unwrap(scene, columns, wraps):
-    """Undo the jumps of a periodic separation, see ``trajectory.path_of``."""
-    law = law_of(scene)
+    """Undo the jumps of a periodic separation, see ``Engine``."""
+    law = two_disc_law(scene)
     for axis, wrap, jumps in zip("xyz", (law.wrap_x, law.wrap_y, law.wrap_z), wraps, strict=True):
         if wrap is not None:
             columns[f"{axis}1"] += wrap[1] * jumps
@@ -107,7 +97,7 @@ def nearest_image(scene, state):
     return tuple(columns.values()), periods
 
 
-def beyond_cell(scene, state, wraps, periods):
+def unfold(scene, state, wraps, periods):
     """Return ``state`` with centres that go on beyond the cell, from those of the start."""
     columns = dict(zip(components(scene), state, strict=True))
     unwrap(scene, columns, wraps[:, 0])
@@ -116,7 +106,7 @@ def beyond_cell(scene, state, wraps, periods):
     return tuple(columns.values())
 
 
-def events_of(scene, state, duration, seed=0):
+def path_events(scene, state, duration, seed=0):
     """Yield (time, event, first, second, state) of each event within ``duration``.
 
     ``state`` of the ``Scene`` is as in ``law``. Hops are events here, at their times within a
@@ -124,29 +114,29 @@ def events_of(scene, state, duration, seed=0):
     and disc. ``first`` and ``second`` are the discs of the event, or None. The first row is the
     start, the last one the end. Along periodic axes centres go on beyond the cell.
     """
-    law, time, kicks = law_of(scene), 0.0, kicks_of(scene, 1, seed)
+    law, time, kicks = two_disc_law(scene), 0.0, open_block_kicks(new_kicks(scene, 1), seed)
     yield time, "start", None, None, state
-    wraps, (state, periods) = new_wraps(scene, 1), nearest_image(scene, state)
+    wraps, (state, periods) = np.zeros((3, 1)), nearest_image(scene, state)
     while True:
         left = duration - time
-        until_kick = before_kick(left, 0, kicks)
+        until_kick = kick_limit(left, 0, kicks)
         flight, code = next_event(state, until_kick, law)
         after = after_event(state, flight, code, law)
         hops = []
         for name, horizontal in (("vertical_hop", None), ("horizontal_hop", True)):
-            before, rising = across(state, horizontal)
-            if name in scene.events and crosses(before, across(after, horizontal)[0]):
+            before, rising = relative_motion(state, horizontal)
+            if name in scene.events and crosses(before, relative_motion(after, horizontal)[0]):
                 hops.append((crossing_time(before, rising), name))
         for until, name in sorted(hops):
             at_hop = after_event(state, until, codes.END_OF_TIME, law)
-            yield time + until, name, 1, 2, beyond_cell(scene, at_hop, wraps, periods)
+            yield time + until, name, 1, 2, unfold(scene, at_hop, wraps, periods)
         time, state = time + flight, kicked(after, 0, flight, law, kicks)
         code = codes.KICK if code == codes.END_OF_TIME and until_kick < left else code
         if code in _JUMPS:
             axis, first, second = _JUMPS[code]
             wraps[axis] -= math.copysign(1.0, state[first] - state[second])
         if code in _NAMES:
-            yield time, *_NAMES[code], beyond_cell(scene, state, wraps, periods)
+            yield time, *_NAMES[code], unfold(scene, state, wraps, periods)
         if code == codes.END_OF_TIME:
             return
 

@@ -6,10 +6,9 @@ import numpy as np
 
 from twodiscs.dynamics.ensemble import LANES, RETURNS, SWEEPS
 from twodiscs.dynamics.law import crosses, crossing_time
-from twodiscs.dynamics.two.follow import across, follow
+from twodiscs.dynamics.two.follow import follow, relative_motion
 from twodiscs.model.scene import hopping_along
 from twodiscs.sampling.initial_states import start_sampler
-from twodiscs.theory import exact
 
 #: Numbers that are summed in each bin: Σ c and Σ c².
 INTERVAL_SUMS = 2
@@ -44,15 +43,15 @@ class Returns(NamedTuple):
         """Begin a chain; its time has no end, its hops have."""
         self.elapsed[i] = self.age[i] = 0.0
         # A start with Δ̇ < 0 crosses the surface at time 0 by its sign; that is not a return.
-        rising = across(state, self.horizontal)[1]
+        rising = relative_motion(state, self.horizontal)[1]
         self.to_come[i] = self.wanted + (1.0 if rising < 0.0 else 0.0)
         return np.inf
 
     def note(self, i, before, after, code, time, left):
         """Close an interval if the flight has a hop."""
         waited, to_come = self.age[i], self.to_come[i]
-        apart, rising = across(before, self.horizontal)
-        hop = crosses(apart, across(after, self.horizontal)[0])
+        apart, rising = relative_motion(before, self.horizontal)
+        hop = crosses(apart, relative_motion(after, self.horizontal)[0])
         until = crossing_time(apart, rising)
         recorded = hop & (to_come > 0.0) & (to_come <= self.wanted)
         self.interval[i] = waited + until if recorded else -1.0
@@ -106,23 +105,3 @@ def record_intervals(
     sampler = start_sampler(scene, surface=1 if horizontal is None else 0)
     follow(recorded, scene, sampler, seed, first, stop, chains, lanes, SWEEPS, going)
     return totals
-
-
-def mean_interval(scene, hop):
-    """Return the mean time between two hops of one kind, exactly."""
-    return exact.mean_times(scene)[hop]
-
-
-def intervals_of_chain(scene, hop):
-    """Return the number of intervals that a chain records."""
-    return RETURNS
-
-
-def cost_ratio(scene):
-    """Return the time of an event over the time of an event of the plain ensemble."""
-    return 1.0
-
-
-def events_per_interval(scene, hop):
-    """Return the mean number of wall and disc events between two hops, weighted by their work."""
-    return exact.events_per_interval(scene, hop)

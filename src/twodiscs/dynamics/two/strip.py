@@ -23,7 +23,7 @@ import numpy as np
 
 from twodiscs.dynamics.ensemble import LANES, REPLICAS, SHORT_SWEEPS
 from twodiscs.dynamics.law import END_OF_TIME, crosses
-from twodiscs.dynamics.two.follow import across, follow
+from twodiscs.dynamics.two.follow import follow, relative_motion
 from twodiscs.model.box import key, stream_seed
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import hopping_along
@@ -118,7 +118,7 @@ def expected_events(scene, hop, strip):
     return 2 * strip.time * max(rate, exact.event_rate(scene))
 
 
-def strip_of(scene, hop):
+def choose_strip(scene, hop):
     """Return the ``Strip`` for an open ``hop``: as wide as its neck, and not for too many events.
 
     T is a power of two, which makes it the same on every machine.
@@ -132,7 +132,7 @@ def strip_of(scene, hop):
         time /= 2
 
 
-def fractions_of(scene, hop, strip):
+def stratum_fractions(scene, hop, strip):
     """Return the exact shares of the strata of starts, by |Δ| and by |Δ̇| (``PARTS``, m)."""
     ends = [strip.within * part / PARTS for part in range(1, PARTS + 1)]
     near = [exact.fraction_near(scene, hop, end) for end in ends]
@@ -167,7 +167,7 @@ def rare_hops(scene):
         if scene.is_possible(hop)
         and exact.event_rate(scene) > RARE * exact.rate(scene, hop)
         and _fill(scene, hop, strip_around(scene, hop, widest(scene, hop))) < NO_NECK
-        and acceptance(scene, hop, strip_of(scene, hop)) >= exact.MIN_FRACTION
+        and acceptance(scene, hop, choose_strip(scene, hop)) >= exact.MIN_FRACTION
     )
 
 
@@ -194,7 +194,7 @@ class HopsInStrip(NamedTuple):
 
     def begin(self, i, state):
         """Find the stratum of an initial state."""
-        separation, speed = across(state, self.horizontal)
+        separation, speed = relative_motion(state, self.horizontal)
         speed /= math.sqrt(kinetic_fraction_of(state, self.prism))
         self.stratum[0, i] = min(np.int64(abs(separation) / self.near), PARTS - 1)
         self.stratum[1, i] = min(np.int64(abs(speed) / self.slow), self.sums.shape[2] - 1)
@@ -203,8 +203,8 @@ class HopsInStrip(NamedTuple):
 
     def note(self, i, before, after, code, time, left):
         """Count a hop and an event; end the path if no other hop can follow."""
-        count, separation = self.packed[i], across(after, self.horizontal)[0]
-        hop = crosses(across(before, self.horizontal)[0], separation)
+        count, separation = self.packed[i], relative_motion(after, self.horizontal)[0]
+        hop = crosses(relative_motion(before, self.horizontal)[0], separation)
         count += HOP if hop else 0.0
         self.packed[i] = count + (1.0 if code > END_OF_TIME else 0.0)
         return left if abs(separation) <= self.fastest * left else 0.0
@@ -246,14 +246,14 @@ def run_blocks(scene, hop, strip, seed, first, stop, *, replicas=REPLICAS, lanes
     return hops.sums, int(hops.events[0])
 
 
-def run_of(scene, hop, target, budget, seed):
+def strip_run(scene, hop, target, budget, seed):
     """Return the ``SequentialRun`` that counts a ``hop`` in its strip to an error ``target``.
 
     It has separate streams.
     """
-    strip = strip_of(scene, hop)
+    strip = choose_strip(scene, hop)
     seed = stream_seed(seed, hop, "strip", key(scene.radius))
-    fractions = fractions_of(scene, hop, strip)
+    fractions = stratum_fractions(scene, hop, strip)
     hops = REPLICAS * 2 * strip.time * exact.rate(scene, hop) / strip.fraction
     wanders = scene.moment_of_inertia or scene.friction
     margin = MARGIN_OF_ROUGH if wanders else MARGIN_OF_COUNTS
@@ -278,7 +278,7 @@ def run_of(scene, hop, target, budget, seed):
 def relative_error(fractions, sums):
     """Return the relative standard error of ⟨N⟩, inf without a count.
 
-    ``fractions`` come from ``fractions_of``, and the ``sums`` by strata from ``run_blocks``.
+    ``fractions`` come from ``stratum_fractions``, and the ``sums`` by strata from ``run_blocks``.
     """
     mean, error = stratified_mean(fractions, *sums)
     return error / mean if mean else math.inf
@@ -286,10 +286,10 @@ def relative_error(fractions, sums):
 
 def constants(scene, hop):
     """Return the constants of the part of a rare ``hop``, see ``points.dynamics.StripCount``."""
-    strip = strip_of(scene, hop)
+    strip = choose_strip(scene, hop)
     return {
         "duration": 2 * strip.time,
         "share": strip.fraction,
-        "shares": fractions_of(scene, hop, strip).tolist(),
+        "shares": stratum_fractions(scene, hop, strip).tolist(),
         "replicas": REPLICAS,
     }

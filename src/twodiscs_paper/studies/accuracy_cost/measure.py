@@ -20,7 +20,7 @@ import numpy as np
 from mpmath import mp
 
 import twodiscs
-from twodiscs.dynamics import runs
+from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import LANES, REPLICAS
 from twodiscs.dynamics.two import strip
 from twodiscs.model.box import Box
@@ -88,7 +88,7 @@ class Method(NamedTuple):
 def _by_counts(name, scene, events, replicas, block, **more):
     """Return the ``Method`` whose ``block`` counts ``events`` of a number of ``replicas``."""
     hop = events.index(HOP)
-    expected = exact.rate(scene, HOP) * runs.engine_of(scene).replica_duration(scene) * replicas
+    expected = exact.rate(scene, HOP) * find_engine(scene).replica_duration(scene) * replicas
 
     def estimate(sums, blocks):
         return sums[hop] / (blocks * expected)
@@ -98,18 +98,18 @@ def _by_counts(name, scene, events, replicas, block, **more):
 
 def by_lockstep(scene, seed, blocks=1):
     """Return the ``Method`` of the engine: all events, ``blocks`` blocks as one."""
-    duration = runs.engine_of(scene).replica_duration(scene)
+    duration = find_engine(scene).replica_duration(scene)
 
     def block(i):
         first, stop = i * blocks, (i + 1) * blocks
-        return runs.engine_of(scene).run_blocks(scene, EVENTS, seed, first, stop, duration)[0]
+        return find_engine(scene).run_blocks(scene, EVENTS, seed, first, stop, duration)[0]
 
     return _by_counts("lockstep", scene, EVENTS, blocks * REPLICAS, block)
 
 
 def by_scalar(scene, seed):
     """Return the ``Method`` of one trajectory after the other."""
-    given = FEW_REPLICAS, runs.engine_of(scene).replica_duration(scene), scene.contact_distance
+    given = FEW_REPLICAS, find_engine(scene).replica_duration(scene), scene.contact_distance
     given += conditioned_sampler(scene), (0, 0)
 
     def block(i):
@@ -120,7 +120,7 @@ def by_scalar(scene, seed):
 
 def by_steps(scene, seed, step):
     """Return the ``Method`` of looking for overlaps every ``step``, a power of two."""
-    steps = round(runs.engine_of(scene).replica_duration(scene) / step)
+    steps = round(find_engine(scene).replica_duration(scene) / step)
     given = FEW_REPLICAS, LANES, steps, step, scene.contact_distance, conditioned_sampler(scene)
 
     def block(i):
@@ -132,8 +132,8 @@ def by_steps(scene, seed, step):
 
 def by_strip(scene, seed, blocks=8):
     """Return the ``Method`` of initial states in a strip next to the hop, ``blocks`` as one."""
-    near = strip.strip_of(scene, HOP)
-    fractions = strip.fractions_of(scene, HOP, near)
+    near = strip.choose_strip(scene, HOP)
+    fractions = strip.stratum_fractions(scene, HOP, near)
     expected = exact.rate(scene, HOP) * 2 * near.time / near.fraction
 
     def block(i):

@@ -19,7 +19,7 @@ import numpy as np
 
 from twodiscs.analysis.scores import student_deviate, two_sided_p
 from twodiscs.dynamics.ensemble import nearest_power_of_two
-from twodiscs.dynamics.law import law_of
+from twodiscs.dynamics.law import two_disc_law
 from twodiscs.model.box import Box, key, stream_seed
 from twodiscs.model.events import HOPS
 from twodiscs.points.estimates import Estimate
@@ -234,7 +234,8 @@ def measured(start, scene, hop, seed, events=EVENTS):
         oriented = Box.of(scene).turned().scene(scene.radius)
     draw, histogram = conditioned_sampler(oriented), np.zeros(BINS + 1, np.int64)
     means = draw_passages(
-        np.uint64(seed), 0, BLOCKS, block, passages, cut, law_of(oriented), draw, width, histogram,
+        np.uint64(seed), 0, BLOCKS, block, passages, cut, two_disc_law(oriented), draw, width,
+        histogram,
     )  # fmt: skip
     intervals, passages = BLOCKS * block, BLOCKS * passages
     time, square, cut_square, passage, cut_passage = mean_of(means)

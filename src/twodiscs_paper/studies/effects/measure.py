@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.law import law_of
+from twodiscs.dynamics.law import two_disc_law
 from twodiscs.dynamics.two.follow import new_rows, put_state, state_at
 from twodiscs.figures import curves
 from twodiscs.figures.curves import limits
@@ -63,7 +63,7 @@ def survivors(scene, times, blocks, seed):
     The result is a list of integers, from ``blocks`` × ``REPLICAS`` starts of the invariant
     measure. The times ascend.
     """
-    law, sampler = law_of(scene), start_sampler(scene)
+    law, sampler = two_disc_law(scene), start_sampler(scene)
     counts = follow_survivors(np.uint64(seed), 0, blocks, REPLICAS, np.array(times), law, sampler)
     return [int(n) for n in counts]
 

@@ -18,6 +18,7 @@ from statistics import median
 
 import twodiscs
 from twodiscs.dynamics import runs
+from twodiscs.dynamics.engine import find_engine
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, WALLS
 from twodiscs.model.scene import Scene
@@ -71,7 +72,7 @@ def lockstep(blocks=BLOCKS, scene=SCENE, events=EVENTS, bare=None):
 
     The package ``bare``, if it is given, does the work instead of ours.
     """
-    engine = runs.engine_of(scene)
+    engine = find_engine(scene)
     duration, run_blocks = engine.replica_duration(scene), engine.run_blocks
     if bare:
         run_blocks = import_module(f"{bare}.dynamics.two.event_counts").run_blocks
@@ -147,10 +148,10 @@ def instructions(work, package):
 
     Numba keeps no assembly beside compiled code, but LLVM writes it again.
     """
-    loop_of = import_module(f"{package}.dynamics.two.follow").loop_of
-    loop_of.cache_clear()
+    compile_loop = import_module(f"{package}.dynamics.two.follow").compile_loop
+    compile_loop.cache_clear()
     work()
-    (kernel,) = loop_of(
+    (kernel,) = compile_loop(
         import_module(f"{package}.dynamics.two.event_counts").Counts
     ).overloads.values()
     library = kernel.library

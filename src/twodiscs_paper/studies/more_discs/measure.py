@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from twodiscs.dynamics.many import engine
+from twodiscs.dynamics.many import class_counts, many_rates
 from twodiscs.model.events import DECLARED, SHELLS
 from twodiscs.model.many_geometry import multiplicity
 from twodiscs.model.scene import Scene
@@ -60,15 +60,15 @@ def virial_sum(scene, rates):
 def counted(scene, events, seed):
     """Return (sums, products, replicas, duration) of about ``events``."""
     if replicas := FEWER.get(scene.discs):
-        duration = engine.duration_of(scene, SHARE * events / replicas)
-        counts = engine.run_classes(scene, seed, 0, 1, duration, replicas=replicas)
+        duration = many_rates.expected_duration(scene, SHARE * events / replicas)
+        counts = class_counts.run_classes(scene, seed, 0, 1, duration, replicas=replicas)
         return *counts, replicas, duration
-    duration = engine.duration_of(scene)
-    first = engine.run_classes(scene, seed, 0, 1, duration)
-    blocks = max(2, math.ceil(events / engine.simulated_events(first[0])))
-    rest = engine.run_classes(scene, seed, 1, blocks, duration)
+    duration = many_rates.expected_duration(scene)
+    first = class_counts.run_classes(scene, seed, 0, 1, duration)
+    blocks = max(2, math.ceil(events / class_counts.simulated_events(first[0])))
+    rest = class_counts.run_classes(scene, seed, 1, blocks, duration)
     sums, products = (one + more for one, more in zip(first, rest, strict=True))
-    return sums, products, blocks * engine.block_replicas(scene), duration
+    return sums, products, blocks * many_rates.block_replicas(scene), duration
 
 
 def dynamics_rates(scene, events, seed):

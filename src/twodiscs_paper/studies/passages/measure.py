@@ -4,7 +4,7 @@ With friction of the rate γ, κ depends on x = γ√(εσ): a neck of the width
 √(εσ), and a pair forgets its velocity within it if x is large.
 
 The distance below that radius is halved from step to step. Two quantities have two estimators each,
-which share only the exact rate of hops: κ, by clusters and by κ(t) (``dynamics.two.passages``), and
+which share only the exact rate of hops: κ, by clusters and by κ(t) (``hop_clusters``), and
 the coefficient D of diffusion along a ring, by the correlations of hops and by displacements.
 """
 
@@ -292,10 +292,10 @@ class NearThreshold:
 
     def rate(self, blocks):
         """Return the row of the rate of hops, counted in its strip."""
-        around = strip.strip_of(self.scene, self.hop)
+        around = strip.choose_strip(self.scene, self.hop)
         stream = np.uint64(self._seed("rate"))
         sums, events = strip.run_blocks(self.scene, self.hop, around, stream, 0, blocks)
-        fractions = strip.fractions_of(self.scene, self.hop, around)
+        fractions = strip.stratum_fractions(self.scene, self.hop, around)
         per_time = around.fraction / (2 * around.time)
         mean, error = (per_time * part for part in estimates.stratified_mean(fractions, *sums))
         found = Estimate(mean, error, blocks * REPLICAS)

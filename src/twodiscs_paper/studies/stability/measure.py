@@ -18,8 +18,9 @@ from twodiscs.analysis import scores
 from twodiscs.analysis.check import comparisons
 from twodiscs.analysis.tables import AreasTable, MeanTimesTable, VolumeTable
 from twodiscs.dynamics import runs
+from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.law import after_event, contact_quotient, law_of, wall_quotient
+from twodiscs.dynamics.law import after_event, contact_quotient, two_disc_law, wall_quotient
 from twodiscs.dynamics.two.follow import find_events, new_rows, put_state, state_at
 from twodiscs.model.box import Box, shortest_decimal
 from twodiscs.model.checks import LARGEST_INTEGER
@@ -428,7 +429,7 @@ def run(scene, number, seed):
     per_lane = -(-number // LANES)
     windows = -(-per_lane // WINDOW)
     window = -(-per_lane // windows)
-    law = law_of(scene)
+    law = two_disc_law(scene)
     nearest, energy, far_x, far_y, lost = audit(
         states(scene, LANES, seed), windows, window, law,
         STUCK * window / exact.event_rate(scene),
@@ -621,7 +622,7 @@ def reversal_rows(box, seed):
     long = max(box.sides) / min(box.sides)
     for radius in ordinary_radii(box):
         scene = box.scene(radius)
-        law = law_of(scene)
+        law = two_disc_law(scene)
 
         def exponent(forgotten, measured, scene=scene, law=law):
             starts = states(scene, REVERSED, seed)
@@ -680,9 +681,9 @@ def coverage_rows(box, seed, repetitions=REPETITIONS):
     low, high = COVERAGE_BOUNDS
     for radius in ordinary_radii(box):
         scene = box.scene(radius)
-        duration, times = runs.engine_of(scene).replica_duration(scene), exact.mean_times(scene)
+        duration, times = find_engine(scene).replica_duration(scene), exact.mean_times(scene)
         blocks = [
-            runs.engine_of(scene).run_blocks(scene, EVENTS, seed, block, block + 1, duration)
+            find_engine(scene).run_blocks(scene, EVENTS, seed, block, block + 1, duration)
             for block in range(repetitions)
         ]
         start = start_of("coverage", "ordinary", radius) | {"count": repetitions}

@@ -34,7 +34,7 @@ from itertools import pairwise, starmap
 import numpy as np
 
 from twodiscs.dynamics.ensemble import nearest_power_of_two
-from twodiscs.dynamics.law import DISC, law_of
+from twodiscs.dynamics.law import DISC, two_disc_law
 from twodiscs.dynamics.two.follow import state_at
 from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
@@ -188,7 +188,7 @@ def tail(scene, event, times, samples, seed, blocks=BLOCKS):
     longest = nearest_power_of_two(max(1.0, times[-1] / max(scene.width, scene.height)))
     strata = 2 + int(math.frexp(longest)[1])
     sums, longest = length_biased(
-        np.uint64(seed), 0, blocks, strata, samples, np.array(times), law_of(oriented),
+        np.uint64(seed), 0, blocks, strata, samples, np.array(times), two_disc_law(oriented),
         conditioned_sampler(oriented), hop,
     )  # fmt: skip
     mean = exact.mean_times(scene)[event]
@@ -210,7 +210,7 @@ def survivals(scene, event, times, replicas, seed):
     oriented, hop = _oriented(scene, event)
     window = 8 * exact.mean_times(scene)[event]
     counts = count_long(
-        np.uint64(seed), 0, 1, replicas, window, np.array(times), law_of(oriented),
+        np.uint64(seed), 0, 1, replicas, window, np.array(times), two_disc_law(oriented),
         conditioned_sampler(oriented), hop,
     )  # fmt: skip
     return counts[:, 1:] / 8

@@ -25,8 +25,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.dynamics.many import engine
-from twodiscs.dynamics.many.all_pairs import HORIZONTAL
+from twodiscs.dynamics.ensemble import open_block_kicks
+from twodiscs.dynamics.many import many_paths
+from twodiscs.dynamics.many.all_pairs import HORIZONTAL, new_kicks
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.many import many_initial_states
 from twodiscs.theory import channel
@@ -200,9 +201,9 @@ def recorded(scene, step, number, replicas, seed, friction=None):
     hops = np.zeros(replicas)
     places = np.empty((number + 1, scene.discs, replicas))
     places[0] = states[: scene.discs]
-    kicks = engine.kicks_of(moving, replicas, seed)
+    kicks = open_block_kicks(new_kicks(moving, replicas), seed)
     for k in range(1, number + 1):
-        engine.advance_all(moving, states, laps, step, kicks, hops)
+        many_paths.advance_all(moving, states, laps, step, kicks, hops)
         places[k] = states[: scene.discs] + scene.width * laps
     return places, 2 * hops / scene.discs
 
@@ -213,7 +214,7 @@ def logged(scene, step, number, replicas, seed, friction=None):
     Places have the shape (times, N, 1). A pair is a number of two discs.
     """
     moving = scene if friction is None else replace(scene, friction=friction)
-    path, n = engine.Followed(moving, ("horizontal_hop",)), scene.discs
+    path, n = many_paths.Followed(moving, ("horizontal_hop",)), scene.discs
     states = many_initial_states.states(scene, replicas, seed)
     for replica in range(replicas):
         path.start(states[:, replica : replica + 1], seed, replica)

@@ -1,0 +1,96 @@
+"""More than two discs: intervals between the hops of any pair, in a window of time."""
+
+import math
+
+import numpy as np
+
+from twodiscs.dynamics import ensemble
+from twodiscs.dynamics.many import all_pairs, many_rates
+from twodiscs.dynamics.many.all_pairs import COLLISIONS, many_disc_law, new_kicks
+from twodiscs.dynamics.many.many_paths import Followed
+from twodiscs.model.checks import InputError
+from twodiscs.model.many_geometry import LARGE
+from twodiscs.sampling.many import many_initial_states
+from twodiscs.sampling.many.many_initial_states import initial_of, large_grid, states_of
+from twodiscs.sampling.streams import open_stream
+
+#: Numbers that are summed in each bin of intervals: Σ c, Σ c² and Σ c n.
+INTERVAL_SUMS = 3
+
+#: The largest factor by which the window of ``LARGE`` numbers of discs is longer.
+LONGER = 64
+
+
+def mean_interval(scene, hop):
+    """Return the mean time between two hops of any pair, maybe within a few per cent only."""
+    if not (rate := many_rates.expected_rates(scene).get(hop)):
+        raise InputError(
+            f"radius {scene.radius!r} is so large for {scene.discs} discs that the time between "
+            f"two events {hop} is not known"
+        )
+    return 1 / rate
+
+
+def _window(scene, hop):
+    """Return a time in which ``RETURNS`` intervals begin, or up to twice as many.
+
+    ``LARGE`` numbers of discs have a longer window, the duration of a replica, but at most
+    ``LONGER`` times the usual one. Their initial states take as much time to draw.
+    """
+    window = 2.0 ** math.ceil(math.log2(ensemble.RETURNS * mean_interval(scene, hop)))
+    if scene.discs < LARGE:
+        return window
+    return min(max(window, many_rates.replica_duration(scene)), LONGER * window)
+
+
+def intervals_of_chain(scene, hop):
+    """Return the least number of intervals of a chain; its window has up to twice as many."""
+    return max(ensemble.RETURNS, int(_window(scene, hop) / mean_interval(scene, hop) / 2))
+
+
+def events_per_interval(scene, hop):
+    """Return the most wall and disc events per interval, with their work."""
+    window = _window(scene, hop)
+    events = window * many_rates.expected_event_rate(scene) * many_rates.work_per_event(scene)
+    return events / intervals_of_chain(scene, hop)
+
+
+def record_intervals(scene, hop, seed, first, stop, chains, bins, sums, going):
+    """Add the intervals between hops to ``sums`` and return the times of the chains."""
+    window = _window(scene, hop)
+    return record_within(window, scene, hop, seed, first, stop, chains, bins, sums, going)
+
+
+def record_within(window, scene, hop, seed, first, stop, chains, bins, sums, going):
+    """Add the intervals that begin within a ``window`` of time, see ``all_pairs``."""
+    if large_grid(scene) is None:
+        hops_x, kicks = True if hop == "horizontal_hop" else None, new_kicks(scene, ensemble.LANES)
+        given = window, many_disc_law(scene), hops_x, bins, sums, going, kicks
+        initial, totals = initial_of(scene), []
+        for block in range(first, stop):
+            states = states_of(initial, chains, seed, block)
+            seeds = np.uint64(seed), block * chains
+            totals.append(all_pairs.record_intervals(states, *seeds, *given))
+        return np.hstack(totals)
+    (width, wide), path, initial = bins, Followed(scene, (hop,)), initial_of(scene)
+    totals, state = np.zeros((2, (stop - first) * chains)), np.zeros((initial.rows, 1))
+    for chain in range(totals.shape[1]):
+        if chain % chains == 0:
+            stream = open_stream(np.uint64(seed), first + chain // chains)
+        many_initial_states.draw_states(stream, initial, state)
+        path.start(state, seed, first * chains + chain)
+        times, step = np.zeros(0), window
+        # If there is a hop in the window, also the first one after it ends an interval.
+        while step == window or (times.size and times[-1] < window):
+            for log, order in path.go_on(step):
+                if not going[0]:
+                    return totals
+                hops = order[log.classes[order] < COLLISIONS]
+                times = np.append(times, log.times[hops])
+            step = window / ensemble.RETURNS
+        intervals = np.diff(times)[times[:-1] < window]
+        index = np.minimum((intervals / width).astype(int), wide.size - 1)
+        counts = np.bincount(np.append(index, wide[index]), minlength=sums.shape[1])
+        totals[:, chain] = intervals.sum(), intervals.size
+        sums += counts, counts**2, counts * intervals.size
+    return totals

@@ -1,0 +1,135 @@
+"""More than two discs: expected rates, the durations of replicas and what an event costs."""
+
+import math
+from functools import lru_cache
+
+from twodiscs.dynamics import ensemble
+from twodiscs.dynamics.many.all_pairs import EVENT_CLASSES
+from twodiscs.model.many_geometry import LARGE
+from twodiscs.sampling.many import insertions
+from twodiscs.sampling.many.chains import DENSEST, crowding
+from twodiscs.sampling.many.many_initial_states import method
+from twodiscs.theory import n_discs
+from twodiscs.theory.virial import bulk_derivatives, rates
+
+#: Events of a replica, and of a replica whose initial state takes as long as ten thousand events.
+REPLICA_EVENTS, EVENTS_OF_CHAIN = 256, 8192
+
+#: Events of each disc in a replica of ``LARGE`` numbers of discs, and the fewest replicas of a
+#: block of crowded ones.
+EVENTS_OF_DISC, FEWEST = 64, 8
+
+#: The time that a pair of discs adds to an event, over the time of an event of the plain ensemble.
+#: Events of 3, 4 and 8 discs take 3.7, 5.9 and 22 times as long. Pairs of rough discs take longer.
+PAIR_COST, ROUGH_PAIR_COST = 0.8, 1.3
+
+#: The same for ``LARGE`` numbers of discs: the time of an event, and the time that each disc adds.
+EVENT_COST, DISC_COST = 50.0, 0.25
+
+#: The time of a kick for each of ``LARGE`` numbers of discs, over the time of an event. The time to
+#: draw the velocity of a disc, over the time of an event of the plain ensemble.
+KICK_COST, DRAW_COST = 0.45, 8.0
+
+
+@lru_cache(maxsize=256)
+def expected_rates(scene):
+    """Return {event: rate} of the events of a ``Scene`` of more than two discs.
+
+    Rates are exact if that is known, and otherwise from some insertions (``insertions.expected``),
+    within a few per cent. If insertions find no room, the rates of wall hits and collisions are
+    guessed (``expected_duration``), and so is one of them for which insertions give 0. For
+    ``LARGE`` numbers of discs rates follow from an equation of state, within some ten per cent. It
+    ends where discs are ``DENSEST``; there the guess, if it is more, takes its place.
+    """
+    known = n_discs.known_derivatives(scene)
+    if known is None:
+        known = insertions.expected(scene) if scene.discs < LARGE else bulk_derivatives(scene)
+    guess = dict.fromkeys(("disc_collision", "any_wall"), _guessed_rate(scene) / 2)
+    if known is None:
+        return guess
+    by_class = rates(scene, known)
+    summed = {e: sum(by_class[name] for name in parts) for e, parts in EVENT_CLASSES.items()}
+    by_event = guess | {e: rate for e, rate in summed.items() if rate and e in scene.events}
+    if scene.discs >= LARGE and crowding(scene) == DENSEST and not n_discs.exact_method(scene):
+        by_event |= {event: max(rate, by_event[event]) for event, rate in guess.items()}
+    return by_event
+
+
+def expected_event_rate(scene):
+    """Return the wall hits and collisions per time, as ``expected_rates``."""
+    expected = expected_rates(scene)
+    return expected["any_wall"] + expected["disc_collision"]
+
+
+def expected_duration(scene, events=None):
+    """Return a power of two in which about ``events`` happen, within a factor of two.
+
+    The rate is guessed from the wall hits of an ideal gas and from the distance to the largest
+    radius. By default ``events`` is 256, or ``EVENTS_OF_CHAIN`` if an initial state takes a chain
+    of moves. ``LARGE`` numbers of discs have ``EVENTS_OF_DISC`` each, more if replicas are fewer.
+    """
+    if events is None and scene.discs >= LARGE:
+        events = EVENTS_OF_DISC * scene.discs * _roomy_replicas(scene) // block_replicas(scene)
+    events = events or (EVENTS_OF_CHAIN if method(scene) == "chain" else REPLICA_EVENTS)
+    return ensemble.nearest_power_of_two(events / _guessed_rate(scene))
+
+
+def _guessed_rate(scene):
+    room = scene.largest_radius - scene.radius
+    return math.sqrt(scene.discs) * (0.5 / scene.range_x + 0.5 / scene.range_y + 0.35 / room)
+
+
+def replica_duration(scene):
+    """Return the time T of one replica, a power of two, see ``expected_duration``.
+
+    With friction it is shorter, so that kicks do not add to the work.
+    """
+    return ensemble.nearest_power_of_two(expected_duration(scene) / work_per_event(scene))
+
+
+def block_replicas(scene):
+    """Return the number of replicas of a block.
+
+    ``LARGE`` numbers of discs have fewer replicas. If their initial states take many contacts, they
+    have still fewer, which last longer.
+    """
+    if scene.discs < LARGE:
+        return ensemble.REPLICAS
+    usual = _roomy_replicas(scene)
+    return min(usual, max(FEWEST, usual >> (math.frexp(crowding(scene))[1] - 1)))
+
+
+def _roomy_replicas(scene):
+    return ensemble.REPLICAS >> (scene.discs.bit_length() - 5)
+
+
+def usual_epoch(scene):
+    """Return a time in which each disc of a ``Scene`` has some ``EVENTS_OF_DISC`` events."""
+    return expected_duration(scene, EVENTS_OF_DISC * scene.discs)
+
+
+def expected_rate(scene, event):
+    """Return the rate of all events that count as ``event``; 0 if it is not known."""
+    return expected_rates(scene).get(event, 0.0)
+
+
+# Costs --------------------------------------------------------------------------------------------
+
+
+def work_per_event(scene):
+    """Return the cost of an event over the usual cost, with kicks.
+
+    For few discs a kick costs an event and the draw of all velocities. For ``LARGE`` numbers of
+    discs it costs ``KICK_COST`` events for each disc.
+    """
+    few = scene.discs < LARGE
+    kick = 1.0 + DRAW_COST * scene.discs / cost_ratio(scene) if few else KICK_COST * scene.discs
+    return 1.0 + kick * scene.friction / expected_event_rate(scene)
+
+
+def cost_ratio(scene):
+    """Return the time of an event over the time of an event of the plain ensemble."""
+    if scene.discs >= LARGE:
+        return EVENT_COST + DISC_COST * scene.discs
+    pair = PAIR_COST if scene.moment_of_inertia is None else ROUGH_PAIR_COST
+    return 1 + pair * scene.discs * (scene.discs - 1) / 2
