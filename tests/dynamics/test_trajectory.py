@@ -34,7 +34,7 @@ def test_a_trajectory_shows_some_hops_and_is_not_too_long(radius):
 
 def test_centres_go_on_beyond_the_box_along_a_periodic_axis():
     scene = Scene(1.5, 1.0, 0.1, periodic="x")
-    x1 = np.array([row[4][0] for row in paths.followed(scene, 3, duration=40.0)])
+    x1 = np.array([row[4][0] for row in paths.follow_trajectory(scene, 3, duration=40.0)])
     assert len({*np.round(x1 / scene.width)}) > 1
 
 
@@ -53,10 +53,10 @@ def test_a_trajectory_goes_on_from_its_end(scene):
 
     Between images of the discs only roundings differ; they grow by far less than 1e6 in 1.
     """
-    path = paths.followed(scene, 5, None, 40.0)
+    path = paths.follow_trajectory(scene, 5, None, 40.0)
     start = tuple(map(float, path[-1][4]))
-    whole = paths.followed(scene, 5, path[0][4], 41.0)
-    rows = paths.followed(scene, 5, start, 1.0)
+    whole = paths.follow_trajectory(scene, 5, path[0][4], 41.0)
+    rows = paths.follow_trajectory(scene, 5, start, 1.0)
     assert tuple(map(float, rows[0][4])) == start
     np.testing.assert_allclose(rows[-1][4], whole[-1][4], rtol=0, atol=1e-9)
 
@@ -64,11 +64,11 @@ def test_a_trajectory_goes_on_from_its_end(scene):
 @pytest.mark.parametrize("scene", [GIVEN["ring"], GIVEN["torus"], GIVEN["combination"]], ids=repr)
 def test_an_image_of_disc_2_moves_as_disc_2_does(scene):
     """Three periods away along each periodic axis, all rows are three periods away."""
-    start = paths.followed(scene, 7, None, 1.0)[0][4]
+    start = paths.follow_trajectory(scene, 7, None, 1.0)[0][4]
     moved, column = list(start), dict(zip(components(scene), range(12), strict=False))
     for axis in scene.periodic:
         moved[column[f"{axis}2"]] += 3 * scene.side(axis)
-    near, far = (paths.followed(scene, 7, one, 2.0) for one in (start, moved))
+    near, far = (paths.follow_trajectory(scene, 7, one, 2.0) for one in (start, moved))
     assert [row[1:4] for row in near] == [row[1:4] for row in far]
     shift = np.array(moved) - start
     assert np.abs(shift).max() >= 3.0

@@ -50,7 +50,7 @@ def passes(scene, duration):
 def test_too_close_to_the_largest_radius_dynamics_is_refused(width):
     box = Box(width, 1.0)
     for run in (lambda scene: runs.DynamicsRun(scene, {"any_wall": 0.5}, 1, 1).run(),
-                lambda scene: paths.followed(scene, 1)):  # fmt: skip
+                lambda scene: paths.follow_trajectory(scene, 1)):  # fmt: skip
         with pytest.raises(InputError, match=r"must not exceed .* for molecular dynamics"):
             run(box.scene(box.largest_radius * (1 - 1e-13)))
     # It holds at the closest radius: five standard errors.
