@@ -170,6 +170,7 @@ def test_the_histogram_has_the_densities_of_its_bins(box):
                 assert np.isclose(due, point, rtol=1e-9).all(axis=1).any()
     marked = [line.get_ydata()[0] for line in short.lines if not line.get_clip_on()]
     np.testing.assert_allclose(sorted(marked), sorted(exact_values) if sides.is_plain else [])
+    assert (short.get_legend() is not None) == bool(marked)
 
 
 # Which figures ------------------------------------------------------------------------------------

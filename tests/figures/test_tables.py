@@ -27,6 +27,7 @@ from twodiscs_paper.studies.passages import figure_diffusion as diffusion
 from twodiscs_paper.studies.passages import figure_files as files
 from twodiscs_paper.studies.passages import figure_friction as friction
 from twodiscs_paper.studies.passages import figure_transmission as transmission
+from twodiscs_paper.studies.stability.figure_runs import rounded
 from twodiscs_paper.studies.tails import figure as tails
 from twodiscs_paper.studies.thresholds.measure import leading_law, near
 
@@ -345,13 +346,14 @@ def test_the_panels_of_stability_are_those_of_the_table():
 
 def test_the_panels_of_stability_of_runs_are_those_of_the_table():
     rows, axes = table("stability"), drawn("stability_of_runs")
-    for quantity, sign, colour, marker in (
-        ("energy_error", 1, style.BLUE, "o"),
-        ("smallest_gap", -1, style.VERMILLION, "s"),
-        ("excess", 1, style.GREEN, "^"),
+    cells = {text.xy: text.get_text() for text in axes["a"].texts}
+    for column, (quantity, sign) in enumerate(
+        [("energy_error", 1), ("smallest_gap", -1), ("excess", 1)]
     ):
-        due = {max(sign * row["value"], 1e-17) for row in of(rows, quantity=quantity)}
-        assert {x for x, _ in points(axes["a"], colour, marker)} == due != set()
+        due = [max(sign * row["value"], 0) for row in of(rows, quantity=quantity)]
+        due = sorted("0" if value == 0 else f"${rounded(value)}$" for value in due)
+        found = [cells[column + 0.5, line] for line in range(1, len(due) + 1)]
+        assert sorted(found) == due != []
     for method, quantity, look in (
         ("stable", "contact_time", style.SERIES[0]),
         ("stable", "wall_time", style.SERIES[1]),

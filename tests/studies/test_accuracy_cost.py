@@ -320,7 +320,7 @@ def test_the_textbook_near_the_threshold_is_slower_by_the_factor_of_its_engine(l
     c = {(row["method"], row["radius"]): row["c"] for row in long}
     easy, hard = RADII
     lines = {line.get_label(): line for line in panels["a"].lines}
-    x, y = lines["one after another, near $h/4$"].get_data()
+    x, y = lines["one by one, near $h/4$"].get_data()
     expected = c["lockstep", hard] * c["scalar", easy] / c["lockstep", easy]
     np.testing.assert_allclose(y * x**2, expected, rtol=1e-9)
 

@@ -189,12 +189,12 @@ def test_curves_go_through_the_exact_ratios(rows, monkeypatch):
                 assert found == pytest.approx(row["exact"] / row["plain"], rel=0.02)
 
 
-def test_bars_are_the_times_over_the_package_without_effects():
-    """A bar ends at its ratio, which stands beside it, and so does the number of instructions."""
+def test_costs_are_the_times_over_the_package_without_effects():
+    """A symbol is at its ratio, which stands beside it, and so does the number of instructions."""
     axes = style.new_figure(2.0).subplots()
     figure._costs(axes, costs(), {})
-    ends = [bar.get_x() + bar.get_width() for bar in axes.patches]
-    assert ends == pytest.approx([1 / row["ratio"] for row in costs()])
+    ratios = [line.get_xdata()[0] for line in axes.lines if line.get_marker() == "o"]
+    assert ratios == pytest.approx([1 / row["ratio"] for row in costs()])
     numbers = {(text.get_text(), text.xy[1]) for text in axes.texts}
     for i, row in enumerate(costs()):
         assert {(f"{1 / row['ratio']:.3g}", i), (f"{row['instructions']}", i)} <= numbers

@@ -5,6 +5,7 @@ from itertools import groupby, takewhile
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import to_rgb
+from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from twodiscs.figures import panels, style
@@ -207,8 +208,9 @@ FEWEST = 10
 #: The number of bins that can show a density that changes with the room at a hop.
 FINE = 4
 
-#: Length of the dashes that mark exact densities at 0, in mean times, to either side of the axis.
-DASH = 0.035
+#: Length of the dashes that mark exact densities at 0, in mean times, to either side of the axis,
+#: and their width in points.
+DASH, MARK = 0.035, 1.8
 
 #: The distance between symbols in either panel, in mean times.
 SYMBOLS, SYMBOLS_SHORT = 1.2, 0.4
@@ -219,7 +221,7 @@ def draw_hop_histogram(box, rows):
     figure, (whole, short) = panels.stacked(whole=ALL, short=SHORT)
     groups = [list(group) for _, group in groupby(rows, key=lambda row: row["radius"])]
     radii = panels.numbers([group[0]["radius"] for group in groups])
-    low, last = 0.1, 1.0
+    low, last, is_marked = 0.1, 1.0, False
     for i, group in enumerate(groups):
         colour, marker = SERIES[i % len(SERIES)]
         for axes, bins, fewest, apart in (
@@ -236,7 +238,7 @@ def draw_hop_histogram(box, rows):
             if axes is whole:
                 low, last = min(low, density.min()), max(last, edges[-1])
         if box.is_plain:
-            _mark_zero(short, box, group[0], colour)
+            is_marked |= _mark_zero(short, box, group[0], colour)
     for axes, end in ((whole, last), (short, LONGEST_SHORT)):
         times = np.linspace(0, end, 60)
         axes.plot(times, np.exp(-times), color=BLACK, ls=(0, (4, 2)), label=r"$e^{-t/\tau}$")
@@ -244,18 +246,23 @@ def draw_hop_histogram(box, rows):
     whole.set(yscale="log", ylim=(low / 3, None))
     short.set_ylim(0, None)
     whole.legend(loc="upper right")
+    if is_marked:
+        exact = Line2D([], [], color=BLACK, lw=MARK, label=r"exact density at $t=0$")
+        short.legend(handles=[exact], handlelength=1, loc="upper right")
     panels.title(whole, "a", box, f",  {style.event_name(rows[0]['event'])}")
     return figure
 
 
 def _mark_zero(axes, box, row, colour):
-    """Mark the exact density at 0 if bins are fine enough to show it."""
+    """Mark the exact density at 0 if bins are fine enough to show it; return whether they are."""
     scene, hop = box.scene(row["radius"]), row["event"]
     free, across = (scene.width, scene.height)[:: 1 if AXIS[hop] == "y" else -1]
     sigma = scene.contact_distance
-    if (row["right"] - row["left"]) * FINE <= min(across - sigma, free - 2 * sigma):
+    are_fine = (row["right"] - row["left"]) * FINE <= min(across - sigma, free - 2 * sigma)
+    if are_fine:
         value = row["exact_mean"] * laws.density_at_zero(scene, hop)
-        axes.plot([-DASH, DASH], [value, value], color=colour, lw=1.8, clip_on=False, zorder=5)
+        axes.plot([-DASH, DASH], [value, value], color=colour, lw=MARK, clip_on=False, zorder=5)
+    return are_fine
 
 
 def curve(rows, fewest):

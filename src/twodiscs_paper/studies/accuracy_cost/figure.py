@@ -21,8 +21,8 @@ from twodiscs.figures.style import (
     new_figure,
 )
 
-#: Inches: width of two columns, and the height with the legends.
-WIDTH, HEIGHT = 7.0, 4.3
+#: Inches: width of two columns, and the height.
+WIDTH, HEIGHT = 7.0, 3.9
 
 #: The ends of the axes: relative errors, and seconds.
 ERRORS, SECONDS = (1.0, 1e-6), (1e-7, 1e6)
@@ -38,9 +38,12 @@ THINNED = 2
 #: Errors of fewer runs than this have a bar.
 FEW = 64
 
+#: Names at the right end of an axis are apart by this factor of the time at least.
+APART = 2.6
+
 
 class MethodCurve(NamedTuple):
-    """A method at one radius: what the legend calls it, and its look."""
+    """A method at one radius: its name in the figure, and its look."""
 
     method: str
     quantity: str
@@ -52,23 +55,23 @@ class MethodCurve(NamedTuple):
 
 HOP, AREA = "horizontal_hop_time", "disc_collision_area"
 TIMES = (
-    MethodCurve("time_step", HOP, False, "time steps $\\Delta t$", VERMILLION, "s"),
-    MethodCurve("scalar", HOP, False, "one trajectory after another", ORANGE, "D"),
-    MethodCurve("lockstep", HOP, False, "many in lock step", BLUE, "o"),
-    MethodCurve("lockstep", HOP, True, "many in lock step", SKY, "o"),
-    MethodCurve("strip", HOP, True, "many from a strip", GREEN, "^"),
+    MethodCurve("time_step", HOP, False, "time steps", VERMILLION, "s"),
+    MethodCurve("scalar", HOP, False, "one by one", ORANGE, "D"),
+    MethodCurve("lockstep", HOP, False, "dynamics", BLUE, "o"),
+    MethodCurve("lockstep", HOP, True, "dynamics", SKY, "o"),
+    MethodCurve("strip", HOP, True, "strips", GREEN, "^"),
 )
 SAMPLES = (
-    MethodCurve("shell", AREA, False, "area, shells $\\varepsilon$", VERMILLION, "s"),
-    MethodCurve("surface", AREA, False, "area, on the surface", GREEN, "^"),
+    MethodCurve("shell", AREA, False, "area, shells", VERMILLION, "s"),
+    MethodCurve("surface", AREA, False, "area, surface", GREEN, "^"),
     MethodCurve("conditioned", "volume", False, "volume, conditioned", PURPLE, "v"),
     MethodCurve("rejection", "volume", False, "volume, rejection", BLUE, "o"),
-    MethodCurve("shell", AREA, True, "area, shells $\\varepsilon$", ORANGE, "D"),
-    MethodCurve("rejection", "volume", True, "volume, rejection", SKY, "o"),
+    MethodCurve("shell", AREA, True, "area, shells", ORANGE, "D"),
+    MethodCurve("rejection", "volume", True, "rejection", SKY, "o"),
 )
 
-#: The symbol of the setting of a method.
-SETTINGS = {"time_step": r"\Delta t", "shell": r"\varepsilon"}
+#: The name and the symbol of the setting of a method.
+SETTINGS = {"time_step": ("step", r"\Delta t"), "shell": ("shell", r"\varepsilon")}
 
 
 def draw(box, tables):
@@ -91,14 +94,13 @@ def draw(box, tables):
         axes.set_title(f"({letter})  {title}", loc="left")
         for name, seconds in GUIDES.items():
             axes.axhline(seconds, color=GREY, lw=0.4, zorder=0)
-            place = {"ha": "left", "va": "bottom", "color": GREY}
+            place = {"ha": "left", "va": "bottom", "color": GREY, "fontsize": 6.8}
             drawing.label(axes, name, (ERRORS[0], seconds), (3, 1), **place)
-        for one in series:
-            _draw_series(axes, kept, rows, one, radii)
+        lines = [line for one in series for line in _draw_series(axes, kept, rows, one, radii)]
         if series is TIMES:
-            _draw_textbook(axes, kept, radii)
+            lines += _draw_textbook(axes, kept, radii)
+        _name_lines(axes, lines)
         _draw_exact(axes, rows, radii[0], "volume" if series is TIMES else AREA)
-        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2, columnspacing=1.0)
     figure.axes[0].set_ylabel("processor time on one core (s)")
     figure.axes[1].tick_params(labelleft=False)
     return figure
@@ -115,15 +117,37 @@ def select(rows, one, radii):
 
 
 def _draw_series(axes, kept, rows, one, radii):
-    """Draw measured errors, full for the long run and open for this build, and c/error²."""
-    where = "near $h/4$" if one.is_hard else f"$r={panels.mathtext(radii[0])}$"
+    """Draw measured errors, full for the long run and open for this build, and c/error².
+
+    Return the lines without a bias, as ``_name_lines`` takes them.
+    """
     full = panels.open_symbol(one.colour, one.marker) | {"markerfacecolor": one.colour}
-    axes.plot([], [], ls="", label=f"{one.name}, {where}", **full)
-    for setting, own in select(kept, one, radii).items():
-        _draw_law(axes, own[0]["c"], own[0]["floor"], one, setting)
+    found = select(kept, one, radii)
+    for setting, own in found.items():
+        _draw_law(axes, own[0]["c"], own[0]["floor"], one, setting, setting == max(found))
         _draw_errors(axes, own, full | {"zorder": 3})
     for own in select(rows, one, radii).values():
         _draw_errors(axes, own, panels.open_symbol(one.colour, one.marker, 0.8) | {"zorder": 4})
+    name = f"{one.name}, near $h/4$" if one.is_hard else one.name
+    return [(own[0]["c"], name, one.colour) for own in found.values() if not own[0]["floor"]]
+
+
+def _name_lines(axes, lines):
+    """Write the names of ``lines``, [(c, name, colour)], where they leave the panel.
+
+    The panel ends on the right, or for slow methods at the top, where the names stand beneath each
+    other, beside the last of these lines.
+    """
+    low = 0.0
+    for c, name, colour in sorted(lines):
+        low = max(c / ERRORS[1] ** 2, APART * low)
+        if low < APART * SECONDS[1]:
+            place = ERRORS[1], min(low, SECONDS[1])
+            drawing.label(axes, name, place, (4, 0), ha="left", color=colour, fontsize=7.5)
+    slow = [line for line in sorted(lines) if line[0] / ERRORS[1] ** 2 >= APART * SECONDS[1]]
+    for i, (_, name, colour) in enumerate(reversed(slow)):
+        place = (slow[0][0] / SECONDS[1]) ** 0.5, SECONDS[1]
+        drawing.label(axes, name, place, (5, -6 - 9 * i), ha="left", color=colour, fontsize=6.8)
 
 
 def _draw_errors(axes, rows, style):
@@ -155,7 +179,8 @@ def _law(c, floor):
     return errors, c / (errors**2 - floor**2)
 
 
-def _draw_law(axes, c, floor, one, setting):
+def _draw_law(axes, c, floor, one, setting, is_first):
+    """Draw c/error², or c/(error² − bias²) with the setting, whose name the first line has."""
     errors, seconds = _law(c, floor)
     dashes = (0, (4, 2)) if one.is_hard else "-"
     axes.plot(errors, seconds, color=one.colour, lw=0.8, ls=dashes, zorder=1)
@@ -163,33 +188,36 @@ def _draw_law(axes, c, floor, one, setting):
         number = f"{setting:.2g}"
         if one.method == "time_step":
             number = f"2^{{{round(math.log2(setting))}}}"
-        text = rf"${SETTINGS[one.method]}={number}$"
+        name, symbol = SETTINGS[one.method]
+        text = rf"{name if is_first else ''} ${symbol}={number}$".strip()
         style = {"rotation": 90, "ha": "left", "va": "top", "fontsize": 6.8, "color": one.colour}
         drawing.label(axes, text, (floor, SECONDS[1]), (1, -3), **style)
 
 
 def _draw_textbook(axes, rows, radii):
-    """Draw the line of one trajectory after another near h/4, where no run is long enough.
+    """Draw the line of trajectories one by one near h/4, where no run is long enough; return it.
 
     Its counts are those of the engine, replica for replica, and each takes longer by a factor. Two
-    arrows are what lock step gains, and what strips and lock step gain.
+    arrows are what the engine gains, and what the engine and strips gain.
     """
     c = {(row["method"], row["radius"]): row["c"] for row in rows}
     easy, hard = radii
     slower = c["scalar", easy] / c["lockstep", easy]
     _draw_gain(axes, c["scalar", easy], c["lockstep", easy], GAINED[0])
-    if ("lockstep", hard) in c:
-        textbook = slower * c["lockstep", hard]
-        style = {"color": ORANGE, "lw": 0.8, "ls": (0, (4, 2)), "zorder": 1}
-        axes.plot(*_law(textbook, 0.0), label="one after another, near $h/4$", **style)
-        _draw_gain(axes, textbook, c["strip", hard], GAINED[1])
+    if ("lockstep", hard) not in c:
+        return []
+    textbook, name = slower * c["lockstep", hard], "one by one, near $h/4$"
+    style = {"color": ORANGE, "lw": 0.8, "ls": (0, (4, 2)), "zorder": 1}
+    axes.plot(*_law(textbook, 0.0), label=name, **style)
+    _draw_gain(axes, textbook, c["strip", hard], GAINED[1])
+    return [(textbook, name, ORANGE)]
 
 
 def _draw_gain(axes, slow, fast, error):
     """Draw an arrow between the times of two methods to an ``error``, with their ratio."""
     ends = (error, slow / error**2), (error, fast / error**2)
     drawing.arrow(axes, *ends, "<|-|>", width=0.6, size=6)
-    middle = error, math.sqrt(ends[0][1] * ends[1][1])
+    middle = error, slow**0.65 * fast**0.35 / error**2  # where most space is between the lines
     text = rf"$\times{panels.powers(f'{slow / fast:.1g}')}$"
     drawing.label(axes, text, middle, (3, 0), ha="left", fontsize=7.5, zorder=5)
 
@@ -201,7 +229,7 @@ def _draw_exact(axes, rows, radius, quantity):
     seconds = median(row["seconds"] for row in own if row["method"] == "exact")
     axes.axhline(seconds, color=BLACK, lw=1.0, zorder=2)
     end = {"ha": "right", "va": "top"}
-    text = f"exact value: {1e3 * seconds:.2g} ms, error $10^{{-15}}$"
+    text = f"exact: {1e3 * seconds:.2g} ms, error $10^{{-15}}$"
     drawing.label(axes, text, (ERRORS[1], seconds), (-3, -2), **end)
     if quantity == AREA:
         nodes = [row for row in own if row["method"] == "quadrature"]

@@ -77,15 +77,17 @@ STUDY = Study(
             Caption(
                 """
                 Processor time on one core for a relative error, (a) of the mean time between
-                horizontal hops, (b) of the volume and of the area of disc collisions, at an easy
-                radius and at a hard one, 1e-4 below h/4, where the hop is blocked. Symbols are true
-                errors against the exact value, root mean square over independent runs: full ones of
-                a long run, open ones of this build on this machine. Lines are c/error², for a
-                method with a bias c/(error² − bias²): no time removes the error of time steps or of
-                thick shells. Error bars are one standard error, where runs are few. Of one
-                trajectory after another near h/4 there is the line alone: its counts are those of
-                the engine. Arrows compare the textbook method with ours. The exact value is at the
-                bottom, and crosses are Gauss quadrature with more and more nodes.
+                horizontal hops, (b) of the volume and of the area of disc collisions, at r = 0.2 h
+                and 1e-4 below h/4 (dashed), where the hop becomes blocked. Symbols are true errors
+                against the exact value, root mean square over independent runs: full symbols are
+                from a long run, open symbols from this build on this machine. Lines are c/error²,
+                for a method with a bias c/(error² − bias²): no time removes the error of time steps
+                Δt or of thick shells ε. Error bars are one standard error, where runs are few.
+                "Dynamics" follows trajectories in lock step from ordinary initial states,
+                "strips" from initial states next to the hop; "one by one" is the same dynamics, one
+                trajectory after another. Near h/4 this is a line without symbols, because its
+                counts are the same. Arrows compare methods. The exact value is at the bottom, and
+                crosses are Gauss quadrature with 1, 2, … nodes.
                 """
             ),
             tables=("accuracy_cost",),

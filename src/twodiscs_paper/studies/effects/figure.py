@@ -39,9 +39,9 @@ MARKERS = ("o", "s", "^", "D", "v", "P")
 #: The range of the ratios; curves leave it only near the ends of the radii.
 SHOWN = (0.22, 22)
 
-#: The value at which the bars of costs begin, and the factor that leaves room for numbers.
+#: The shortest relative time of the panel of costs, and the factor that leaves room for numbers.
 #: Points: the end of the column of instructions, from the edge of the panel.
-COST_FROM, COST_ROOM, COLUMN = 0.5, 8.0, 26
+COST_FROM, COST_ROOM, COLUMN = 0.6, 8.0, 26
 
 
 def draw(box, tables):
@@ -115,22 +115,25 @@ VARIANTS = {
 def _costs(axes, rows, looks):
     """Draw the time per event of each variant, over the time of a package without effects.
 
-    This ratio stands beside each bar, the number of machine instructions of the kernel in a column.
+    The ratio stands beside its symbol, and a column has the number of machine instructions.
     """
     longest, small = max(1 / row["ratio"] for row in rows), {"fontsize": 6.8}
     axes.set(xscale="log", xlim=(COST_FROM, longest * COST_ROOM), ylim=(len(rows) - 0.4, -0.6))
     column = small | {"xycoords": axes.get_yaxis_transform(), "ha": "right"}
     for i, row in enumerate(rows):
-        time, colour = 1 / row["ratio"], looks.get(row["variant"], (GREY,))[0]
-        axes.barh(i, time - COST_FROM, 0.62, COST_FROM, color=colour)
-        drawing.label(axes, f"{time:.3g}", (time, i), (3, 0), ha="left", **small)
+        time, look = 1 / row["ratio"], looks.get(row["variant"], (GREY, "o"))
+        axes.plot([1, time], [i, i], color=look[0], lw=0.8)
+        axes.plot(time, i, **panels.open_symbol(*look))
+        drawing.label(axes, f"{time:.3g}", (time, i), (6, 0), ha="left", **small)
         drawing.label(axes, f"{row['instructions']}", (1, i), (COLUMN, 0), **column)
-    drawing.label(axes, "instructions", (1, -0.6), (COLUMN + 8, 6), **column)
+    head = column | {"ha": "center", "va": "bottom", "linespacing": 1.1}
+    drawing.label(axes, "instructions\nin kernel", (1, -0.6), (COLUMN - 9, 3), **head)
     axes.axvline(1, color=GREY, lw=0.5, zorder=0)
     axes.set_yticks(range(len(rows)), [VARIANTS.get(r["variant"], r["variant"]) for r in rows])
-    axes.set_xlabel("relative time")
+    axes.set_xlabel("time / that without effects")
     axes.tick_params(axis="y", length=0)
     axes.xaxis.set_major_locator(FixedLocator([1, 10, 100]))
+    axes.xaxis.set_major_formatter("{x:g}")
     axes.set_title("(d)  time per event", loc="left", pad=panels.ABOVE)
 
 

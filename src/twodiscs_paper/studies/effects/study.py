@@ -154,10 +154,10 @@ STUDY = Study(
                 become blocked, and their largest radius. The torus has neither hops nor walls.
                 Residuals z beneath are in standard errors, with guide lines at ±2 and ±5. (d)
                 Processor time per wall hit or disc collision at r = 0.2, divided by the time in a
-                copy of the package from which all effects are removed; beside each bar this ratio,
-                and the machine instructions of the compiled kernel. Leaving a periodic cell, or a
-                kick of friction, takes time but is not counted. Crosses are estimates from too few
-                events for an error bar.
+                copy of the package from which all effects are removed (numbers beside the symbols),
+                and the number of machine instructions of the compiled kernel. Leaving a periodic
+                cell, or a kick of friction, takes time but is not counted. Crosses are estimates
+                from too few events for an error bar.
                 """
             ),
             tables=("effects", "effects_cost", "effects_curves"),

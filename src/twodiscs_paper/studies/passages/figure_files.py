@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from twodiscs.figures import drawing, panels
-from twodiscs.figures.style import BLACK, BLUE, GREY, PURPLE, VERMILLION
+from twodiscs.figures.style import BLACK, BLUE, PURPLE, VERMILLION
 from twodiscs.model.scene import Scene
 from twodiscs_paper.studies.passages.figure import columns, points
 from twodiscs_paper.studies.passages.figure_diffusion import KICKED_FILE, SMOOTH_FILE
@@ -17,6 +17,9 @@ ROUGH_FILE = (VERMILLION, "s")
 
 #: Looks of distances in a collapse.
 OPEN = ((BLUE, "o"), (VERMILLION, "s"), (PURPLE, "D"))
+
+#: The symbols of the motion of places plus hops, which is measured at the same times.
+SUM = {"ls": "", "marker": "_", "markersize": 6.5, "mew": 0.8}
 
 #: Quantities of long files over the time.
 LONG = ("displacement", "file", "order")
@@ -85,16 +88,16 @@ def _moved(axes, rows):
             elif not blocked:
                 _, place, _ = _scaled_columns(own, "file")
                 _, walk, _ = _scaled_columns(own, "order")
-                axes.plot(x, place + walk, color=GREY, lw=0.8, zorder=2)
+                axes.plot(x, place + walk, color=look[0], zorder=2, **SUM)
     height = 0.0
     for x, y, name, colour in sorted(ends, key=lambda end: end[1]):
         height = max(y, APART * height)
-        drawing.label(axes, name, (x, height), (5, 0), ha="left", color=colour)
+        drawing.label(axes, name, (x, height), (7, 0), ha="left", color=colour)
     for name, line in (
-        ("theory of blocked files", {"color": BLACK}),
-        ("motion of places, plus hops", {"color": GREY}),
+        ("theory, blocked", {"color": BLACK, "lw": 0.8}),
+        ("motion of places, plus hops", {"color": BLACK} | SUM),
     ):
-        axes.plot([], [], lw=0.8, label=name, **line)
+        axes.plot([], [], label=name, **line)
     axes.set(xscale="log", yscale="log", xlim=SHOWN)
     axes.set(
         xlabel=r"time $t\,\sqrt{kT/m}\,/h$", ylabel=r"displacement $\langle x^2\rangle/\ell^2$"

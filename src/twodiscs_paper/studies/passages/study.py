@@ -310,19 +310,21 @@ STUDY = Study(
             },
         ),
         "files": Figure(
-            "Displacements in files",
+            "Displacements in single files",
             DYNAMICS,
             Caption(
                 """
-                Mean square displacement of a tagged disc in a long file on a ring. (a) Files that
-                are blocked (r = 0.28 h, full symbols) and open (δ = 1/8, open symbols), in units of
-                ℓ², the height h and the thermal speed. Black lines are theory of the blocked files
-                at long times, without a free parameter: sound, until it has gone around half of the
-                ring, and damped sound. Rough discs (I = 1/2) lose their momentum to the walls, and
-                have no such line. Grey lines add what hops do to the motion of the places, as the
-                order of the discs has it. (b) Files with friction that are open: displacements in
-                units of F√t×, at times over t× = (F/2D)², where single file and hops contribute
-                equally. Error bars are one standard error.
+                Mean square displacement of a tagged disc in a long single file on a ring. (a) Files
+                that are blocked (r = 0.28 h, full symbols) and open (δ = 1/8, open symbols), in
+                units of ℓ², the height h and the thermal speed. Black lines are the theory of
+                blocked files at long times, without a free parameter: sound in the file of smooth
+                discs, damped sound with friction. The line of smooth discs ends when sound has gone
+                around half of the ring, because from then on it brings the discs back. Rough discs
+                (I = 1/2) lose their momentum to the walls, and have no such line. Dashes are
+                measured too: the motion of the places plus the steps of the discs from place to
+                place. (b) Open files with friction: displacements in units of F√t×, at times over
+                t× = (F/2D)², where single file and hops contribute equally. Error bars are one
+                standard error.
                 """
             ),
             long_runs={"displacements": "paper/long_run/displacements/passages.csv"},

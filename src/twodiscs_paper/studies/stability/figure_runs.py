@@ -4,13 +4,10 @@ import math
 
 import numpy as np
 from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocator
-from matplotlib.transforms import blended_transform_factory
 
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import (
     BLACK,
-    BLUE,
-    GREEN,
     GREY,
     LOOKS,
     ORANGE,
@@ -19,21 +16,21 @@ from twodiscs.figures.style import (
     event_name,
     new_figure,
 )
-from twodiscs_paper.studies.stability.figure import BOUND, HEIGHT, NOTHING, WIDTH
+from twodiscs_paper.studies.stability.figure import BOUND, HEIGHT, WIDTH
 from twodiscs_paper.study import select
 
 #: The symbol of times by the formula of textbooks; the look of the sum rule of virials.
 TEXTBOOK, VIRIAL = {"color": VERMILLION, "marker": "x", "markersize": 3.4}, (GREY, "o")
 
-#: Inches: the height of the lowest panel. Its legend, and that of the first one, stand above.
+#: Inches: the height of the lowest panel. Its legend stands above.
 LOWEST = 2.6
 ABOVE = {
     "loc": "lower right", "bbox_to_anchor": (1, 1.01), "handletextpad": 0.1, "columnspacing": 0.8,
     "borderaxespad": 0.0,
 }  # fmt: skip
 
-#: Colour and marker of each quantity of the runs of many events.
-WORST = {"energy_error": (BLUE, "o"), "smallest_gap": (VERMILLION, "s"), "excess": (GREEN, "^")}
+#: The quantities of the runs of many events, and their names.
+WORST = {"energy_error": "$|E-1/2|$", "smallest_gap": "overlap", "excess": "beyond wall"}
 
 
 def draw(box, tables):
@@ -84,42 +81,48 @@ def name_radii(rows):
     return texts
 
 
-def lines(axes, names):
-    """Make the ordinate a list of ``names``, from the top down."""
-    axes.set_ylim(len(names) - 0.4, -0.6)
-    axes.yaxis.set_major_locator(FixedLocator(range(len(names))))
-    axes.set_yticklabels(names, fontsize=6.9)
+def name_lines(axes, names, places):
+    """Make the ordinate a list of ``names`` at ``places``, from the top down."""
+    axes.set_ylim(places[-1] + 0.6, places[0] - 0.6)
+    axes.set_yticks(places, names, fontsize=6.9)
     axes.tick_params(axis="y", length=0)
+
+
+def rule_lines(axes, names):
+    """Make the ordinate a list of ``names``, from the top down, with a thin line for each."""
+    name_lines(axes, names, range(len(names)))
     for i in range(len(names)):
         axes.axhline(i, color=GREY, lw=0.25, alpha=0.5, zorder=0)
 
 
 def _runs(axes, rows):
-    """Draw the worst errors of the runs of many events, with their bounds."""
+    """Write a table of the worst errors of the runs of many events, with their bounds beneath."""
     radii = name_radii(rows)
-    places = {key: i for i, key in enumerate(radii)}
-    lines(axes, list(radii.values()))
-    names = {"energy_error": "$|E-1/2|$", "smallest_gap": "overlap", "excess": "beyond wall"}
-    for quantity, (colour, marker) in WORST.items():
-        worst = select(rows, quantity=quantity)
+    top, *places, bottom = -0.3, *range(1, len(radii) + 1), len(radii) + 1.3
+    name_lines(axes, ["radius", *radii.values(), "at most"], [top, *places, bottom])
+    axes.set(xlim=(0, len(WORST) + 1), xticks=[])
+    axes.spines[:].set_visible(False)
+    for line in (0.35, len(radii) + 0.6):
+        axes.axhline(line, -0.26, color=BLACK, lw=0.5, clip_on=False)
+    lines = dict(zip(radii, places, strict=True))
+
+    def write(column, line, text):
+        drawing.label(axes, text, (column + 0.5, line), fontsize=6.9)
+
+    for column, (quantity, name) in enumerate(WORST.items()):
+        write(column, top, name)
         sign = -1 if quantity == "smallest_gap" else 1
-        x = [max(sign * row["value"], NOTHING) for row in worst]
-        y = [places[row["case"], row["radius"]] for row in worst]
-        axes.plot(x, y, ls="", label=names[quantity], **panels.open_symbol(colour, marker, 0.9))
+        worst = select(rows, quantity=quantity)
+        for row in worst:
+            value = sign * row["value"]
+            text = f"${rounded(value)}$" if value > 0 else "0"
+            write(column, lines[row["case"], row["radius"]], text)
         for row in worst[:1]:
             bound = abs(row["low"] if sign < 0 else row["high"])
-            axes.axvline(bound, **BOUND | {"color": colour})
-    axes.set(xscale="log", xlim=(NOTHING / 2, 1e-10), xlabel="worst of a run")
-    axes.xaxis.set_major_locator(FixedLocator([NOTHING, 1e-15, 1e-13, 1e-11]))
-    axes.set_xticklabels(["0", "$10^{-15}$", "$10^{-13}$", "$10^{-11}$"])
-    axes.xaxis.set_minor_locator(NullLocator())
-    axes.legend(ncols=3, **ABOVE)
-    beside = {"xycoords": blended_transform_factory(axes.transAxes, axes.transData), "ha": "left"}
+            write(column, bottom, f"${rounded(bound)}$")
+    write(len(WORST), top, "events")
     for row in select(rows, quantity="energy_error"):
-        events = f"${rounded(row['count'])}$"
-        at = 1, places[row["case"], row["radius"]]
-        drawing.label(axes, events, at, (4, 0), fontsize=6.9, **beside)
-    drawing.label(axes, "events", (1, -0.6), (4, 5), fontsize=6.9, **beside)
+        write(len(WORST), lines[row["case"], row["radius"]], f"${rounded(row['count'])}$")
 
 
 def _named(row):
@@ -132,7 +135,7 @@ def _times(axes, rows):
     names = dict.fromkeys(map(_named, rows))
     contacts = select(rows, quantity="contact_time", method="stable")
     found = {row["case"]: row["count"] for row in contacts}
-    lines(axes, [*names])
+    rule_lines(axes, [*names])
     for row in rows:
         look = SERIES[0] if row["quantity"] == "contact_time" else SERIES[1]
         symbol = TEXTBOOK if row["method"] == "textbook" else panels.open_symbol(*look)
@@ -151,7 +154,7 @@ def _times(axes, rows):
 def _extremes(axes, rows):
     """Draw the residuals of the mean times in extreme scenes, a line for each scene."""
     cases = [*dict.fromkeys(row["case"] for row in rows)]
-    lines(axes, cases)
+    rule_lines(axes, cases)
     for event, look in (LOOKS | {"virial": VIRIAL}).items():
         own = [row for row in rows if row["quantity"] in (event, f"{event}_time")]
         own = [row for row in own if row["z"] is not None]

@@ -100,18 +100,18 @@ STUDY = Study(
             Caption(
                 """
                 The dynamics in hard cases; dashed lines are the required bounds. (a) Largest values
-                in a long run: error of the energy, overlap of the discs, distance of centres beyond
-                their range. Symbols at 0 are exact zeros. (b) Worst error of predicted times to a
-                contact (circles) and to a wall (squares), against 50 digits, for many kinds of
-                approach. Crosses are the quadratic formula of textbooks. (c) Velocities are
-                reversed after n events: error of return after n more events, against the binary
-                digits that the Lyapunov exponent λ per event costs. The line is one rounding that
-                grows at this rate. The legend has the number of events after which half of the
-                digits are lost, and in brackets the number that λ predicts.
-                (d) Share of 95 % intervals that contain the exact mean time, over independent
-                repetitions. Crosses are events too rare for an interval. (e) Residuals of mean
-                times, and of the virial theorem, in extreme scenes: each effect at its extremes, or
-                discs that hardly fit. Rare events without an error bar are left out.
+                in a long run, with the required bounds: error of the energy, overlap of the discs,
+                distance of centres beyond their range. Zeros are exact. (b) Worst error of
+                predicted times to a contact (circles) and to a wall (squares), against 50 digits,
+                for many kinds of approach. Crosses are the quadratic formula of textbooks. (c)
+                Velocities are reversed after n events: error of return after n more events, against
+                the binary digits that the Lyapunov exponent λ per event costs. The line is one
+                rounding that grows at this rate. The legend has the number of events after which
+                half of the digits are lost, and in brackets the number that λ predicts. (d) Share
+                of 95 % intervals that contain the exact mean time, over independent repetitions.
+                Crosses are events too rare for an interval. (e) Residuals of mean times, and of the
+                virial theorem, in extreme scenes: each effect at its extremes, or discs that hardly
+                fit. Rare events without an error bar are left out.
                 """
             ),
             tables=("stability",),
