@@ -11,8 +11,8 @@ import numpy as np
 
 from twodiscs.analysis import tables
 from twodiscs.dynamics.stages import STAGES
-from twodiscs.model.box import Box, parameters_of
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
+from twodiscs.model.scene import Box
 from twodiscs.points.base import file_content, restore_arrays, write_json
 from twodiscs.points.dynamics_point import DynamicsPoint
 from twodiscs.points.intervals_point import Bins, IntervalsPoint
@@ -137,7 +137,7 @@ def write(point, path, settings=MappingProxyType({})):
         part = {"method": point.method, "samples": point.samples, "quantities": quantities}
         part |= {"right_and_top": len(hits), "sums": {(0, 1): [[*hits, point.right_and_top]]}}
     call = STAGES[point.stage].call
-    write_json(path, file_content(call, parameters_of(point.scene), dict(settings), {"all": part}))
+    write_json(path, file_content(call, point.scene.parameters(), dict(settings), {"all": part}))
 
 
 # By laws ----------------------------------------------------------------------------------------

@@ -12,8 +12,8 @@ from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.dynamics.runs import wide_edges
 from twodiscs.figures.draw import draw as draw_figure
 from twodiscs.figures.scene_figures import FIGURES
-from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
+from twodiscs.model.scene import Box
 from twodiscs.theory import exact
 from twodiscs_paper.configuration.radii import radii
 
@@ -36,8 +36,7 @@ PAPER = BOXES["paper"]
 #: With effects, as many as a figure has to name with three digits each, and with many discs.
 OTHERS = {
     "effects": Box(
-        1.55, 1.05,
-        {"periodic": "x", "radius_ratio": 0.625, "mass_ratio": 0.125, "moment_of_inertia": 0.375},
+        1.55, 1.05, periodic="x", radius_ratio=0.625, mass_ratio=0.125, moment_of_inertia=0.375,
     ),
     "five": Box(1.5, 1.0, discs=5),
 }  # fmt: skip

@@ -18,10 +18,9 @@ from matplotlib.figure import Figure  # noqa: F401 - for a line of CALLS
 
 import twodiscs as td
 from twodiscs import cli
-from twodiscs.model import checks, effects
-from twodiscs.model.box import Box
+from twodiscs.model import checks
 from twodiscs.model.checks import InputError
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
 from twodiscs.points import estimates
 from twodiscs.points.base import read_json
 from twodiscs.sampling.initial_states import components
@@ -120,7 +119,10 @@ td.load_result('\\0') → path must be the path of a file, not '\\x00'
 td.load_result('absent.json') → path must be a file to read
 td.load('nothere') → tables of results, but 'nothere' does not exist
 td.load('src') → folder must hold tables of results, but 'src' has none
-td.scan(1.5, 1, [0.1], gravity=1) → gravity is no effect; effects must be some of
+td.scan(1.5, 1, [0.1], gravity=1) → got an unexpected keyword argument 'gravity'
+td.exact_table(1.5, 1, [0.1], feild=1) → argument 'feild'; did you mean field?
+Scene(300, 1.3, 0.33, discs=64) → 1e-150 and 1e150, not 300.0 and 1.3
+Scene(300, 1.3, 0.33, discs=64, periodic='x') → 1e-150 and 1e150, not 300.0 and 1.3
 td.scan(1.5, 1, [0.2, 0.2]) → radii must differ, because one radius has the same
 td.sample(PAPER, 1).more(budget=1e7) → to go on, give samples=
 td.simulate(PAPER, 0.5, budget=1).more(duration=10) → duration must be left out for a result of …
@@ -355,7 +357,7 @@ RIGHT = [
     (Scene, {"width": 1.5, "height": 1.0, "radius": 0.2}),
     (PAPER.with_radius, {"radius": 0.1}),
     (PAPER.is_possible, {"event": "any_wall"}),
-    (Box, {"width": 1.5, "height": 1.0, "effects": {"field": 0.1}}),
+    (Box, {"width": 1.5, "height": 1.0, "field": 0.1, "periodic": "x", "radius_ratio": 0.5}),
     (BOX.threshold, {"event": "any_wall"}),
     (radii, {"width": 1.5, "height": 1.0, "smallest": 0.01, "count": 8}),
     (even_radii, {"smallest": 0.1, "largest": 0.2, "count": 8}),
@@ -381,13 +383,11 @@ RADIUS = [*LENGTH, 0.4, BOX.largest_radius]
 COUNT = [0, 1.5, 2**64, "1", True]
 PART = [0.0, 1.0, -0.1, "0.1", True]
 EVENT = ["", "hop", b"any_wall", PAPER]
-EFFECTS = [
-    "field", {"gravity": 1}, {1: 2}, {"field": -1.0}, {"periodic": "xx"}, {"radius_ratio": 1e9},
-]  # fmt: skip
 TARGET = [{}, "any_wall", {"hop": 0.1}, {None: 0.1}, {"any_wall": 0.0}, {"any_wall": True}]
 WRONG = (
     dict.fromkeys(("width", "height", "epsilon"), LENGTH)
-    | {"radius": RADIUS, "smallest": RADIUS, "largest": [*LENGTH, 0.1], "effects": EFFECTS}
+    | {"radius": RADIUS, "smallest": RADIUS, "largest": [*LENGTH, 0.1]}
+    | {"field": [-1.0, "1"], "periodic": ["xx", "z", 1], "radius_ratio": [1e9, -1.0]}
     | dict.fromkeys(("count", "samples", "intervals", "budget", "replicas"), COUNT)
     | dict.fromkeys(("shell", "fraction", "confidence"), PART)
     | {"seed": [-1, 1.5, "1", True], "target": TARGET}
@@ -407,7 +407,6 @@ JUNK = [NAN, 1j, b"", object()]
 #: The possible names of the wrong part of an argument with several parts.
 INSIDE = {
     **{key: ["event"] for key in ("target", "error", "events")},
-    "effects": effects.EFFECTS,
     "largest": ["smallest"],
     "quantities": ["quantity"],
     "radii": ["radius"],

@@ -52,7 +52,7 @@ def random_scene(rng, kind):
     while True:
         effects = KINDS[kind](draw)
         discs, width = effects.pop("discs", 2), effects.pop("width", draw(0.5, 3.0))
-        box = td.Box(width, 1.0, effects, discs)
+        box = td.Box(width, 1.0, discs=discs, **effects)
         try:
             scene = box.scene(box.last_radius * draw(0.02, 0.97))
             if discs > 3 and exact_method(scene) is None:

@@ -67,7 +67,7 @@ def print_peak():
         print(*(line.split()[1] for line in status if line.startswith("VmHWM")))
 
 width, height, discs, distance, effects = {scene!r}
-box = td.Box(width, height, effects, discs)
+box = td.Box(width, height, discs=discs, **effects)
 largest = box.largest_radius
 try:
     scene = td.Scene(width, height, largest * (1 - distance), discs=discs, **effects)

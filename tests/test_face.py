@@ -20,8 +20,8 @@ from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.dynamics.paths import check_start
 from twodiscs.figures import style
 from twodiscs.measure.measurements import Measurement, measurement
-from twodiscs.model.box import Box, job_seed
 from twodiscs.model.effects import EFFECTS
+from twodiscs.model.seeds import job_seed
 from twodiscs.sampling.initial_states import components
 from twodiscs_paper.configuration import schema, yaml_files
 from twodiscs_paper.pipeline import job_cost
@@ -98,7 +98,7 @@ def test_defaults_are_those_of_a_configuration():
 
 
 def test_results_are_those_of_the_pipeline(simulated, sampled, intervals):
-    box, scene = Box.of(SCENE), yaml_files.load(CONFIGURATION).scenes[0]
+    box, scene = SCENE.box, yaml_files.load(CONFIGURATION).scenes[0]
     stages = ("dynamics", "monte_carlo", "intervals")
     points = [job_cost.run_at(scene, stage, 0.2).run() for stage in stages]
     assert simulated.rows == SCENE_TABLES["mean_times"].rows(points)
@@ -241,7 +241,7 @@ def test_the_exact_table_holds_the_exact_numbers():
 def test_a_scene_prints_what_it_is():
     scene = td.Scene(1.5, 1.0, 0.2, periodic=["y", "x"], mass_ratio=2)
     assert repr(scene) == "Scene(1.5, 1.0, 0.2, mass_ratio=2.0, periodic='xy')"
-    assert eval(repr(scene), {"Scene": td.Scene}) == scene == td.Box.of(scene).scene(0.2)
+    assert eval(repr(scene), {"Scene": td.Scene}) == scene == scene.box.scene(0.2)
     assert str(scene).endswith("in a box of 1.5 × 1.0, mass ratio 2.0, periodic xy")
     assert td.Scene(1.5, 1.0, 0.2, periodic=[]) == SCENE
     assert str(SCENES["balls"]) == "Two balls of radius 0.2 in a box of 1.5 × 1.0 × 1.2"

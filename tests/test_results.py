@@ -112,8 +112,8 @@ JOBS = {
 
 def kept(path, stage, scene, settings, parts):
     """Write the file of a job of the pipeline."""
-    parameters = td.Box.of(scene).parameters() | {"radius": scene.radius}
-    write_json(path, file_content(STAGES[stage].call, parameters, settings, parts))
+    content = file_content(STAGES[stage].call, scene.parameters(), settings, parts)
+    write_json(path, content)
 
 
 @pytest.mark.parametrize("stage", JOBS)

@@ -15,6 +15,7 @@ from pictures import BOX, PANELS, SCENE, draw
 import twodiscs
 from twodiscs.figures import style
 from twodiscs.measure.result import Result
+from twodiscs.model.scene import Box
 from twodiscs_paper.catalogue import ALL_FIGURES, STUDIES, STUDY_FIGURES, TABLES
 from twodiscs_paper.configuration.schema import described_keys
 from twodiscs_paper.pipeline.documents import explorer
@@ -79,7 +80,7 @@ def _described(line):
     name, value = line[1], getattr(twodiscs, line[1])
     if isinstance(value, type):
         own = ":members:\n   :inherited-members: Mapping, Sequence"
-        kind, below = "autoclass", own if issubclass(value, Result) else ":members:"
+        kind, below = "autoclass", own if issubclass(value, Result | Box) else ":members:"
     elif callable(value):
         kind, below = "autofunction", ""
     else:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from twodiscs.figures import style
 from twodiscs.figures.draw import draw as draw_figure
-from twodiscs.model.box import Box
+from twodiscs.model.scene import Box
 from twodiscs_paper.catalogue import ALL_FIGURES, TABLES, read_table
 from twodiscs_paper.draw import DRAW
 

@@ -44,11 +44,10 @@ if TYPE_CHECKING:
     from twodiscs.measure.scan import Scan, scan
     from twodiscs.measure.trajectory import Trajectory, trajectory
     from twodiscs.measure.transmission import Transmission, transmission
-    from twodiscs.model.box import Box
     from twodiscs.model.checks import AccuracyWarning, InputError
     from twodiscs.model.effects import EFFECTS
     from twodiscs.model.events import EVENTS
-    from twodiscs.model.scene import Scene
+    from twodiscs.model.scene import Box, Scene
     from twodiscs.theory.exact import rate, volume
 
     class Effects(TypedDict, total=False):
@@ -93,11 +92,10 @@ _NAMES = {
     "measure.trajectory": "Trajectory trajectory",
     "measure.transmission": "Transmission transmission",
     "figures.plot": "animate plot",
-    "model.box": "Box",
     "model.checks": "AccuracyWarning InputError",
     "model.effects": "EFFECTS",
     "model.events": "EVENTS",
-    "model.scene": "Scene",
+    "model.scene": "Box Scene",
     "theory.exact": "rate volume",
 }
 _HOMES = {name: module for module, names in _NAMES.items() for name in names.split()}

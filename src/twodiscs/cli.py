@@ -14,10 +14,10 @@ from argcomplete.completers import ChoicesCompleter
 
 import twodiscs
 from twodiscs.measure.load import plugin
-from twodiscs.model.box import Box
 from twodiscs.model.checks import PRESETS, InputError, did_you_mean, format_number
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS
+from twodiscs.model.scene import Scene
 
 # Arguments, and one sentence for each mistake -----------------------------------------------------
 
@@ -92,12 +92,12 @@ def _help(effect):
     return f"{effect.meaning} ({'; '.join(notes)})"
 
 
-def scene_of(options):
+def parsed_scene(options):
     """Return the ``Scene`` of the arguments of ``add_scene``."""
     named = {name: getattr(options, name) for name in EFFECTS if getattr(options, name) is not None}
     if "periodic" in named:
         named["periodic"] = "".join(named["periodic"])
-    return Box(options.width, options.height, named, options.discs).scene(options.radius)
+    return Scene(options.width, options.height, options.radius, discs=options.discs, **named)
 
 
 def fail(message):
@@ -190,7 +190,7 @@ def _main():
         return
     if options.command in ("run", "new"):
         return options.work(options)
-    options.work(scene_of(options), options)
+    options.work(parsed_scene(options), options)
 
 
 def _parser():
@@ -307,7 +307,7 @@ def _exact(scene, options):
     if options.csv:
         from twodiscs.analysis.tables import TheoryTable
 
-        _print_csv(TheoryTable.rows(Box.of(scene), [scene.radius]))
+        _print_csv(TheoryTable.rows(scene, [scene.radius]))
     elif options.json:
         _print_json(numbers)
     else:

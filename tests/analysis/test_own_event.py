@@ -16,7 +16,7 @@ MEASURED = """
 import sys
 from twodiscs.analysis.tables import CheckTable, TheoryTable
 from twodiscs.dynamics import runs
-from twodiscs.model.box import Box
+from twodiscs.model.scene import Box
 from twodiscs.model.events import DECLARED
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo

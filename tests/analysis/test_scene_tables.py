@@ -18,9 +18,8 @@ from twodiscs.analysis.tables import (
 )
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.many import many_rates
-from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
 from twodiscs.points import estimates
 from twodiscs.points.dynamics_point import StripCount
 from twodiscs.points.intervals_point import Bins

@@ -24,7 +24,7 @@ from twodiscs.analysis.tables import (
 )
 from twodiscs.measure import load
 from twodiscs.measure.load import plugin
-from twodiscs.model.box import Box
+from twodiscs.model.scene import Box
 
 EVERY_TABLE = plugin("tables")
 

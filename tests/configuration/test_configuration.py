@@ -12,10 +12,10 @@ from snakemake.utils import update_config
 
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.stages import STAGES
-from twodiscs.model.box import Box, job_seed, stream_seed
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import AXIS, EVENTS, HOPS
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
+from twodiscs.model.seeds import job_seed, stream_seed
 from twodiscs_paper.configuration import scene_block, schema, yaml_files
 from twodiscs_paper.configuration.request import Quantities
 from twodiscs_paper.configuration.yaml_files import read

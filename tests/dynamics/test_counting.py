@@ -14,9 +14,8 @@ from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import WALL_Y1, WALL_Y2
 from twodiscs.dynamics.two import event_counts
-from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS, WALLS
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
 from twodiscs.theory.exact import mean_times
 
 PAPER = Scene(1.5, 1.0, 0.2)

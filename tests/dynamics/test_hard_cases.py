@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 from twodiscs.dynamics.law import two_disc_law
 from twodiscs.dynamics.paths import path_events
-from twodiscs.model.box import Box
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling.initial_states import states
 from twodiscs_paper.studies.single import advance
 

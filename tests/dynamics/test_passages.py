@@ -16,7 +16,6 @@ from scipy.stats import f
 from twodiscs.dynamics.many import many_hop_clusters as of_many
 from twodiscs.dynamics.two import hop_clusters
 from twodiscs.measure.transmission import cluster_coefficient, odd_clusters_per_passage, plateau
-from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs_paper.studies.passages.measure import by_time, of_order, passing_rate
 
@@ -117,7 +116,7 @@ def test_blocks_are_what_results_depend_on():
     # Hops between walls alternate: C = 1 + 2 n is +1 or −1 in every replica.
     np.testing.assert_array_equal(whole[:, 1], -whole[:, 0])
     assert events == sum(events for _, events in parts)
-    turned = Box.of(scene).turned().scene(0.24)
+    turned = scene.turned().with_radius(0.24)
     np.testing.assert_array_equal(
         whole, hop_clusters.hop_sums(turned, "vertical_hop", TIMES, 6, 11)[0]
     )

@@ -9,8 +9,7 @@ from marks import slow
 
 from twodiscs.analysis.tables import TrajectoryTable
 from twodiscs.dynamics import paths
-from twodiscs.model.box import Box
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling.initial_states import components
 from twodiscs.theory.exact import event_rate, mean_times
 

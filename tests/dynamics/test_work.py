@@ -10,8 +10,8 @@ from twodiscs.dynamics import paths, runs
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.two import strip, two_rates
-from twodiscs.model.box import Box
 from twodiscs.model.checks import LONGEST, SHORTEST, InputError
+from twodiscs.model.scene import Box
 from twodiscs.model.two_geometry import LEAST_DISTANCE
 from twodiscs.sampling.initial_states import require_initial_states
 from twodiscs.theory import exact
@@ -36,7 +36,7 @@ EFFECTS = (
 
 def scene_of(width, height, effects, share):
     """Return a scene at a ``share`` of the largest radius; InputError if there is none."""
-    box = Box(width, height, effects)
+    box = Box(width, height, **effects)
     return box.scene(share * box.largest_radius)
 
 
@@ -79,7 +79,7 @@ def test_the_work_of_a_replica_is_bounded(width, height, effects, share):
 
 @pytest.mark.parametrize("effects", [{"field": 1e4}, {"field": 1.0, "depth": 1.0}])
 def test_starts_that_are_too_rare_are_refused(effects):
-    box = Box(1.5, 1.0, effects)
+    box = Box(1.5, 1.0, **effects)
     scene = box.scene(box.last_radius * 0.999)
     for start in (lambda: runs.DynamicsRun(scene, {"any_wall": 0.1}, 1000, 1).run(),
                   lambda: require_initial_states(scene)):  # fmt: skip
@@ -124,7 +124,7 @@ def test_a_strip_is_no_longer_than_its_events_allow():
     """A large disc that just fits between two walls hits them all the time."""
     scene = Box(
         0.2015647165811781, 10.778181887736503,
-        {"depth": 0.3495539972883679, "mass_ratio": 109.0, "radius_ratio": 2.417163684327618},
+        depth=0.3495539972883679, mass_ratio=109.0, radius_ratio=2.417163684327618,
     ).scene(0.041694469802592275)  # fmt: skip
     found = strip.choose_strip(scene, "vertical_hop")
     assert 2 * found.time * exact.event_rate(scene) <= strip.EVENTS_OF_PATH

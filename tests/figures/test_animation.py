@@ -16,7 +16,7 @@ import twodiscs as td
 from twodiscs.analysis.tables import TrajectoryTable
 from twodiscs.figures import animation, style
 from twodiscs.figures.animation import AFTER, BEFORE, FRAME, HOP, LAST, MARKED
-from twodiscs.model.box import Box
+from twodiscs.model.scene import Box
 
 BOX, RADIUS = Box(1.5, 1.0), 0.24
 
@@ -139,7 +139,7 @@ def test_discs_are_where_the_trajectory_has_them(scene):
     Marks turn by the spins, whose times are those between two rows.
     """
     path = td.trajectory(scene, duration=60)
-    motion, circles, others = drawn(Box.of(scene), scene.radius, path.to_dict("records"))
+    motion, circles, others = drawn(scene.box, scene.radius, path.to_dict("records"))
     times = np.linspace(0, 60, 50)
     states = path.states_at(times)
     for disc in (1, 2):
@@ -165,8 +165,8 @@ def test_discs_are_where_the_trajectory_has_them(scene):
 @pytest.mark.parametrize(
     ("box", "radius"),
     [
-        (Box(1.0, 4.0, ROUGH), 0.125),
-        (Box(3.0, 1.0, ROUGH), 0.125),
+        (Box(1.0, 4.0, **ROUGH), 0.125),
+        (Box(3.0, 1.0, **ROUGH), 0.125),
         (Box(12.0, 1.0), 0.2),
         (Box(50.0, 1.0), 0.2),
         (Box(1e-5, 3e-6), 6e-7),
@@ -190,7 +190,7 @@ def test_headings_numbers_and_the_sign_of_a_hop_stand_clear(box, radius):
 
 def test_what_leaves_a_ring_comes_in_at_the_other_end():
     """Four discs: all in the box, an image of each a period away, no trace across the box."""
-    box = Box(1.5, 1.0, {"periodic": "x"}, discs=4)
+    box = Box(1.5, 1.0, periodic="x", discs=4)
     rows = TrajectoryTable.rows(box, 0.15, 1)
     motion, circles, others = drawn(box, 0.15, rows)
     beyond = 0
@@ -212,7 +212,7 @@ def test_what_leaves_a_ring_comes_in_at_the_other_end():
 
 def test_the_nearer_ball_is_in_front():
     path = td.trajectory(SCENES["combination"], seed=2)
-    box, radius = Box.of(path.scene), path.scene.radius
+    box, radius = path.scene.box, path.scene.radius
     motion, circles, others = drawn(box, radius, path.to_dict("records"))
     nearer = set()
     for time in motion.frames:

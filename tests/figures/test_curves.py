@@ -9,7 +9,7 @@ from figure_cases import BOXES, PAPER
 
 from twodiscs.figures import curves
 from twodiscs.figures.curves import limits
-from twodiscs.model.box import Box
+from twodiscs.model.scene import Box
 
 
 @pytest.mark.parametrize("box", BOXES.values(), ids=BOXES)
@@ -69,7 +69,7 @@ def test_limits_of_plain_boxes():
     ids=str,
 )
 def test_limits_of_scenes_with_effects(effects, expected):
-    box = Box(1.5, 1.0, effects)
+    box = Box(1.5, 1.0, **effects)
     *found, (largest, name) = limits(box)
     assert name == LARGEST
     assert largest == pytest.approx(box.largest_radius, rel=1e-14)

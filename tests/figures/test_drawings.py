@@ -8,7 +8,7 @@ from figure_cases import BOXES, PAPER, draw
 from matplotlib.patches import Arc, Circle, Wedge
 
 from twodiscs.figures import configuration_space, style
-from twodiscs.model.box import Box
+from twodiscs.model.scene import Box
 from twodiscs.theory import exact
 
 UPRIGHT = BOXES["tall"]

@@ -13,8 +13,8 @@ from figure_cases import BOXES, OTHERS, PAPER, bars, covered, draw, points, tabl
 from twodiscs.analysis.tables import quantity_of
 from twodiscs.figures import curves, panels, radius, style
 from twodiscs.figures.scene_figures import FIGURES
-from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
+from twodiscs.model.scene import Box
 from twodiscs.theory import exact, virial
 from twodiscs.theory.laws import small_radius_time
 from twodiscs_paper.studies.thresholds.measure import leading_law
@@ -31,7 +31,7 @@ QUANTITIES = {quantity for entry in FIGURES.values() for quantity in entry.needs
 
 def quantities(box):
     """Return the quantities that scenes in a box have."""
-    absent = {*EVENTS} - {*box.tiny.events}
+    absent = {*EVENTS} - {*box.events}
     return {quantity for quantity in QUANTITIES if quantity.rpartition("_")[0] not in absent}
 
 
@@ -101,8 +101,8 @@ def series(name, box, rows):
             ("main", ("right_wall", "top_wall"), virial.pressure_factor),
             ("beneath", VIRIAL, lambda scene, event: abs(virial.weights(scene)[event])),
         ):
-            known = panel == "main" or virial.weights(box.tiny) is not None
-            for event in [e for e in events if known and e in box.tiny.events]:
+            known = panel == "main" or virial.has_theorem(box)
+            for event in [e for e in events if known and e in box.events]:
 
                 def scale(r, factor=factor, event=event):
                     scene = box.scene(float(r))

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from twodiscs.analysis.tables import TrajectoryTable
 from twodiscs.figures import motion, style
-from twodiscs.model.box import Box
+from twodiscs.model.scene import Box
 
 BOX = Box(1.5, 1.0)
 
@@ -31,9 +31,9 @@ def test_the_panels_beneath_show_most_hops_and_a_hop_that_is_not_undone():
         (BOX, "x"),
         (Box(1.0, 1.0), "x"),
         (Box(1.0, 1.5), "y"),
-        (Box(1.5, 1.0, {"periodic": "x"}), "y"),
-        (Box(1.0, 1.5, {"periodic": "y"}), "x"),
-        (Box(1.0, 1.5, {"periodic": "x"}), "y"),
+        (Box(1.5, 1.0, periodic="x"), "y"),
+        (Box(1.0, 1.5, periodic="y"), "x"),
+        (Box(1.0, 1.5, periodic="x"), "y"),
     ],
     ids=str,
 )

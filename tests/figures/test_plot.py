@@ -16,7 +16,6 @@ from PIL import Image
 import twodiscs as td
 from twodiscs.figures import curves
 from twodiscs.figures.style import LOOKS
-from twodiscs.model.box import Box
 
 HOPS, COLLISIONS = "vertical_hop", "disc_collision"
 RADII = (0.1, 0.2, 0.24)
@@ -68,7 +67,7 @@ def test_two_boxes_are_drawn_in_axes_of_the_user(tmp_path):
         rows = [row for result in found for row in result.rows]
         due = [(row["radius"], row["estimate"], row["stderr"]) for row in rows]
         np.testing.assert_allclose(bars(axes, *look), due, rtol=1e-9)
-        exact = curves.exact_curves(Box.of(found[0].scene))[1][f"{HOPS}_time"]
+        exact = curves.exact_curves(found[0].scene.box)[1][f"{HOPS}_time"]
         drawn = [line.get_ydata() for line in axes.lines if line.get_color() == look[0]]
         assert any(np.array_equal(line, exact, equal_nan=True) for line in drawn)
 

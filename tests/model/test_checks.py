@@ -10,7 +10,6 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from twodiscs.model.box import Box, stream_seed
 from twodiscs.model.checks import (
     InputError,
     check_choice,
@@ -20,7 +19,8 @@ from twodiscs.model.checks import (
     check_number,
 )
 from twodiscs.model.effects import ABSENT, EFFECTS
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
+from twodiscs.model.seeds import stream_seed
 
 
 def test_what_is_allowed_is_returned_in_its_plain_type():
@@ -56,8 +56,8 @@ def test_odd_values_are_named_in_a_short_sentence(value):
     calls = [
         lambda: box.scene(value),
         lambda: Box(value, 1.0),
-        lambda: Box(1.5, 1.0, value),
-        *(lambda name=name: Box(1.5, 1.0, {name: value}) for name in ABSENT),
+        lambda: Box(1.5, value),
+        *(lambda name=name: Box(1.5, 1.0, **{name: value}) for name in ABSENT),
         *(lambda name=name: Scene(1.5, 1.0, 0.2, **{name: value}) for name in ABSENT),
         lambda: box.scene(0.2).is_possible(value),
         lambda: check_fraction("x", value),
@@ -74,8 +74,9 @@ NUMBERS = {name: effect for name, effect in EFFECTS.items() if effect.is_number}
 
 
 def test_effects_are_the_fields_of_a_scene_after_its_radius():
-    _, _, radius, *rest, discs = fields(Scene)
+    _, _, *rest, discs, radius = fields(Scene)
     assert (radius.name, discs.name, discs.default) == ("radius", "discs", 2)
+    assert fields(Box) == fields(Scene)[:-1]
     assert {field.name: field.default for field in rest} == ABSENT
     # The parameters of a scene are in the order of the declarations.
     assert [field.name for field in rest] == list(EFFECTS)

@@ -9,11 +9,10 @@ import pytest
 from scipy import ndimage
 from scipy.sparse import csgraph
 
-from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, EVENTS
 from twodiscs.model.many_geometry import arrangement, can_be_level, ergodic_components, is_ordered
 from twodiscs.model.many_geometry import largest_known_radius as largest_radius
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
 
 
 @pytest.mark.parametrize("width", [1.0, 1.02, 1.05, 1.1, 1.3, 1.5, 2.0, 2.9, 3.0, 4.0])
@@ -51,7 +50,7 @@ def test_arrangements_fit(discs, sides, periodic):
 
 def test_a_scene_of_more_discs():
     scene = Scene(1.5, 1.0, 0.15, discs=3)
-    box = Box.of(scene)
+    box = scene.box
     assert Box(**box.parameters()) == box
     assert box.scene(0.15) == scene == eval(repr(scene), {"Scene": Scene})
     assert box.parameters()["discs"] == 3

@@ -19,10 +19,9 @@ from hypothesis import strategies as st
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, WALLS
-from twodiscs.model.scene import REGIMES, Scene
+from twodiscs.model.scene import REGIMES, Box, Scene
 from twodiscs.model.two_geometry import ENERGY
 
 

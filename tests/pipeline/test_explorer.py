@@ -12,7 +12,7 @@ import pytest
 from browser import ABSENT, BROWSER, browser
 from checkout import REPOSITORY
 
-from twodiscs.model.box import Box
+from twodiscs.model.scene import Box
 from twodiscs.theory import exact
 from twodiscs_paper.pipeline.documents import explorer
 
@@ -57,7 +57,7 @@ def evaluated(expression, *scripts):
 # Formulas -----------------------------------------------------------------------------------------
 
 BOXES = [Box(*sides) for sides in ((1.5, 1), (3, 1), (1, 1), (2, 1), (0.7, 1.2), (0.5, 2), (40, 1))]
-MORE = [Box(*sides, effects) for effects in EFFECTS[1:] for sides in ((1.5, 1), (0.5, 2))]
+MORE = [Box(*sides, **effects) for effects in EFFECTS[1:] for sides in ((1.5, 1), (0.5, 2))]
 
 
 def radii(box):
@@ -83,7 +83,7 @@ def test_formulas_and_limits_in_javascript_are_those_of_the_package():
         "theory.js",
     )
     for (width, height, radius, effects), ours in zip(given, computed, strict=True):
-        box = Box(width, height, effects)
+        box = Box(width, height, **effects)
         assert (ours is not None) == box.fits(radius), (box, radius)
         if ours is None:
             continue
@@ -179,7 +179,7 @@ def test_motion_is_that_of_theory():
     found = evaluated(f"{given}.map({MOTION})", "theory.js", "dynamics.js")
     compared = 0
     for (sides, effects), seen in zip(MOVING, found, strict=True):
-        times = exact.mean_times(Box(*sides[:2], effects).scene(sides[2]))
+        times = exact.mean_times(Box(*sides[:2], **effects).scene(sides[2]))
         for event, measured in zip(explorer.COUNTED, seen["measured"], strict=True):
             if times[event] is None:
                 assert measured["count"] == 0, (effects, event)
@@ -215,7 +215,7 @@ def test_points_are_those_of_the_tables():
 
 @pytest.mark.parametrize("effects", EFFECTS[:4])
 def test_times_by_monte_carlo_know_the_conserved_momenta(effects):
-    scene = Box(1.5, 1, effects).scene(0.2)
+    scene = Box(1.5, 1, **effects).scene(0.2)
     common = {"radius": 0.2, "stderr": 1e-3, "bias": 0.0}
     areas = [
         common | {"quantity": f"{event}_area", "estimate": area, "exact": area}
@@ -415,7 +415,7 @@ def test_the_address_holds_the_scene_and_brings_it_back(driven):
 def test_effects_are_in_the_address_and_in_any_unit(driven):
     assert driven("seed=7", scenes=SCENES[2:]).look("state.periodic") == "x"
     page = driven("radius=4&seed=7&periodic=x&field=0.01&runs=2000", scenes=SCENES[2:])
-    assert_right(page, 2000, Box(30, 20, {"periodic": "x", "field": 0.01}), 4)
+    assert_right(page, 2000, Box(30, 20, periodic="x", field=0.01), 4)
     for text, taken in (("0.5", "0.5"), ("1e9", "30")):
         type_number(page, "friction", text)
         assert page.look("location.hash").endswith(f"&friction={taken}")

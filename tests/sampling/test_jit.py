@@ -124,7 +124,7 @@ def test_without_a_compiler_there_are_no_kernels_and_a_sentence_says_so():
 def test_kernels_start_without_linear_algebra_which_is_there_for_others():
     script = """
 import sys, numba
-from twodiscs.model.box import Box
+from twodiscs.model.scene import Box
 from twodiscs.dynamics import runs
 scene = Box(1.5, 1.0).scene(0.2)
 find_engine(scene).run_blocks(scene, ("any_wall",), 1, 0, 0, 1.0)

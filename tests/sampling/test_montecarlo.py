@@ -10,9 +10,8 @@ from marks import slow
 from sampling.uniformity import FALSE_ALARM
 from scipy.special import bdtr
 
-from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS, SHELLS
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
 

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
+from twodiscs.model.scene import Box
 from twodiscs.points.base import reached
 from twodiscs.sampling import rounds
 from twodiscs_paper.pipeline import points

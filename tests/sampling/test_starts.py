@@ -20,8 +20,7 @@ from sampling.uniformity import (
 from scipy.special import chdtrc
 
 from twodiscs.dynamics.two import strip
-from twodiscs.model.box import Box
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling.conditioned import conditioned_sampler, draw_separation
 from twodiscs.sampling.initial_states import COMPONENTS, draw_states, start_sampler, states
 from twodiscs.sampling.jit import compiled

@@ -13,8 +13,7 @@ import numpy as np
 import pytest
 from factory import written
 
-from twodiscs.model.box import Box
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
 from twodiscs.theory import laws
 from twodiscs_paper.studies.distributions import measure as distributions
 from twodiscs_paper.studies.distributions.study import DistributionsTable

@@ -15,9 +15,9 @@ from twodiscs.analysis.tables import MeanTimesTable
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.paths import path_events
 from twodiscs.figures import curves, style
-from twodiscs.model.box import Box, key, stream_seed
 from twodiscs.model.events import EVENTS, WALLS
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
+from twodiscs.model.seeds import key, stream_seed
 from twodiscs.sampling.initial_states import draw_states, start_sampler
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact

@@ -14,7 +14,7 @@ from factory import empty, of
 from twodiscs.dynamics.many.many_hop_clusters import cluster_sizes
 from twodiscs.dynamics.two.hop_clusters import HOPS_OF_BLOCK
 from twodiscs.measure.transmission import cluster_coefficient, odd_clusters_per_passage, plateau
-from twodiscs.model.box import Box
+from twodiscs.model.scene import Box
 from twodiscs.points.base import read_json
 from twodiscs_paper.studies.passages import brownian
 from twodiscs_paper.studies.passages import measure as passages

@@ -16,8 +16,7 @@ from scipy.stats import chi2
 
 from twodiscs.dynamics.two import strip
 from twodiscs.figures import style
-from twodiscs.model.box import Box
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.many import insertions
 from twodiscs.theory.virial import rates
@@ -115,7 +114,7 @@ def test_numbers_in_proportion_have_a_quotient_without_error():
 
 def test_two_discs_in_a_file_move_as_their_hops_are_correlated():
     """Against the exact rate, and D by correlations of hops, which another kernel counts."""
-    scene = Box(1.5, 1.0, {"periodic": "x"}).scene(0.21875)
+    scene = Box(1.5, 1.0, periodic="x").scene(0.21875)
     rows = list(measure.one_ring("ring", BOX, None, 2**18, 1))
     due = next(row for row in rows if row["quantity"] == "diffusion" and row["method"] == "hops")
     assert due["radius"] == scene.radius
@@ -306,7 +305,7 @@ def test_the_error_of_an_exponent_is_that_of_a_line_through_two_logarithms(inert
     effects = {} if inertia is None else {"moment_of_inertia": inertia}
     kappas, found = [Estimate(0.3, 0.02, 100), Estimate(0.2, 0.01, 100)], []
     for n, kappa in enumerate(kappas, 5):
-        scene = Box(1.5, 1.0, effects).scene(measure.radius_at(0.25, n))
+        scene = Box(1.5, 1.0, **effects).scene(measure.radius_at(0.25, n))
         found.append((measure.NearThreshold("a", scene, "horizontal_hop", n, 1), kappa))
     (row,) = measure.exponents(found)
     values = [k.value if inertia else 1 - k.value for k in kappas]

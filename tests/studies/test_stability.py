@@ -14,11 +14,10 @@ from mpmath import mpf
 
 from twodiscs.dynamics.law import Law, two_disc_law
 from twodiscs.figures import style
-from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.initial_states import states
 from twodiscs.theory import exact

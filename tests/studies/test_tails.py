@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from factory import written
 
-from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
+from twodiscs.model.scene import Box
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 from twodiscs_paper.studies.estimates import mean_of

@@ -8,7 +8,7 @@ from factory import empty, written
 
 from twodiscs.analysis.tables import MeanTimesTable
 from twodiscs.figures import style
-from twodiscs.model.box import Box
+from twodiscs.model.scene import Box
 from twodiscs.theory import exact
 from twodiscs_paper.studies.distributions.study import DistributionsTable
 from twodiscs_paper.studies.thresholds import figure

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from theory.antiderivatives import TURNED
 
-from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
 from twodiscs.theory import exact
 from twodiscs.theory.laws import small_radius_time, threshold_time
 from twodiscs_paper.studies.single import tail_constant

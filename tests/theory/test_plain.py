@@ -16,9 +16,8 @@ from theory.antiderivatives import (
     relative_error,
 )
 
-from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, SHELLS
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
 from twodiscs.theory import exact
 
 BOUND = 1e-13

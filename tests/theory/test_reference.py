@@ -6,9 +6,8 @@ import pytest
 from mpmath import mp
 from theory.antiderivatives import DIGITS, reference, reference_times, relative_error
 
-from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
 from twodiscs_paper.reference import QUANTITIES, MpScene, exact_numbers
 
 BOXES = [(1.5, 1.0), (1.0, 1.0), (2.0, 1.0), (1.0, 2.0), (3.0, 1.0), (1.0, 1.7), (1e6, 1), (1, 1e6)]

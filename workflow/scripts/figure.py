@@ -3,7 +3,7 @@
 from twodiscs_paper.pipeline.job import start  # isort: split
 
 from twodiscs.figures import animation, draw, style
-from twodiscs.model.box import Box
+from twodiscs.model.scene import Box
 from twodiscs.points.base import digest
 from twodiscs_paper.catalogue import STUDY_FIGURES, read_table
 

@@ -4,7 +4,7 @@ import time
 
 import twodiscs.sampling.jit  # noqa: F401 - start saves collections of what is imported before it
 from twodiscs.dynamics.stages import STAGES
-from twodiscs.model.box import Box, parameters_of
+from twodiscs.model.scene import Scene
 from twodiscs.points.base import file_content, write_json
 from twodiscs_paper.pipeline.job import start
 from twodiscs_paper.pipeline.points import check_coverage, read_seconds, read_shards
@@ -12,7 +12,7 @@ from twodiscs_paper.pipeline.points import check_coverage, read_seconds, read_sh
 start(snakemake.log[0])
 wildcards, paths = snakemake.wildcards, snakemake.input.get("shards", [])
 params, stage = snakemake.params, STAGES[snakemake.wildcards.stage]
-scene = Box(**params.box).scene(float(wildcards.radius))
+scene = Scene(**params.box, radius=float(wildcards.radius))
 run, before = stage.run(scene, params.work), time.process_time()
 if part := wildcards.get("part"):
     first, stop = int(wildcards.first), int(wildcards.stop)
@@ -23,6 +23,6 @@ elif paths:
     parts = run.point(ranges).parts
 else:
     parts = run.run().parts
-content = file_content(stage.call, parameters_of(scene), params.work, parts)
+content = file_content(stage.call, scene.parameters(), params.work, parts)
 of_shards = sum(read_seconds(path) or 0.0 for path in paths)
 write_json(snakemake.output.point, content, round(time.process_time() - before + of_shards, 2))

@@ -2,7 +2,7 @@
 
 import inspect
 
-from twodiscs.model.box import Box
+from twodiscs.model.scene import Box
 from twodiscs_paper.catalogue import STUDY_TABLES, read_table
 from twodiscs_paper.pipeline.job import start
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.dynamics.stages import STAGES
-from twodiscs.model.box import Box
+from twodiscs.model.scene import Box
 from twodiscs_paper.pipeline.job import start
 from twodiscs_paper.pipeline.points import read_point, read_seconds
 

@@ -22,10 +22,10 @@ import numpy as np
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import RETURNS, nearest_power_of_two
 from twodiscs.dynamics.two import strip
-from twodiscs.model.box import job_seed
 from twodiscs.model.checks import InputError, format_number
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene, why_absent
+from twodiscs.model.seeds import job_seed
 from twodiscs.points.dynamics_point import DynamicsPoint, simulated_events
 from twodiscs.points.intervals_point import BINS, GRAIN, IntervalsPoint, wide_edges
 from twodiscs.sampling.initial_states import require_initial_states

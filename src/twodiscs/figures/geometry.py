@@ -10,7 +10,7 @@ from matplotlib.ticker import MultipleLocator
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.curves import limits
 from twodiscs.figures.style import BLACK, BLUE, COLUMN, GREY, VERMILLION, new_figure
-from twodiscs.model.box import Box
+from twodiscs.model.scene import Box
 
 # The billiard -------------------------------------------------------------------------------------
 

@@ -24,9 +24,8 @@ from twodiscs.measure.observe import Observed
 from twodiscs.measure.scan import Scan
 from twodiscs.measure.trajectory import require_all_rows
 from twodiscs.measure.transmission import Transmission, box_time
-from twodiscs.model.box import Box, scene_of
 from twodiscs.model.checks import InputError, check_choice, checked_call
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
 from twodiscs.theory import laws
 
 if TYPE_CHECKING:
@@ -196,9 +195,7 @@ def _read(result):
 
 def _read_scene(result):
     """Return what ``_read`` returns for a ``Scene`` or a ``Box``, else None."""
-    if isinstance(result, Box):
-        return result, [], [*BOX_DRAWINGS], None
-    return (Box.of(result), [], [*BOX_DRAWINGS], None) if isinstance(result, Scene) else None
+    return (result, [], [*BOX_DRAWINGS], None) if isinstance(result, Box) else None
 
 
 def _read_measurements(result):
@@ -208,7 +205,7 @@ def _read_measurements(result):
     kinds = (Measurements, Intervals)
     if not results or not any(all(isinstance(one, kind) for one in results) for kind in kinds):
         return None
-    boxes = {Box.of(item.scene) for item in results}
+    boxes = {item.scene.box for item in results}
     if len(boxes) > 1:
         raise InputError(
             "result must be of one box, with the same effects; for several boxes call plot with "
@@ -244,7 +241,7 @@ def _read_trajectory(result):
     scene = scene_or_none(result)
     if scene is None or not hasattr(result, "iterrows"):
         return None
-    return Box.of(scene), trajectory_rows(result), ["hopping_trajectory"], scene.radius
+    return scene, trajectory_rows(result), ["hopping_trajectory"], scene.radius
 
 
 def _exact_rows(table):
@@ -313,7 +310,7 @@ def animate(trajectory: pd.DataFrame, path: str | PathLike[str]) -> None:
     if scene is None or not hasattr(trajectory, "iterrows"):
         raise InputError(f"trajectory must be a result of trajectory(), not {trajectory!r:.80}")
     with style.context():
-        animation.animate(Box.of(scene), scene.radius, trajectory_rows(trajectory), [path])
+        animation.animate(scene, scene.radius, trajectory_rows(trajectory), [path])
 
 
 # Curves over time ---------------------------------------------------------------------------------
@@ -327,7 +324,7 @@ def _panel(scene, more=""):
     """Return (figure, axes); the heading has the box, the radius, ``more`` and effects."""
     figure = new_figure(HEIGHT, layout="constrained")
     axes = figure.subplots()
-    panels.title(axes, "", Box.of(scene), panels.radius_text(scene.radius) + more)
+    panels.title(axes, "", scene, panels.radius_text(scene.radius) + more)
     return figure, axes
 
 
@@ -393,7 +390,7 @@ def scene_or_none(result):
     """Return the ``Scene`` of a result or a trajectory; None for anything else."""
     if isinstance(attributes := getattr(result, "attrs", None), dict):
         try:
-            return scene_of(attributes["scene"])
+            return Scene(**attributes["scene"])
         except (AttributeError, InputError, KeyError, TypeError):
             return None
     scene = result if isinstance(result, Scene) else getattr(result, "scene", None)

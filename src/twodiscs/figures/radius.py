@@ -229,7 +229,7 @@ LAST_PRESSURE = 0.12
 def draw_pressure(box, rows):
     """Draw the pressures from the rows of mean_times.csv, and the terms of the virial."""
     radii = np.concatenate([np.append(branch, np.nan) for branch in curves.branches(box)])
-    summed = virial.weights(box.tiny) is not None
+    summed = virial.has_theorem(box)
     events = [event for event in WALLS if any(row["event"] == event for row in rows)]
     series = [
         _pressure_series(

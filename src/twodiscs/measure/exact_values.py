@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Unpack
 
 from twodiscs.analysis.tables import TheoryTable
-from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, check_length, checked_call, did_you_mean, quote
 from twodiscs.model.events import EVENTS
+from twodiscs.model.scene import Box
 from twodiscs.theory import exact as theory
 
 if TYPE_CHECKING:
@@ -158,7 +158,7 @@ def exact_table(
     """
     import pandas as pd
 
-    box = box_with(width, height, **effects)
+    box = Box(width, height, **effects)
     scenes, refused = scenes_of(box, radii)
     rows = [
         {
@@ -179,11 +179,6 @@ def exact_table(
     frame[known] = frame[known].astype(float)
     frame.attrs["box"] = box.parameters()
     return frame
-
-
-def box_with(width, height, discs=2, **effects):
-    """Return the ``Box`` of sides, ``discs`` and effects, which are all keywords here."""
-    return Box(width, height, effects, discs)
 
 
 def scenes_of(box, radii):

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import twodiscs
 from twodiscs.analysis.tables import SCENE_TABLES
-from twodiscs.model.box import Box, scene_of
 from twodiscs.model.checks import InputError, checked_call, quote
+from twodiscs.model.scene import Box, Scene
 from twodiscs.points.base import MALFORMED, digest, read_json, restore_arrays
 from twodiscs.sampling.rounds import Ended
 
@@ -102,7 +102,7 @@ def _box(configuration):
             {name: value if name == "periodic" else float(value) for name, value in block.items()}
             for block in (scene["box"], scene.get("effects", {}))
         )
-        return Box.configured(sides, effects, scene.get("discs", 2))
+        return Box(**sides, **effects, discs=scene.get("discs", 2))
     except (InputError, AttributeError, KeyError, TypeError, ValueError):
         return None
 
@@ -131,7 +131,7 @@ def from_dict(content):
 
         refused = {float(radius): "".join(why) for radius, why in content["refused"]}
         found = Scan(map(from_dict, content["results"]), refused)
-        alike = {(one.kind, repr(Box.of(one.scene)), repr(one.settings)) for one in found}
+        alike = {(one.kind, repr(one.scene.box), repr(one.settings)) for one in found}
         is_right = len(alike) == 1 and found[0].kind == "simulate"
         known = {"results": content["results"]}
     else:
@@ -144,7 +144,7 @@ def from_dict(content):
 
             make = MAKERS[content["kind"]]
         settings, parts = content["settings"], Ended(restore_arrays(content["parts"]))
-        found = make(scene_of(content["scene"]), **settings, resume_from=parts)
+        found = make(Scene(**content["scene"]), **settings, resume_from=parts)
         # A point of a build has some of the settings, maybe in another order.
         is_right, known = settings.keys() <= found.settings.keys(), {"settings": settings}
     made = found.to_dict() | known | {"twodiscs": content["twodiscs"]}

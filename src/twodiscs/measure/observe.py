@@ -13,7 +13,6 @@ from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import open_block_kicks
 from twodiscs.dynamics.paths import MOST_EVENTS
 from twodiscs.measure.result import Immutable, note_of_number, progress_bar
-from twodiscs.model.box import job_seed
 from twodiscs.model.checks import (
     InputError,
     as_list,
@@ -24,6 +23,7 @@ from twodiscs.model.checks import (
 )
 from twodiscs.model.many_geometry import LARGE
 from twodiscs.model.scene import Scene, check_scene
+from twodiscs.model.seeds import job_seed
 from twodiscs.sampling.initial_states import MOST_NUMBERS, as_records, components, states
 from twodiscs.sampling.rounds import map_in_threads
 

@@ -10,7 +10,6 @@ from os import PathLike
 from typing import ClassVar, Self
 
 import twodiscs
-from twodiscs.model.box import parameters_of
 from twodiscs.model.checks import InputError, quote
 from twodiscs.model.scene import Scene
 from twodiscs.points.base import file_content, write_json
@@ -145,7 +144,7 @@ class Result(Printed):
         >>> content["kind"], content["settings"]["seed"]
         ('simulate', 7)
         """
-        return file_content(self.kind, parameters_of(self.scene), self.settings, self.parts)
+        return file_content(self.kind, self.scene.parameters(), self.settings, self.parts)
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write the result to a JSON file that ``load_result`` reads.

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Unpack, overload
 
-from twodiscs.measure.exact_values import box_with, scenes_of
+from twodiscs.measure.exact_values import scenes_of
 from twodiscs.measure.measurements import Measurements, rows_by_quantity, run_simulation
 from twodiscs.measure.result import Result
-from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, checked_call, quote
+from twodiscs.model.scene import Box
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -47,7 +47,7 @@ class Scan(Result, Sequence[Measurements]):
 
     def __init__(self, results, refused=None):
         self.results = sorted(results, key=lambda result: result.scene.radius)
-        self.box, self.settings = Box.of(self.results[0].scene), self.results[0].settings
+        self.box, self.settings = self.results[0].scene.box, self.results[0].settings
         self.refused = dict(refused or {})
 
     @property
@@ -177,7 +177,7 @@ def scan(
     >>> [abs(part["any_wall_time"].z) < 5 for part in found]
     [True, True]
     """
-    box = box_with(width, height, **effects)
+    box = Box(width, height, **effects)
     scenes, refused = scenes_of(box, radii)
     if len({scene.radius for scene in scenes}) < len(scenes):
         raise InputError(

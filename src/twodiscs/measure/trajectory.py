@@ -11,9 +11,9 @@ import pandas as pd
 from twodiscs.analysis.tables import trajectory_columns
 from twodiscs.dynamics.paths import follow_trajectory
 from twodiscs.measure.result import progress_bar
-from twodiscs.model.box import job_seed, parameters_of, scene_of
 from twodiscs.model.checks import InputError, as_list, checked_call, quote, writing_to
 from twodiscs.model.scene import Scene
+from twodiscs.model.seeds import job_seed
 from twodiscs.sampling.initial_states import components
 
 
@@ -58,7 +58,7 @@ class Trajectory(pd.DataFrame):
                 "trajectory must have a scene in its attrs, but has none; two trajectories "
                 "together keep it only if it is the same"
             )
-        return scene_of(self.attrs["scene"])
+        return Scene(**self.attrs["scene"])
 
     def states_at(self, times: float | Iterable[float]) -> np.ndarray:
         """Return the states at some times, exactly.
@@ -332,5 +332,5 @@ def trajectory(
     by_disc = sorted(components(scene), key=lambda name: int(name[1:]))
     names = dict.fromkeys((*trajectory_columns(scene.discs), *by_disc))
     frame = Trajectory({name: known[name] for name in names if name in known})
-    frame.attrs["scene"] = parameters_of(scene)
+    frame.attrs["scene"] = scene.parameters()
     return frame

@@ -13,10 +13,10 @@ from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK
 from twodiscs.dynamics.two.hop_clusters import LARGEST_CLUSTER, SUMS
 from twodiscs.measure.result import Result, note_of_number, progress_bar
-from twodiscs.model.box import key, stream_name, stream_seed
 from twodiscs.model.checks import check_choice, check_count, checked_call
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import Scene, check_scene
+from twodiscs.model.seeds import key, stream_name, stream_seed
 from twodiscs.points.base import reached
 from twodiscs.points.estimates import MIN_EVENTS, Estimate
 from twodiscs.sampling.rounds import fixed, run_all_in_rounds

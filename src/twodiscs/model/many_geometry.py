@@ -18,30 +18,40 @@ LARGE, LEAST_SIDE = 20, 1 + 2.0**-20
 MOST_DIGITS = 150
 
 
+def check_box(box):
+    """Raise ``InputError`` for a ``Box`` with an invalid effect, or in an unfit unit of length."""
+    if other := [name for name in box.effects if name not in POSSIBLE]:
+        raise InputError(
+            f"{other[0]} must be left out with {box.discs} discs, because more than two discs "
+            f"have no effects except {', '.join(POSSIBLE)}, not {box.effects[other[0]]!r}"
+        )
+    if box.periodic not in ("", "x"):
+        raise InputError(
+            f"periodic must be left out or x for more than two discs, not {box.periodic!r}"
+        )
+    _check_prism(box, box.width * box.height)
+
+
+def _check_prism(box, area, where=""):
+    """Raise ``InputError`` if the volume of all centres in ``area`` each is out of range."""
+    size = box.discs * math.log10(area)
+    if box.discs <= MOST_WITH_VOLUME and abs(size) > MOST_DIGITS:
+        raise InputError(
+            f"width and height must be in a unit of length in which the prism of all centres of "
+            f"{box.discs} discs is between 1e-{MOST_DIGITS} and 1e{MOST_DIGITS}, not "
+            f"{box.width!r} and {box.height!r}{where}"
+        )
+
+
 def check(scene):
-    """Raise ``InputError`` for an invalid ``Scene``: effects, or a radius that does not fit."""
-    if other := [name for name in scene.effects if name not in POSSIBLE]:
-        raise InputError(
-            f"{other[0]} must be left out with {scene.discs} discs, because more than two discs "
-            f"have no effects except {', '.join(POSSIBLE)}, not {scene.effects[other[0]]!r}"
-        )
-    if scene.periodic not in ("", "x"):
-        raise InputError(
-            f"periodic must be left out or x for more than two discs, not {scene.periodic!r}"
-        )
+    """Raise ``InputError`` for a ``Scene`` with a radius that does not fit."""
     if scene.radius >= scene.largest_radius:
         raise InputError(
             f"radius {scene.radius!r} does not fit: {scene.discs} discs in a box of "
             f"{scene.width!r} × {scene.height!r} need a radius below {scene.largest_radius!r}, as "
             "far as arrangements are known here"
         )
-    size = scene.discs * math.log10(scene.range_x * scene.range_y)
-    if scene.discs <= MOST_WITH_VOLUME and abs(size) > MOST_DIGITS:
-        raise InputError(
-            f"width and height must be in a unit of length in which the prism of all centres of "
-            f"{scene.discs} discs is between 1e-{MOST_DIGITS} and 1e{MOST_DIGITS}, not "
-            f"{scene.width!r} and {scene.height!r} at radius {scene.radius!r}"
-        )
+    _check_prism(scene, scene.range_x * scene.range_y, f" at radius {scene.radius!r}")
 
 
 def largest_radius(scene):

@@ -1,4 +1,6 @@
-"""The scene: hard discs in a rectangular box, two by default, and its geometry.
+"""The box and the scene: hard discs in a rectangle, two by default, and their geometry.
+
+A ``Box`` has all that does not depend on the radius. A ``Scene`` is a box with a radius.
 
 Coordinates have their origin at the centre of the box. Lengths are in the unit of the box, disc 1
 has mass one and the total energy is 1/2. The speed of disc 1 is then at most one, and times are
@@ -32,18 +34,439 @@ from twodiscs.model.checks import (
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS
 from twodiscs.model.geometry import MANY_DISCS, TWO_DISCS
+from twodiscs.model.many_geometry import check_box
 from twodiscs.model.two_geometry import ENERGY
 
-#: The most kicks by friction in the time that a disc of speed 1 takes along the shortest side.
-MOST_KICKS = 1e6
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Self
 
 #: The regimes, named by the hops that are open.
 REGIMES = ("all-hops", "vertical-hops", "horizontal-hops", "no-hops")
 
+#: The most kicks by friction in the time that a disc of speed 1 takes along the shortest side.
+MOST_KICKS = 1e6
+
+#: Relative distance below the last radius at which a disc nearly fills the box.
+NEARLY = 1e-6
+
 
 @checked_call
 @dataclass(frozen=True)
-class Scene:
+class Box:
+    """A box with its effects and its number of discs, for any radius.
+
+    Parameters
+    ----------
+    width, height : float
+        Sides of the box, in length, from 1e-60 to 1e60.
+    depth, radius_ratio, mass_ratio, periodic, field, moment_of_inertia, friction, discs : optional
+        The effects of ``Scene``, and its number of discs.
+
+    Raises
+    ------
+    InputError
+        For a value of another type or range, and for effects that cannot be combined.
+
+    Examples
+    --------
+    >>> round(td.Box(1.5, 1.0).largest_radius, 12)
+    0.383974596216
+    >>> round(td.Box(1.5, 1.0, periodic="x").largest_radius, 12)
+    0.390625
+    """
+
+    width: float
+    height: float
+    _: KW_ONLY
+    depth: float | None = None
+    radius_ratio: float = 1.0
+    mass_ratio: float = 1.0
+    periodic: str | Sequence[str] = ""
+    field: float = 0.0
+    moment_of_inertia: float | None = None
+    friction: float = 0.0
+    discs: int = 2
+
+    #: The lengths that have no default.
+    LENGTHS = ("width", "height")
+
+    def __post_init__(self):
+        for name in self.LENGTHS:
+            self._settle(name, check_length(name, getattr(self, name)))
+        if isinstance(self.periodic, list | tuple) and all(a in list("xyz") for a in self.periodic):
+            self._settle("periodic", "".join(self.periodic))
+        for name, effect in EFFECTS.items():
+            self._settle(name, effect.checked(getattr(self, name)))
+        self._check_effects()
+        self._settle("discs", check_integer("discs", self.discs, 2, MOST_DISCS))
+        if self.discs > 2:
+            check_box(self)
+
+    def _settle(self, name, value):
+        object.__setattr__(self, name, value)
+
+    def _check_effects(self):
+        if self.depth is not None:
+            # Six lengths are multiplied.
+            ends = SHORTEST**0.75, LONGEST**0.75
+            for name in ("depth", *self.LENGTHS):
+                self._settle(name, check_number(name, getattr(self, name), *ends))
+        repeated = len(set(self.periodic)) != len(self.periodic)
+        if repeated or not set(self.periodic) <= {*self.axes}:
+            allowed = "x and y (z needs a depth)" if self.depth is None else "x, y and z"
+            raise InputError(
+                f"periodic must be some of the axes {allowed}, each once and no other letter, not "
+                f"{quote(self.periodic)}"
+            )
+        self._settle("periodic", "".join(sorted(self.periodic)))
+        if self.field and "y" in self.periodic:
+            raise InputError(
+                "field must be 0 if y is periodic, because the discs would fall for ever, not "
+                f"{self.field!r}"
+            )
+        if self.moment_of_inertia is not None:
+            self._check_roughness()
+        if self.friction * self.shortest > MOST_KICKS:
+            raise InputError(
+                f"friction must not exceed {MOST_KICKS:g} over the shortest side, which is "
+                f"{MOST_KICKS / self.shortest!r}, not {self.friction!r}"
+            )
+
+    def _check_roughness(self):
+        if self.depth is not None:
+            where = "in a box with a depth (rough discs are for the plane)"
+        elif not self.walled:
+            where = "in a box without walls (the spins would keep I1 ω1/r1 − I2 ω2/r2 for ever)"
+        else:
+            return
+        raise InputError(
+            f"moment_of_inertia must be left out {where}, not {self.moment_of_inertia!r}"
+        )
+
+    def __getstate__(self):
+        """Return only the fields: a copy does not depend on cached properties."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    def __repr__(self):
+        lengths = [repr(getattr(self, name)) for name in self.LENGTHS]
+        named = [f"{name}={value!r}" for name, value in self.calls_for.items()]
+        return f"{type(self).__name__}({', '.join([*lengths, *named])})"
+
+    def parameters(self) -> dict[str, object]:
+        """Return the box as plain values, from which ``Box(**parameters)`` makes it again.
+
+        Those of a scene include its radius, and ``Scene(**parameters)`` makes it again. Absent
+        effects and two discs are left out. The parameters of a job in a plain box, and its results,
+        then do not change if effects are added to the package.
+
+        Returns
+        -------
+        dict
+            {name: value}.
+
+        Examples
+        --------
+        >>> td.Box(1.5, 1.0, field=0.5).parameters()
+        {'width': 1.5, 'height': 1.0, 'field': 0.5}
+        """
+        return {name: getattr(self, name) for name in self.LENGTHS} | self.calls_for
+
+    @property
+    def effects(self) -> dict[str, object]:
+        """The effects, {name: value} in the order of the fields."""
+        return {
+            name: getattr(self, name)
+            for name, default in ABSENT.items()
+            if getattr(self, name) != default
+        }
+
+    @property
+    def has_effects(self) -> bool:
+        """Whether there is any effect."""
+        return bool(self.effects)
+
+    @property
+    def family(self) -> str:
+        """The family: "plain" (two equal, smooth discs between walls), "effects" or "many"."""
+        if self.discs > 2:
+            return "many"
+        return "effects" if self.has_effects else "plain"
+
+    @property
+    def _geometry(self):
+        """The ``Geometry`` of the discs."""
+        return MANY_DISCS if self.discs > 2 else TWO_DISCS
+
+    @property
+    def calls_for(self):
+        """Everything beyond two equal, smooth discs between walls, {name: value}.
+
+        These are its effects, and ``discs`` if there are more than two.
+        """
+        return {n: getattr(self, n) for n, usual in USUAL.items() if getattr(self, n) != usual}
+
+    @property
+    def is_plain(self):
+        """Whether it is two equal, smooth discs between walls."""
+        return not self.calls_for
+
+    def turned(self) -> Self:
+        """Return the same box or scene with x and y exchanged.
+
+        Returns
+        -------
+        Box or Scene
+            It is turned by a quarter.
+
+        Raises
+        ------
+        InputError
+            In a field, which is along y.
+
+        Examples
+        --------
+        >>> td.Box(1.5, 1.0).turned()
+        Box(1.0, 1.5)
+        """
+        if self.field:
+            raise InputError(f"field must be 0 to exchange the axes, not {self.field!r}")
+        periodic = self.periodic.translate(str.maketrans("xy", "yx"))
+        return replace(self, width=self.height, height=self.width, periodic=periodic)
+
+    @cached_property
+    def axes(self) -> tuple[str, ...]:
+        """The names of the axes: x, y and, for balls, z."""
+        return ("x", "y") if self.depth is None else ("x", "y", "z")
+
+    @cached_property
+    def walled(self) -> tuple[str, ...]:
+        """The axes with walls."""
+        return tuple(axis for axis in self.axes if axis not in self.periodic)
+
+    @cached_property
+    def conserved(self) -> tuple[str, ...]:
+        """The axes along which the total momentum is conserved; it is 0 in the ensemble.
+
+        These are the periodic axes, unless there are rough walls, which change the momentum along
+        them.
+        """
+        return tuple(self.periodic) if self.moment_of_inertia is None else ()
+
+    @cached_property
+    def velocity_components(self) -> int:
+        """D: the number of components of velocities and spins, minus the conserved momenta."""
+        spin = self.moment_of_inertia is not None
+        return self.discs * (len(self.axes) + spin) - len(self.conserved)
+
+    @cached_property
+    def masses(self) -> tuple[float, ...]:
+        """The masses of all discs."""
+        return 1.0, *(self.mass_ratio,) * (self.discs - 1)
+
+    def side(self, axis):
+        """Return the side of the box along ``axis``."""
+        return {"x": self.width, "y": self.height, "z": self.depth}[axis]
+
+    @property
+    def sides(self) -> tuple[float, ...]:
+        """The sides of the box: width, height and maybe depth."""
+        return tuple(map(self.side, self.axes))
+
+    @property
+    def shortest(self) -> float:
+        """The shortest side."""
+        return min(self.sides)
+
+    @property
+    def noun(self):
+        """The word for two of them: discs or balls."""
+        return "discs" if self.depth is None else "balls"
+
+    @property
+    def box_text(self):
+        """The sides of the box as text, "1.5 × 1.0" say."""
+        return " × ".join(repr(self.side(axis)) for axis in self.axes)
+
+    def unit(self, quantity: str) -> str:
+        """Return the unit of a quantity.
+
+        Parameters
+        ----------
+        quantity : str
+            A name that ends in "volume" or "area"; any other is a time.
+
+        Returns
+        -------
+        str
+            The unit, such as "length⁴".
+
+        Examples
+        --------
+        >>> scene.unit("any_wall_area")
+        'length³'
+        """
+        dimensions = self.discs * len(self.axes)
+        powers = {"volume": dimensions, "area": dimensions - 1}
+        kind = quantity.rpartition("_")[2]
+        if kind not in powers:
+            return "time"
+        return "length" + "".join("⁰¹²³⁴⁵⁶⁷⁸⁹"[int(digit)] for digit in str(powers[kind]))
+
+    @cached_property
+    def identical(self):
+        """Whether the discs are equal, so that they may be exchanged."""
+        return self.radius_ratio == self.mass_ratio == 1
+
+    @cached_property
+    def events(self) -> tuple[str, ...]:
+        """The ``EVENTS`` that exist in the box: hops and walls need walls along their axis.
+
+        They include events that are impossible at some radii.
+        """
+        return tuple(event.name for event in DECLARED.values() if self._has_place(event))
+
+    def _has_place(self, event):
+        if event.axis:
+            return event.axis in self.walled
+        return event.kind == "collision" or bool(self.walled)
+
+    # Radii -------------------------------------------------------------------------------------
+
+    def scene(self, radius: float) -> Scene:
+        """Return the scene at a radius.
+
+        Parameters
+        ----------
+        radius : float
+            The radius of disc 1, in length.
+
+        Returns
+        -------
+        Scene
+            The scene.
+
+        Raises
+        ------
+        InputError
+            If the discs do not fit or cannot move.
+
+        Examples
+        --------
+        >>> td.Box(1.5, 1.0).scene(0.3).regime
+        'vertical-hops'
+        """
+        return Scene(self.width, self.height, radius, **self.calls_for)
+
+    def fits(self, radius: float) -> bool:
+        """Return whether there is a scene at a radius.
+
+        Parameters
+        ----------
+        radius : float
+            The radius of disc 1, in length.
+
+        Returns
+        -------
+        bool
+            True if the discs fit and can move.
+
+        Examples
+        --------
+        >>> td.Box(1.5, 1.0).fits(0.39)
+        False
+        """
+        radius = check_length("radius", radius)
+        try:
+            self.scene(radius)
+        except InputError:
+            return False
+        return True
+
+    @cached_property
+    def largest_radius(self) -> float:
+        """The radius of disc 1 at which the discs just fit.
+
+        For more than three discs it belongs to the densest arrangement that is known here. In a
+        channel so narrow that only neighbours can touch, no arrangement is denser.
+        """
+        return self._geometry.largest_radius(self)
+
+    @cached_property
+    def last_radius(self) -> float:
+        """The radius from which on there is no scene: ``largest_radius``, or less in a field."""
+        return self.end(lambda scene: True) if self.effects else self.largest_radius
+
+    def end(self, holds):
+        """Return the radius from which on there is no scene, or ``holds(scene)`` is false.
+
+        ``holds`` is true for small discs and false for larger ones. The radius is found by
+        bisection, to the last digit, if it is above 2⁻⁶⁰ of the shorter side.
+        """
+        low, high = 0.0, self.shortest / 2
+        for _ in range(60):
+            middle = (low + high) / 2
+            try:
+                fits = holds(self.scene(middle))
+            except InputError:
+                fits = False
+            low, high = (middle, high) if fits else (low, middle)
+        return high
+
+    def threshold(self, event: str) -> float | None:
+        """Return the radius from which on an event is impossible.
+
+        For hops of equal discs it is w/4 (vertical) or h/4 (horizontal), unless the discs jam
+        before. For events that stay possible it is the last radius.
+
+        Parameters
+        ----------
+        event : str
+            One of ``EVENTS``.
+
+        Returns
+        -------
+        float or None
+            In length; None if the event is always impossible.
+
+        Examples
+        --------
+        >>> td.Box(1.5, 1.0).threshold("horizontal_hop")
+        0.25
+        """
+        if check_choice("event", event, EVENTS) not in HOPS:
+            # In a field maybe only a large disc can touch the top.
+            nearly = self.scene(self.last_radius * (1 - NEARLY))
+            return self.last_radius if nearly.is_possible(event) else None
+        if not self.is_plain:
+            has_place = event in self.events
+            return self.end(lambda scene: scene.is_possible(event)) if has_place else None
+        return min(self.blocking_radius(event), self.largest_radius)
+
+    def blocking_radius(self, hop):
+        """Return w/4 or h/4, at which ``hop`` becomes blocked in a plain box if the discs fit.
+
+        Discs that pass each other on y1 = y2 are side by side along x, and need four radii there.
+        """
+        return (self.width if AXIS[hop] == "y" else self.height) / 4
+
+    @cached_property
+    def thresholds(self) -> tuple[float, ...]:
+        """The radii below the last one at which a hop becomes blocked, ascending, without repeats.
+
+        Without effects they are h/4 and w/4, if discs of these radii fit.
+        """
+        limits = {self.threshold(hop) for hop in HOPS if hop in self.events}
+        return tuple(sorted(radius for radius in limits if radius < self.last_radius))
+
+
+#: The values of keywords that are not given, {name: value}.
+USUAL = {field.name: field.default for field in fields(Box)[2:]}
+
+
+@checked_call
+@dataclass(frozen=True, repr=False)
+class Scene(Box):
     """Hard discs in a box, two of them by default, in which disc 1 has mass 1.
 
     The total energy is 1/2. Each effect is absent by default. More than two discs are equal, in the
@@ -90,78 +513,13 @@ class Scene:
     'vertical-hops'
     """
 
-    width: float
-    height: float
     radius: float
-    _: KW_ONLY
-    depth: float | None = None
-    radius_ratio: float = 1.0
-    mass_ratio: float = 1.0
-    periodic: str | Sequence[str] = ""
-    field: float = 0.0
-    moment_of_inertia: float | None = None
-    friction: float = 0.0
-    discs: int = 2
+
+    LENGTHS = ("width", "height", "radius")
 
     def __post_init__(self):
-        for name in ("width", "height", "radius"):
-            object.__setattr__(self, name, check_length(name, getattr(self, name)))
-        if isinstance(self.periodic, list | tuple) and all(a in list("xyz") for a in self.periodic):
-            object.__setattr__(self, "periodic", "".join(self.periodic))
-        for name, effect in EFFECTS.items():
-            object.__setattr__(self, name, effect.checked(getattr(self, name)))
-        self._check_effects()
-        object.__setattr__(self, "discs", check_integer("discs", self.discs, 2, MOST_DISCS))
+        super().__post_init__()
         self._geometry.check(self)
-
-    def _check_effects(self):
-        def settle(name, value):
-            object.__setattr__(self, name, value)
-
-        if self.depth is not None:
-            # Six lengths are multiplied.
-            for name in ("depth", "width", "height", "radius"):
-                settle(name, check_number(name, getattr(self, name), SHORTEST**0.75, LONGEST**0.75))
-        repeated = len(set(self.periodic)) != len(self.periodic)
-        if repeated or not set(self.periodic) <= {*self.axes}:
-            allowed = "x and y (z needs a depth)" if self.depth is None else "x, y and z"
-            raise InputError(
-                f"periodic must be some of the axes {allowed}, each once and no other letter, not "
-                f"{quote(self.periodic)}"
-            )
-        settle("periodic", "".join(sorted(self.periodic)))
-        if self.field and "y" in self.periodic:
-            raise InputError(
-                "field must be 0 if y is periodic, because the discs would fall for ever, not "
-                f"{self.field!r}"
-            )
-        if self.moment_of_inertia is not None:
-            self._check_roughness()
-        shortest = min(map(self.side, self.axes))
-        if self.friction * shortest > MOST_KICKS:
-            raise InputError(
-                f"friction must not exceed {MOST_KICKS:g} over the shortest side, which is "
-                f"{MOST_KICKS / shortest!r}, not {self.friction!r}"
-            )
-
-    def _check_roughness(self):
-        if self.depth is not None:
-            where = "in a box with a depth (rough discs are for the plane)"
-        elif not self.walled:
-            where = "in a box without walls (the spins would keep I1 ω1/r1 − I2 ω2/r2 for ever)"
-        else:
-            return
-        raise InputError(
-            f"moment_of_inertia must be left out {where}, not {self.moment_of_inertia!r}"
-        )
-
-    def __getstate__(self):
-        """Return only the fields: a copy does not depend on cached properties."""
-        return {field.name: getattr(self, field.name) for field in fields(self)}
-
-    def __repr__(self):
-        sides = f"{self.width!r}, {self.height!r}, {self.radius!r}"
-        return f"Scene({', '.join([sides, *(f'{n}={v!r}' for n, v in self.calls_for.items())])})"
 
     def __str__(self):
         """Return the scene in words, on one line."""
@@ -172,39 +530,9 @@ class Scene:
         return ", ".join([discs, *words])
 
     @property
-    def noun(self):
-        """The word for two of them: discs or balls."""
-        return "discs" if self.depth is None else "balls"
-
-    @property
-    def box_text(self):
-        """The sides of the box as text, "1.5 × 1.0" say."""
-        return " × ".join(repr(self.side(axis)) for axis in self.axes)
-
-    def unit(self, quantity: str) -> str:
-        """Return the unit of a quantity.
-
-        Parameters
-        ----------
-        quantity : str
-            A name that ends in "volume" or "area"; any other is a time.
-
-        Returns
-        -------
-        str
-            The unit, such as "length⁴".
-
-        Examples
-        --------
-        >>> scene.unit("any_wall_area")
-        'length³'
-        """
-        dimensions = self.discs * len(self.axes)
-        powers = {"volume": dimensions, "area": dimensions - 1}
-        kind = quantity.rpartition("_")[2]
-        if kind not in powers:
-            return "time"
-        return "length" + "".join("⁰¹²³⁴⁵⁶⁷⁸⁹"[int(digit)] for digit in str(powers[kind]))
+    def box(self) -> Box:
+        """The box with its effects and its number of discs, without the radius."""
+        return Box(self.width, self.height, **self.calls_for)
 
     def with_radius(self, radius: float) -> Scene:
         """Return the same scene with another radius of disc 1.
@@ -231,106 +559,10 @@ class Scene:
         """
         return replace(self, radius=radius)
 
-    def turned(self) -> Scene:
-        """Return the same scene with x and y exchanged.
-
-        Returns
-        -------
-        Scene
-            The scene, turned by a quarter.
-
-        Raises
-        ------
-        InputError
-            In a field, which is along y.
-
-        Examples
-        --------
-        >>> scene.turned().width
-        1.0
-        """
-        if self.field:
-            raise InputError(f"field must be 0 to exchange the axes, not {self.field!r}")
-        periodic = self.periodic.translate(str.maketrans("xy", "yx"))
-        return replace(self, width=self.height, height=self.width, periodic=periodic)
-
-    @property
-    def effects(self) -> dict[str, object]:
-        """The effects of the scene, {name: value} in the order of the fields."""
-        return {
-            name: getattr(self, name)
-            for name, default in ABSENT.items()
-            if getattr(self, name) != default
-        }
-
-    @property
-    def has_effects(self) -> bool:
-        """Whether the scene has any effect."""
-        return bool(self.effects)
-
-    @property
-    def family(self) -> str:
-        """The family: "plain" (two equal, smooth discs between walls), "effects" or "many"."""
-        if self.discs > 2:
-            return "many"
-        return "effects" if self.has_effects else "plain"
-
-    @property
-    def _geometry(self):
-        """The ``Geometry`` of the discs."""
-        return MANY_DISCS if self.discs > 2 else TWO_DISCS
-
-    @property
-    def calls_for(self):
-        """Everything beyond two equal, smooth discs between walls, {name: value}.
-
-        These are its effects, and ``discs`` if there are more than two.
-        """
-        return {n: getattr(self, n) for n, usual in USUAL.items() if getattr(self, n) != usual}
-
-    @property
-    def is_plain(self):
-        """Whether it is two equal, smooth discs between walls."""
-        return not self.calls_for
-
-    @cached_property
-    def axes(self) -> tuple[str, ...]:
-        """The names of the axes: x, y and, for balls, z."""
-        return ("x", "y") if self.depth is None else ("x", "y", "z")
-
-    @cached_property
-    def walled(self) -> tuple[str, ...]:
-        """The axes with walls."""
-        return tuple(axis for axis in self.axes if axis not in self.periodic)
-
-    @cached_property
-    def conserved(self) -> tuple[str, ...]:
-        """The axes along which the total momentum is conserved; it is 0 in the ensemble.
-
-        These are the periodic axes, unless there are rough walls, which change the momentum along
-        them.
-        """
-        return tuple(self.periodic) if self.moment_of_inertia is None else ()
-
-    @cached_property
-    def velocity_components(self) -> int:
-        """D: the number of components of velocities and spins, minus the conserved momenta."""
-        spin = self.moment_of_inertia is not None
-        return self.discs * (len(self.axes) + spin) - len(self.conserved)
-
     @cached_property
     def radii(self) -> tuple[float, ...]:
         """The radii of all discs."""
         return self.radius, *(self.radius * self.radius_ratio,) * (self.discs - 1)
-
-    @cached_property
-    def masses(self) -> tuple[float, ...]:
-        """The masses of all discs."""
-        return 1.0, *(self.mass_ratio,) * (self.discs - 1)
-
-    def side(self, axis):
-        """Return the side of the box along ``axis``."""
-        return {"x": self.width, "y": self.height, "z": self.depth}[axis]
 
     @cached_property
     def range_x(self):
@@ -372,15 +604,6 @@ class Scene:
     def squared_reaches(self, *without):
         """Return the sum of the squared reaches of all axes but some, an exact fraction."""
         return sum(self.reach(axis) ** 2 for axis in self.axes if axis not in without)
-
-    @cached_property
-    def largest_radius(self) -> float:
-        """The radius of disc 1 at which the discs just fit.
-
-        For more than three discs it belongs to the densest arrangement that is known here. In a
-        channel so narrow that only neighbours can touch, no arrangement is denser.
-        """
-        return self._geometry.largest_radius(self)
 
     def require_followable(self):
         """Raise ``InputError`` too close to the largest radius for dynamics in doubles."""
@@ -445,11 +668,6 @@ class Scene:
         """
         return self._geometry.confined(self)
 
-    @cached_property
-    def identical(self):
-        """Whether the discs are equal, so that they may be exchanged."""
-        return self.radius_ratio == self.mass_ratio == 1
-
     def accessible_fraction(self, event):
         """Return the fraction of trajectories that can have ``event``.
 
@@ -467,19 +685,6 @@ class Scene:
         wall hits.
         """
         return self._geometry.multiplicity(self, DECLARED[event])
-
-    @cached_property
-    def events(self) -> tuple[str, ...]:
-        """The ``EVENTS`` that exist in the scene: hops and walls need walls along their axis.
-
-        They include events that are impossible at this radius.
-        """
-        return tuple(event.name for event in DECLARED.values() if self._has_place(event))
-
-    def _has_place(self, event):
-        if event.axis:
-            return event.axis in self.walled
-        return event.kind == "collision" or bool(self.walled)
 
     def is_possible(self, event: str) -> bool:
         """Return whether an event ever happens; hops can be blocked, and a field keeps discs down.
@@ -546,7 +751,3 @@ def hopping_along(scene, hop, axis):
     if AXIS[check_choice("hop", hop, HOPS)] == axis or scene.field:
         return scene, hop
     return scene.turned(), next(other for other in HOPS if other != hop)
-
-
-#: The default values of fields, {name: value}.
-USUAL = {field.name: field.default for field in fields(Scene)[3:]}

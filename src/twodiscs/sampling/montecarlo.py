@@ -27,9 +27,9 @@ from functools import cached_property
 
 import numpy as np
 
-from twodiscs.model.box import Box, job_seed
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
 from twodiscs.model.scene import Scene
+from twodiscs.model.seeds import job_seed
 from twodiscs.points.monte_carlo_point import MonteCarloPoint
 from twodiscs.sampling.conditioned import conditioned_sampler, propose_separation
 from twodiscs.sampling.jit import compiled, inlined, optional
@@ -207,7 +207,7 @@ def shell_thickness(scene, event, fraction):
 def _plain_thickness(scene, event):
     """Return the length that ``shell_thickness`` takes a fraction of, in a plain scene."""
     hop = DECLARED[event].kind == "hop"
-    vanishing = Box.of(scene).blocking_radius(event) if hop else scene.largest_radius
+    vanishing = scene.blocking_radius(event) if hop else scene.largest_radius
     room = abs(vanishing - scene.radius)
     sides = {"x": scene.width, "y": scene.height}
     long, short = max(sides.values()), min(sides.values())

@@ -71,14 +71,21 @@ def pressure_factor(scene, event):
     return side * scene.velocity_components * momentum_per_hit(scene, event)
 
 
+def has_theorem(box):
+    """Return whether the rates of events alone give the theorem for the scenes of a ``Box``.
+
+    With unequal discs, balls, periodic axes or a field, the events do not include all forces, or a
+    rate does not give their mean.
+    """
+    return not box.effects.keys() - {"moment_of_inertia", "friction"}
+
+
 def weights(scene):
     """Return {event: weight} with which the rates over all initial conditions add up to 1.
 
-    It is None if the events do not include all forces, or if a rate does not give their mean. These
-    are scenes with unequal discs, balls, periodic axes or a field. For more than two discs the
-    weights need no exact volume.
+    It is None without the theorem. For more than two discs the weights need no exact volume.
     """
-    if check_scene(scene).effects.keys() - {"moment_of_inertia", "friction"}:
+    if not has_theorem(check_scene(scene)):
         return None
     per_rate = 1 / flux_constant(scene.velocity_components)
     pairs = math.sqrt(2) * scene.discs

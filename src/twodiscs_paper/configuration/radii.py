@@ -3,8 +3,9 @@
 import math
 from itertools import pairwise
 
-from twodiscs.model.box import Box, shortest_decimal
 from twodiscs.model.checks import InputError, check_integer, check_length
+from twodiscs.model.formats import shortest_decimal
+from twodiscs.model.scene import Box
 
 #: The largest number of radii of a grid.
 MOST_RADII = 1000

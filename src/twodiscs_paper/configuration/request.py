@@ -9,7 +9,8 @@ from hashlib import blake2b
 
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.figures.scene_figures import ANIMATION, FIGURES
-from twodiscs.model.box import Box, key, stream_seed
+from twodiscs.model.scene import Box
+from twodiscs.model.seeds import key, stream_seed
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.model import MOST_EVENTS
 

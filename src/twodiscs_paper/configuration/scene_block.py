@@ -3,9 +3,9 @@
 A mistake raises ``InputError`` with the key in the block of the scene.
 """
 
-from twodiscs.model.box import Box
 from twodiscs.model.checks import MOST_WITH_VOLUME, PRESETS, InputError, format_number
 from twodiscs.model.events import EVENTS, HOPS
+from twodiscs.model.scene import Box
 from twodiscs.theory.exact import MIN_FRACTION, events_per_interval, free_fraction
 from twodiscs_paper.configuration.model import Accuracy, Histogram, Watch
 from twodiscs_paper.configuration.radii import even_radii, radii
@@ -30,7 +30,10 @@ LEAST_INTERVALS = 2**16
 
 def scene_request(block, seed, shard_events):
     """Return the ``SceneRequest`` of a ``SceneBlock``."""
-    box = _box(block)
+    try:
+        box = Box(**block.box.model_dump(), **block.effects.model_dump(), discs=block.discs)
+    except InputError as error:
+        raise InputError(f"effects: {error}") from None
     radii = _radii(block.radii, box)
     scene = box.scene(radii[0])
     watch = block.watch
@@ -61,20 +64,11 @@ def scene_request(block, seed, shard_events):
     )
 
 
-def _box(block):
-    """Return the ``Box`` of a scene."""
-    sides = block.box.model_dump(exclude_none=True)
-    try:
-        return Box.configured(sides, block.effects.model_dump(), block.discs)
-    except InputError as error:
-        raise InputError(f"effects: {error}") from None
-
-
 def _radii(asked, box):
     """Return the radii of a scene, from a list or from the block of a grid."""
     if isinstance(asked, list):
         return _checked(asked, box, "radii")
-    largest_disc = max(1, box.effects.get("radius_ratio", 1))
+    largest_disc = max(1, box.radius_ratio)
     smallest = asked.smallest or _short(box.shortest / largest_disc / 100)
     _checked([smallest], box, "radii.smallest")
     include = _checked(asked.include or [], box, "radii.include")

@@ -3,7 +3,6 @@
 import json
 from pathlib import Path
 
-from twodiscs.model.box import parameters_of
 from twodiscs.model.checks import InputError, quote
 from twodiscs.points.base import MALFORMED, SECONDS, read_json, restore_arrays
 
@@ -23,7 +22,7 @@ def read_parts(path, stage, scene, settings):
         parts = restore_arrays(content["parts"])
     except MALFORMED:
         raise InputError(f"{path} must be a point or a shard of one; {REMEDY}") from None
-    asked = json.loads(json.dumps({"kind": stage.call} | parameters_of(scene) | settings))
+    asked = json.loads(json.dumps({"kind": stage.call} | scene.parameters() | settings))
     for name in asked | found:
         has, wanted = found.get(name), asked.get(name)
         if has != wanted:

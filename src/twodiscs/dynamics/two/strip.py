@@ -24,9 +24,9 @@ import numpy as np
 from twodiscs.dynamics.ensemble import LANES, REPLICAS, SHORT_SWEEPS
 from twodiscs.dynamics.law import END_OF_TIME, crosses
 from twodiscs.dynamics.two.follow import follow, relative_motion
-from twodiscs.model.box import key, stream_seed
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import hopping_along
+from twodiscs.model.seeds import key, stream_seed
 from twodiscs.points.estimates import PARTS, fractions_of_speeds, stratified_mean
 from twodiscs.sampling.initial_states import start_sampler
 from twodiscs.sampling.rejection import (

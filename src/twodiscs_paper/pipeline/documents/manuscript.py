@@ -8,7 +8,7 @@ from twodiscs.analysis.tables import NUMBER, TEXT, Table
 from twodiscs.dynamics.runs import RETURNS
 from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.measure.transmission import QUIET
-from twodiscs.model.box import Box
+from twodiscs.model.scene import Box
 from twodiscs.sampling.montecarlo import COST_RATIO
 from twodiscs_paper.catalogue import STUDY_FIGURES
 from twodiscs_paper.pipeline.results.provenance import commit, versions

@@ -25,8 +25,8 @@ from twodiscs.analysis.tables import (
 )
 from twodiscs.figures.scene_figures import ANIMATION, GEOMETRY
 from twodiscs.measure.measurements import measurement
-from twodiscs.model.box import Box
 from twodiscs.model.checks import format_number, format_seconds
+from twodiscs.model.scene import Box
 from twodiscs_paper.catalogue import ALL_FIGURES
 from twodiscs_paper.pipeline.job_cost import missed, taken
 from twodiscs_paper.pipeline.results.provenance import commit, versions
@@ -58,11 +58,9 @@ SUBSCRIPT = re.compile(r"\b([A-Za-z])_(\w+)\b")
 SENTENCE = re.compile(r".*?\.(?= [A-Z(]|$)|.+", re.DOTALL)
 
 
-def box_of(scene):
+def described_box(scene):
     """Return the ``Box`` of a scene with "width", "height" and "effects", among these "discs"."""
-    effects = dict(scene.get("effects", ()))
-    discs = effects.pop("discs", 2)
-    return Box(scene["width"], scene["height"], effects, discs)
+    return Box(scene["width"], scene["height"], **scene.get("effects", {}))
 
 
 def agreement(folder, scene):
@@ -89,7 +87,7 @@ def mean_times(folder, scene):
     """
     path, by_radius = Path(folder, scene["name"], "mean_times.csv"), {}
     for row in MeanTimesTable.read(path) if path.exists() else ():
-        one = box_of(scene).scene(row["radius"])
+        one = described_box(scene).scene(row["radius"])
         quantity, value, error, exact, _, z, _, status = measurement(one, row).cells()
         event = quantity.removesuffix("_time").replace("_", " ")
         by_radius.setdefault(row["radius"], []).append([event, value, error or status, exact, z])
@@ -134,7 +132,7 @@ def figure(folder, path, scenes):
     entry, scene = ALL_FIGURES[path.stem], scenes.get(path.parts[0])
     main = next((candidate for candidate in scenes.values() if not candidate["effects"]), None)
     about = scene or main
-    text = entry.caption(about and box_of(about))
+    text = entry.caption(about and described_box(about))
     if scene:
         text += f" Scene {scene['name']}, {scene['box']}."
     with Image.open(Path(folder, path)) as image:

@@ -23,7 +23,6 @@ import twodiscs
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import LANES, REPLICAS
 from twodiscs.dynamics.two import strip
-from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import stratified_mean
@@ -40,7 +39,7 @@ from twodiscs_paper.study import row
 #: The hop of all mean times, and the relative distance of the hard radius from where it is blocked.
 HOP, NEAR = "horizontal_hop", 1e-4
 EASY = Scene(1.5, 1.0, 0.2)
-HARD = EASY.with_radius(Box.of(EASY).threshold(HOP) * (1 - NEAR))
+HARD = EASY.with_radius(EASY.threshold(HOP) * (1 - NEAR))
 
 AREA = "disc_collision_area"
 
@@ -392,7 +391,7 @@ def long_run(seed, blocks):
 def radius_rows():
     """Yield the rows of the part ``radius``: c of each quantity and method, by ``td.cost``."""
     for distance in DISTANCES:
-        scene = EASY.with_radius(Box.of(EASY).threshold(HOP) * (1 - distance))
+        scene = EASY.with_radius(EASY.threshold(HOP) * (1 - distance))
         for price in twodiscs.cost(scene).prices:
             if price.method != "exact":
                 cells = {"distance": distance, "c": price.c, "floor": price.floor}

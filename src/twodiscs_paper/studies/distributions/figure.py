@@ -4,8 +4,8 @@ import numpy as np
 
 from twodiscs.figures import panels
 from twodiscs.figures.style import BLACK, GREY, SERIES, SIZES, event_name
-from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
+from twodiscs.model.scene import Box
 from twodiscs.theory import laws
 
 #: The longest time shown, in mean times, and the largest relative error of a rate.

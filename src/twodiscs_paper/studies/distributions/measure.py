@@ -20,8 +20,9 @@ import numpy as np
 from twodiscs.analysis.scores import student_deviate, two_sided_p
 from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import two_disc_law
-from twodiscs.model.box import Box, key, stream_seed
 from twodiscs.model.events import HOPS
+from twodiscs.model.scene import Box
+from twodiscs.model.seeds import key, stream_seed
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.conditioned import (
     conditioned_sampler,
@@ -231,7 +232,7 @@ def measured(start, scene, hop, seed, events=EVENTS):
     width, cut = nearest_power_of_two(mean / 16), CUT * mean
     oriented = scene
     if hop == "horizontal_hop":
-        oriented = Box.of(scene).turned().scene(scene.radius)
+        oriented = scene.turned()
     draw, histogram = conditioned_sampler(oriented), np.zeros(BINS + 1, np.int64)
     means = draw_passages(
         np.uint64(seed), 0, BLOCKS, block, passages, cut, two_disc_law(oriented), draw, width,

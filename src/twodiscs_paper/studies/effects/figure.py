@@ -18,7 +18,7 @@ from twodiscs.figures.style import (
     event_name,
     new_figure,
 )
-from twodiscs.model.box import Box
+from twodiscs.model.scene import Box
 from twodiscs_paper.studies.effects.measure import SHOWN_EVENTS
 
 #: Inches: the width of the figure, and the heights of the panels of curves and of residuals.
@@ -87,7 +87,7 @@ def _look(i):
 
 def _box(row):
     """Return the ``Box`` that a row is about."""
-    return Box(row["width"], row["height"], json.loads(row["effects"]))
+    return Box(row["width"], row["height"], **json.loads(row["effects"]))
 
 
 def _curve(rows, scene, event):

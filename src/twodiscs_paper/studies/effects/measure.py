@@ -15,7 +15,8 @@ from twodiscs.dynamics.law import two_disc_law
 from twodiscs.dynamics.two.follow import new_rows, put_state, state_at
 from twodiscs.figures import curves
 from twodiscs.figures.curves import limits
-from twodiscs.model.box import Box, key, stream_seed
+from twodiscs.model.scene import Box
+from twodiscs.model.seeds import key, stream_seed
 from twodiscs.points import estimates
 from twodiscs.sampling.initial_states import draw_states, start_sampler
 from twodiscs.sampling.jit import compiled
@@ -97,7 +98,7 @@ def rows(tables, scenes, seed, blocks=BLOCKS):
             event = time["event"]
             yield row(
                 start | {column: time[column] for column in KEPT},
-                effects=json.dumps(box.effects),
+                effects=json.dumps(box.effects, sort_keys=True),
                 quantity=f"{event}_time",
                 plain=plain_time(box, time["radius"], event),
             )

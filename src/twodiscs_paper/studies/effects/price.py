@@ -19,9 +19,8 @@ from statistics import median
 import twodiscs
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.engine import find_engine
-from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, WALLS
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
 
 SCENE = Scene(1.5, 1.0, 0.2)
 REPETITIONS = 7

@@ -20,7 +20,7 @@ import numpy as np
 from scipy.integrate import quad
 
 from twodiscs.measure.transmission import cluster_coefficient
-from twodiscs.model.box import stream_seed
+from twodiscs.model.seeds import stream_seed
 from twodiscs.points.estimates import Estimate
 from twodiscs_paper.studies.estimates import LinearFit
 from twodiscs_paper.studies.passages.models import brownian_steps

@@ -5,7 +5,7 @@ import numpy as np
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import BLACK, BLUE, GREEN, PURPLE, SIZES, SKY, VERMILLION, event_name
 from twodiscs.measure.transmission import box_time
-from twodiscs.model.box import Box
+from twodiscs.model.scene import Box
 from twodiscs.theory import exact, laws
 from twodiscs_paper.studies.passages.measure import ONE_INERTIA, thresholds
 from twodiscs_paper.study import select
@@ -129,7 +129,7 @@ def _times(axes, box, hop, limit, rows):
     distances = np.geomspace(4e-5, 0.2, 60)
     for inertia, style in ((None, "-"), (ONE_INERTIA, (0, (4, 2)))):
         effects = {} if inertia is None else {"moment_of_inertia": inertia}
-        shaped = Box(box.width, box.height, effects)
+        shaped = Box(box.width, box.height, **effects)
         tau = [1 / exact.rate(shaped.scene(limit * (1 - d)), hop) for d in distances]
         name = "smooth" if inertia is None else "rough"
         axes.plot(distances, tau, color=BLACK, lw=0.8, ls=style, zorder=5,

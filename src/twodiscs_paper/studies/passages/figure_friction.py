@@ -4,7 +4,7 @@ import numpy as np
 
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import BLACK, GREY, SERIES
-from twodiscs.model.box import Box
+from twodiscs.model.scene import Box
 from twodiscs_paper.studies.passages.figure import columns, first_scene, is_empty, points
 from twodiscs_paper.studies.passages.measure import KICKED
 from twodiscs_paper.study import select

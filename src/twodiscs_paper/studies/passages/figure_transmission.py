@@ -5,8 +5,8 @@ import numpy as np
 from twodiscs.figures import panels
 from twodiscs.figures.curves import QUARTERS
 from twodiscs.figures.style import BLACK, BLUE, GREY, SKY, VERMILLION
-from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS
+from twodiscs.model.scene import Box
 from twodiscs_paper.studies.passages.figure import (
     LOOKS,
     columns,

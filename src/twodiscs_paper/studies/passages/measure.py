@@ -29,9 +29,8 @@ from twodiscs.measure.transmission import (
     plateau,
     quiet_time,
 )
-from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, HOPS
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
 from twodiscs.points import estimates
 from twodiscs.points.estimates import Estimate
 from twodiscs.theory import exact, laws, weighted
@@ -131,7 +130,7 @@ def blocks_for(scene, distance, time, events):
 
 def scene_at(box, hop, halvings, **effects):
     """Return the ``Scene`` in a plain ``Box`` at a distance below the radius that blocks a hop."""
-    return Box(box.width, box.height, effects).scene(radius_at(box.threshold(hop), halvings))
+    return Box(box.width, box.height, **effects).scene(radius_at(box.threshold(hop), halvings))
 
 
 def slope_time(scene, hop):

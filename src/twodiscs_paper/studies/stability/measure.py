@@ -22,10 +22,10 @@ from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import after_event, contact_quotient, two_disc_law, wall_quotient
 from twodiscs.dynamics.two.follow import find_events, new_rows, put_state, state_at
-from twodiscs.model.box import Box, shortest_decimal
 from twodiscs.model.checks import LARGEST_INTEGER
 from twodiscs.model.events import EVENTS, HOPS
-from twodiscs.model.scene import Scene
+from twodiscs.model.formats import shortest_decimal
+from twodiscs.model.scene import Box, Scene
 from twodiscs.points import estimates
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.conditioned import conditioned_sampler
@@ -470,7 +470,7 @@ PAPER = Scene(1.5, 1.0, 0.2)
 
 def _hardly_fitting(width, height, distance, discs=2, **effects):
     """Return a scene at the relative ``distance`` below its largest radius."""
-    box = Box(width, height, effects, discs)
+    box = Box(width, height, discs=discs, **effects)
     return box.scene(box.largest_radius * (1 - distance))
 
 

@@ -36,8 +36,8 @@ import numpy as np
 from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import DISC, two_disc_law
 from twodiscs.dynamics.two.follow import state_at
-from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
+from twodiscs.model.scene import Box
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.conditioned import conditioned_sampler, draw_configuration, draw_in_disc
 from twodiscs.sampling.initial_states import draw_starts
@@ -170,7 +170,7 @@ def count_long(seed, first, stop, replicas, window, times, law, draw, hop):
 def _oriented(scene, event):
     """Return the scene in which a hop is a vertical one, and whether the ``event`` is a hop."""
     if event == "horizontal_hop":
-        scene = Box.of(scene).turned().scene(scene.radius)
+        scene = scene.turned()
     return scene, event in HOPS
 
 

@@ -14,9 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.box import Box
 from twodiscs.model.checks import check_choice
 from twodiscs.model.events import EVENTS
+from twodiscs.model.scene import Box
 from twodiscs.points.estimates import Estimate
 from twodiscs.theory.laws import threshold_time
 from twodiscs_paper.studies.estimates import LinearFit, chi2_p
