@@ -1,11 +1,15 @@
 """Regions in which events come in crowds could have another share or a share of nothing."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
+import numpy as np
 import pytest
 from scipy.integrate import dblquad, quad
 
+from twodiscs.dynamics.two.event_counts import run_blocks
+from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.theory import clusters
 
@@ -91,3 +95,49 @@ def test_at_a_threshold_there_are_regions_of_every_size(radius):
     regions = clusters.regions(Scene(1.5, 1.0, radius, moment_of_inertia=0.2))
     assert 1 <= len(regions) <= 50
     assert all(0 < r.volume <= 1 + 1e-12 for r in regions)
+
+
+# Corners ------------------------------------------------------------------------------------------
+
+ROUGH = Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5)
+
+
+def test_only_wall_hits_of_rough_discs_between_two_pairs_of_walls_have_bursts_in_corners():
+    walls = {"right_wall", "top_wall", "any_wall"}
+    assert {e for e in EVENTS if clusters.corner_variance(ROUGH, e, 8.0)} == walls
+    for other in ({"moment_of_inertia": None}, {"periodic": "x"}):
+        scene = replace(ROUGH, **other)
+        assert not any(clusters.corner_variance(scene, event, 8.0) for event in EVENTS)
+
+
+def test_bursts_in_corners_scale_as_the_stays():
+    """A stay is as long as a short replica, T², and ends at a rate in a long one, T."""
+    one, other, kicked = (
+        [clusters.corner_variance(scene, "any_wall", t) for t in (1e-3, 2e-3, 1e4, 2e4)]
+        for scene in (ROUGH, replace(ROUGH, mass_ratio=4.0), replace(ROUGH, friction=50.0))
+    )
+    assert one[1] / one[0] == pytest.approx(4, rel=1e-2)
+    assert one[3] / one[2] == pytest.approx(2, rel=1e-2)
+    assert kicked[2] < 0.02 * one[2]
+    # The heavy disc is slow, and disc 1 alone hits the walls that are counted as one.
+    assert other[0] == pytest.approx(one[0] * (1 + 1 / 4) / 2, rel=1e-2)
+    alone = clusters.corner_variance(replace(ROUGH, mass_ratio=4.0), "right_wall", 1e-3)
+    assert alone == pytest.approx(one[0] / 8, rel=1e-2)
+    assert clusters.corner_variance(ROUGH, "right_wall", 1e-3) == pytest.approx(one[0] / 4)
+    # A field keeps discs from the upper corners.
+    falling = replace(ROUGH, field=0.5)
+    by_wall = [clusters.corner_variance(falling, w, 1e-3) for w in ("right_wall", "top_wall")]
+    assert by_wall[1] < 0.2 * by_wall[0]
+
+
+@pytest.mark.slow
+def test_the_tail_of_hits_in_corners_is_as_counted():
+    """P(N > n) → A/n² at the 100th largest of 20000 N: five errors of 10 %, and 20 % for A."""
+    replicas, largest, event = 20000, 100, EVENTS.index("any_wall")
+    counts = np.sort([
+        run_blocks(ROUGH, ("any_wall",), 77, k, k + 1, 16.0, replicas=1, lanes=1)[0][event]
+        for k in range(replicas)
+    ])  # fmt: skip
+    found = largest / replicas * (counts[-largest] - counts.mean()) ** 2
+    due = clusters.corner_variance(ROUGH, "any_wall", 16.0) / clusters.UNSEEN
+    assert 0.5 / 1.2 < found / due < 1.5 * 1.2

@@ -30,7 +30,7 @@ from twodiscs.points.dynamics_point import DynamicsPoint, simulated_events
 from twodiscs.points.intervals_point import BINS, GRAIN, IntervalsPoint, wide_edges
 from twodiscs.sampling.initial_states import require_initial_states
 from twodiscs.sampling.rounds import Run, SequentialRun, fixed, round_up_blocks
-from twodiscs.theory.exact import replicas_needed
+from twodiscs.theory.exact import corner_variance, replicas_needed
 
 #: Chains of intervals that share a stream, and the usual budget of their wall and disc events.
 CHAINS, BUDGET = 256, 10**11
@@ -141,8 +141,10 @@ class DynamicsRun(Run):
         if scene.discs > 2:  # rare hops of two discs have their own parts
             planned = min(planned, budget / block_events)
 
+        unseen = np.array([corner_variance(scene, event, duration) for event in EVENTS])
+
         def error_over_target(sums, blocks):
-            errors = relative_errors(*sums, blocks * each)[index] / goals
+            errors = relative_errors(*sums, blocks * each, unseen)[index] / goals
             return np.maximum(errors, np.sqrt(needed / blocks))
 
         return SequentialRun(
@@ -184,14 +186,15 @@ def relative_variance(count):
     return 2 / count + 1 / 6 if count else math.inf
 
 
-def relative_errors(sums, products, replicas):
+def relative_errors(sums, products, replicas, unseen=0.0):
     """Return the relative standard error of each mean count (n), inf without a count.
 
-    Replicas are independent, so the error is √(var N / R) / ⟨N⟩.
+    Replicas are independent, so the error is √(var N / R) / ⟨N⟩. The variance has a part that is
+    ``unseen`` in samples (see ``exact.corner_variance``).
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         mean = sums / replicas
-        variance = np.maximum(np.diag(products) / replicas - mean**2, 0.0)
+        variance = np.maximum(np.diag(products) / replicas - mean**2, 0.0) + unseen
         errors = np.sqrt(variance / replicas) / mean
     return np.where(sums > 0, errors, np.inf)
 

@@ -16,6 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from twodiscs.measure.result import Printed
 from twodiscs.model.checks import (
     MOST_WITH_VOLUME,
@@ -111,10 +113,12 @@ def _pilot(run, name, seconds):
     sums, blocks, each = timed(part.work, seconds, -(-FEWEST_REPLICAS // replicas))
     if name == "all":
         number, errors = blocks * replicas, {}
-        measured = relative_errors(*sums, number).tolist()
+        duration = engine.replica_duration(scene)
+        unseen = np.array([exact.corner_variance(scene, event, duration) for event in EVENTS])
+        measured = relative_errors(*sums, number, unseen).tolist()
         for event, count, error in zip(EVENTS, sums[0].tolist(), measured, strict=True):
             if event in run.target and scene.is_possible(event):
-                expected = engine.expected_rate(scene, event) * engine.replica_duration(scene)
+                expected = engine.expected_rate(scene, event) * duration
                 few = count < FEWEST_COUNTS and expected
                 errors[event] = math.sqrt(CLUSTER / (expected * number)) if few else error
     else:

@@ -1,5 +1,6 @@
 """Events that molecular dynamics counted at one radius, in independent replicas of a duration T."""
 
+import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations_with_replacement, product
@@ -12,6 +13,7 @@ from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.base import Point, reached
 from twodiscs.points.estimates import stratified_mean
+from twodiscs.theory import exact
 
 COLLISIONS, ANY_WALLS = EVENTS.index("disc_collision"), EVENTS.index("any_wall")
 
@@ -147,6 +149,20 @@ class DynamicsPoint(Point):
         """The events counted, in the order of ``EVENTS``."""
         return [event for event in EVENTS if event in self.counts]
 
+    @cached_property
+    def spread_products(self):
+        """The ``products``, plus what errors need for bursts that no sample shows.
+
+        Rough discs stay in corners of walls (see ``exact.corner_variance``). The counts of several
+        walls have the same bursts.
+        """
+        unseen = {e: exact.corner_variance(self.scene, e, self.duration) for e in self.counts}
+        return {
+            pair: total
+            + round(self.replicas * math.sqrt(math.prod(unseen[e] for e in pair.split("*"))))
+            for pair, total in self.products.items()
+        }
+
     def everywhere(self, event):
         """Return the ``Count`` of an event from initial states in all of configuration space."""
         return Count(
@@ -154,7 +170,7 @@ class DynamicsPoint(Point):
             share=1.0,
             replicas=self.replicas,
             count=self.counts[event],
-            squares=self.products[f"{event}*{event}"],
+            squares=self.spread_products[f"{event}*{event}"],
         )
 
     def count(self, event):
@@ -171,7 +187,7 @@ class DynamicsPoint(Point):
 
     def combination(self, weights):
         """Return Σ weight × ⟨N⟩ as an ``Estimate``, given {event: weight} (see ``estimates``)."""
-        return estimates.combination(weights, self.counts, self.products, self.replicas)
+        return estimates.combination(weights, self.counts, self.spread_products, self.replicas)
 
     def moments(self):
         """Return the names of mean times, the mean counts ⟨N⟩ and their covariances.
@@ -182,6 +198,6 @@ class DynamicsPoint(Point):
         totals = [self.counts[event] for event in events]
         covariances = np.zeros((len(events), len(events)))
         for (i, a), (k, b) in combinations_with_replacement(enumerate(events), 2):
-            spread = n * self.products[f"{a}*{b}"] - totals[i] * totals[k]
+            spread = n * self.spread_products[f"{a}*{b}"] - totals[i] * totals[k]
             covariances[i, k] = covariances[k, i] = spread / (n * n * (n - 1))
         return [f"{event}_time" for event in events], np.array(totals) / n, covariances

@@ -198,6 +198,19 @@ def replicas_needed(scene, event, error):
     return clusters.replicas_needed(replace(scene, discs=2), event, error) / pairs
 
 
+def corner_variance(scene, event, duration):
+    """Return the variance of a replica's count of an ``event`` to add for bursts in corners.
+
+    It is 0 for smooth discs; ``clusters`` has the bursts of rough ones. The count is that of a
+    ``duration``, of all events that are equal by symmetry.
+    """
+    if scene.moment_of_inertia is None:
+        return 0.0
+    from twodiscs.theory import clusters
+
+    return clusters.corner_variance(scene, event, duration)
+
+
 def free_fraction(scene):
     """Return the fraction of the prism without overlap, weighted in a field."""
     ranges = (
