@@ -9,7 +9,7 @@ import re
 from pathlib import Path
 
 import twodiscs as td
-from twodiscs.model.checks import format_seconds
+from twodiscs.model.formats import format_seconds
 
 #: The rows: radius in a box of 1.5 × 1, quantity, method.
 ROWS = (

@@ -14,9 +14,11 @@ from argcomplete.completers import ChoicesCompleter
 
 import twodiscs
 from twodiscs.measure.load import plugin
-from twodiscs.model.checks import PRESETS, InputError, did_you_mean, format_number
+from twodiscs.model.calls import did_you_mean
+from twodiscs.model.checks import PRESETS, InputError
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS
+from twodiscs.model.formats import format_number
 from twodiscs.model.scene import Scene
 
 # Arguments, and one sentence for each mistake -----------------------------------------------------

@@ -10,7 +10,7 @@ from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.runs import DAY, DynamicsRun
 from twodiscs.measure import cost
-from twodiscs.model.checks import format_seconds
+from twodiscs.model.formats import format_seconds
 from twodiscs.model.seeds import job_seed
 from twodiscs.sampling.many import insertions
 from twodiscs.sampling.rounds import MARGIN

@@ -20,8 +20,9 @@ from functools import partial
 from numbers import Integral, Real
 from typing import ClassVar
 
-from twodiscs.model.checks import InputError, format_number, format_seconds
+from twodiscs.model.checks import InputError
 from twodiscs.model.events import EVENTS
+from twodiscs.model.formats import format_number, format_seconds
 from twodiscs.theory import exact as theory
 
 

@@ -5,7 +5,8 @@ from itertools import islice, repeat
 import numpy as np
 
 from twodiscs.dynamics.engine import find_engine
-from twodiscs.model.checks import InputError, check_length, format_number
+from twodiscs.model.checks import InputError, check_length
+from twodiscs.model.formats import format_number
 from twodiscs.model.two_geometry import ENERGY
 from twodiscs.sampling.initial_states import MOST_NUMBERS, ROUNDING, components, given_state, states
 from twodiscs.sampling.rounds import map_in_threads

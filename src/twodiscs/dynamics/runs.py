@@ -22,8 +22,9 @@ import numpy as np
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import RETURNS, nearest_power_of_two
 from twodiscs.dynamics.two import strip
-from twodiscs.model.checks import InputError, format_number
+from twodiscs.model.checks import InputError
 from twodiscs.model.events import EVENTS
+from twodiscs.model.formats import format_number
 from twodiscs.model.scene import Scene, why_absent
 from twodiscs.model.seeds import job_seed
 from twodiscs.points.dynamics_point import DynamicsPoint, simulated_events

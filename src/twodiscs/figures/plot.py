@@ -24,7 +24,8 @@ from twodiscs.measure.observe import Observed
 from twodiscs.measure.scan import Scan
 from twodiscs.measure.trajectory import require_all_rows
 from twodiscs.measure.transmission import Transmission, box_time
-from twodiscs.model.checks import InputError, check_choice, checked_call
+from twodiscs.model.calls import checked_call
+from twodiscs.model.checks import InputError, check_choice
 from twodiscs.model.scene import Box, Scene
 from twodiscs.theory import laws
 

@@ -19,16 +19,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from twodiscs.measure.result import Printed
-from twodiscs.model.checks import (
-    MOST_WITH_VOLUME,
-    check_error,
-    check_fraction,
-    checked_call,
-    format_number,
-    format_seconds,
-    quote,
-)
+from twodiscs.model.calls import checked_call
+from twodiscs.model.checks import MOST_WITH_VOLUME, check_error, check_fraction
 from twodiscs.model.events import EVENTS
+from twodiscs.model.formats import format_number, format_seconds, quote
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.points.monte_carlo_point import WALL_AREAS
 from twodiscs.theory import exact

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 from twodiscs.analysis.tables import HopHistogramTable
 from twodiscs.measure.measurements import Measurement, frame_of, table_of
 from twodiscs.measure.result import Result, note_of_number, progress_bar
-from twodiscs.model.checks import InputError, check_choice, check_count, check_integer, checked_call
+from twodiscs.model.calls import checked_call
+from twodiscs.model.checks import InputError, check_choice, check_count, check_integer
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.points.estimates import MIN_EVENTS

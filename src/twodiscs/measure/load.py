@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import twodiscs
 from twodiscs.analysis.tables import SCENE_TABLES
-from twodiscs.model.checks import InputError, checked_call, quote
+from twodiscs.model.calls import checked_call
+from twodiscs.model.checks import InputError
+from twodiscs.model.formats import quote
 from twodiscs.model.scene import Box, Scene
 from twodiscs.points.base import MALFORMED, digest, read_json, restore_arrays
 from twodiscs.sampling.rounds import Ended

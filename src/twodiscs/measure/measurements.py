@@ -17,6 +17,7 @@ import numpy as np
 from twodiscs.analysis.tables import AreasTable, MeanTimesTable, VolumeTable, quantity_of, shortfall
 from twodiscs.measure.exact_values import Quantities
 from twodiscs.measure.result import Immutable, Result, note_of_number, progress_bar
+from twodiscs.model.calls import checked_call, did_you_mean
 from twodiscs.model.checks import (
     AccuracyWarning,
     InputError,
@@ -25,10 +26,8 @@ from twodiscs.model.checks import (
     check_fraction,
     check_integer,
     check_length,
-    checked_call,
-    did_you_mean,
-    quote,
 )
+from twodiscs.model.formats import quote
 from twodiscs.model.scene import Scene, check_scene, why_absent
 from twodiscs.points.estimates import Estimate
 from twodiscs.points.monte_carlo_point import WALL_AREAS, wall_weights

@@ -13,14 +13,9 @@ from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import open_block_kicks
 from twodiscs.dynamics.paths import MOST_EVENTS
 from twodiscs.measure.result import Immutable, note_of_number, progress_bar
-from twodiscs.model.checks import (
-    InputError,
-    as_list,
-    check_count,
-    checked_call,
-    format_number,
-    quote,
-)
+from twodiscs.model.calls import checked_call
+from twodiscs.model.checks import InputError, check_count, make_list
+from twodiscs.model.formats import format_number, quote
 from twodiscs.model.many_geometry import LARGE
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.model.seeds import job_seed
@@ -171,7 +166,7 @@ class Observed(Immutable):
 
 
 def _times(times):
-    times = as_list(times)
+    times = make_list(times)
     try:
         checked = np.atleast_1d(np.asarray(times, float))
         ascending = checked.ndim == 1 and checked.size and np.all(np.diff(checked) > 0)

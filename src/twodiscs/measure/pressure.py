@@ -17,8 +17,9 @@ from collections.abc import Mapping
 from typing import Any, overload
 
 from twodiscs.measure.measurements import Measurement, Measurements, derived, table_of
-from twodiscs.model.checks import InputError, quote
+from twodiscs.model.checks import InputError
 from twodiscs.model.events import AXIS, WALLS
+from twodiscs.model.formats import quote
 from twodiscs.model.scene import Scene
 from twodiscs.theory import exact, virial
 

@@ -10,7 +10,8 @@ from os import PathLike
 from typing import ClassVar, Self
 
 import twodiscs
-from twodiscs.model.checks import InputError, quote
+from twodiscs.model.checks import InputError
+from twodiscs.model.formats import quote
 from twodiscs.model.scene import Scene
 from twodiscs.points.base import file_content, write_json
 

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Unpack, overload
 from twodiscs.measure.exact_values import scenes_of
 from twodiscs.measure.measurements import Measurements, rows_by_quantity, run_simulation
 from twodiscs.measure.result import Result
-from twodiscs.model.checks import InputError, checked_call, quote
+from twodiscs.model.calls import checked_call
+from twodiscs.model.checks import InputError
+from twodiscs.model.formats import quote
 from twodiscs.model.scene import Box
 
 if TYPE_CHECKING:

@@ -11,7 +11,9 @@ import pandas as pd
 from twodiscs.analysis.tables import trajectory_columns
 from twodiscs.dynamics.paths import follow_trajectory
 from twodiscs.measure.result import progress_bar
-from twodiscs.model.checks import InputError, as_list, checked_call, quote, writing_to
+from twodiscs.model.calls import checked_call
+from twodiscs.model.checks import InputError, make_list, writing_to
+from twodiscs.model.formats import quote
 from twodiscs.model.scene import Scene
 from twodiscs.model.seeds import job_seed
 from twodiscs.sampling.initial_states import components
@@ -88,7 +90,7 @@ class Trajectory(pd.DataFrame):
         scene = self.scene
         names = components(scene)
         require_all_rows(self, scene)
-        known, times = self["time"].to_numpy(), as_list(times)
+        known, times = self["time"].to_numpy(), make_list(times)
         try:
             at = np.atleast_1d(np.asarray(times, float))
         except (TypeError, ValueError):
@@ -199,7 +201,7 @@ class Trajectory(pd.DataFrame):
         12
         """
         scene = self.scene
-        at = self["time"].to_numpy() if times is None else np.atleast_1d(as_list(times))
+        at = self["time"].to_numpy() if times is None else np.atleast_1d(make_list(times))
         centres, velocities = self.positions(times), self.velocities(times)
         discs, radii, masses = scene.discs, scene.radii, scene.masses
         sides = [scene.side(axis) for axis in scene.axes]

@@ -13,7 +13,8 @@ from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK
 from twodiscs.dynamics.two.hop_clusters import LARGEST_CLUSTER, SUMS
 from twodiscs.measure.result import Result, note_of_number, progress_bar
-from twodiscs.model.checks import check_choice, check_count, checked_call
+from twodiscs.model.calls import checked_call
+from twodiscs.model.checks import check_choice, check_count
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.model.seeds import key, stream_name, stream_seed

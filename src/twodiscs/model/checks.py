@@ -1,13 +1,14 @@
-"""Checks of plain arguments and of calls; the message of each names the allowed values."""
+"""Checks of arguments; the message of each names the allowed values."""
 
 import math
 import numbers
 import os
-import re
-import reprlib
 from collections.abc import Iterable
 from contextlib import contextmanager
-from functools import wraps
+from shutil import copymode
+from tempfile import TemporaryDirectory
+
+from twodiscs.model.formats import decimal_hint, format_number, quote
 
 #: Products of four lengths outside this range would overflow or underflow.
 SHORTEST, LONGEST = 1e-60, 1e60
@@ -23,10 +24,6 @@ PRESETS = {"draft": 1e-2, "paper": 3e-4, "reference": 1e-4}
 
 #: Letters of the longest message, which may quote a value of any length.
 LONGEST_SENTENCE = 1000
-
-#: The form of quoted values: some items of a list, and of the lists in it.
-_SHORT = reprlib.Repr()
-_SHORT.maxlevel = 2
 
 
 class AccuracyWarning(UserWarning):
@@ -77,23 +74,12 @@ class InputError(ValueError):
         super().__init__("\n".join(short))
 
 
-def quote(value):
-    """Return the short text of any ``value`` for a message."""
-    try:
-        return " ".join(_SHORT.repr(value).split())
-    except Exception:  # an integer of more than 4300 digits, or an odd class
-        return f"a {type(value).__name__}"
-
-
 @contextmanager
 def writing_to(path):
     """Give a path beside the file ``path``, which replaces that file when the block has ended.
 
     If the block fails, an old file stays as it was. Raises ``InputError`` if it cannot be written.
     """
-    from shutil import copymode
-    from tempfile import TemporaryDirectory  # which take long to import
-
     refused = f"path must be a file to write, not {str(path)!r}"
     if "\0" in str(path):
         raise InputError(f"{refused}: it has a null character")
@@ -110,33 +96,6 @@ def writing_to(path):
             yield path
     except (OSError, TypeError) as error:
         raise InputError(f"{refused}: {getattr(error, 'strerror', None) or error}") from None
-
-
-def format_number(value, form=""):
-    """Return a number as the pages write it: 1e60 for Python's 1e+60."""
-    return re.sub(r"e\+?(-?)0*(\d)", r"e\1\2", format(value, form))
-
-
-#: (seconds, the unit that they are) from the longest unit down.
-_UNITS = (
-    (365.25 * 86400, "years"), (86400.0, "d"), (3600.0, "h"), (60.0, "min"), (1.0, "s"),
-    (1e-3, "ms"), (1e-6, "µs"),
-)  # fmt: skip
-
-
-def format_seconds(seconds):
-    """Return a time to two digits: 0.12 s, 20 min, 3.5 d; "–" for None and infinity."""
-    if seconds is None or not math.isfinite(seconds):
-        return "–"
-    length, unit = next((pair for pair in _UNITS if seconds >= pair[0]), _UNITS[-1])
-    return f"{format_number(float(f'{seconds / length:.2g}'), 'g')} {unit}"
-
-
-def decimal_hint(value):
-    """Return the hint about a decimal comma in the text ``value``, "" for any other value."""
-    if not isinstance(value, str) or not re.fullmatch(r"[-+]?\d+,\d+", value):
-        return ""
-    return f"; decimals follow a point, {value.replace(',', '.')}"
 
 
 def check_number(name, value, low, high, kind="number"):
@@ -210,7 +169,7 @@ def check_count(name, value, most=LARGEST_INTEGER):
     return check_integer(name, value, 1, most)
 
 
-def as_list(values):
+def make_list(values):
     """Return an iterable, which may be an iterator, as a list; an array or a text is unchanged."""
     if isinstance(values, str | bytes) or hasattr(values, "__array__"):
         return values
@@ -222,42 +181,3 @@ def check_choice(name, value, allowed):
     if not isinstance(value, str) or value not in allowed:
         raise InputError(f"{name} must be one of {', '.join(allowed)}, not {quote(value)}")
     return value
-
-
-# Calls --------------------------------------------------------------------------------------------
-
-
-class WrongCall(InputError, TypeError):
-    """A call with an unknown argument, with too many arguments or with too few."""
-
-
-def did_you_mean(name, allowed):
-    """Return the hint about an unknown ``name``: the nearest of ``allowed``, or ""."""
-    from difflib import get_close_matches
-
-    found = get_close_matches(str(name).lower().replace("-", "_"), [*allowed], 1)
-    return f"; did you mean {found[0]}?" if found else ""
-
-
-def checked_call(function):
-    """Return a ``function`` that raises a ``WrongCall`` for wrong arguments, or such a class."""
-    if isinstance(function, type):
-        function.__init__ = checked_call(function.__init__)
-        return function
-
-    @wraps(function)
-    def call(*given, **named):
-        try:
-            return function(*given, **named)
-        except TypeError as error:
-            if error.__traceback__.tb_next is not None:  # the body raised it, not the call
-                raise
-            from inspect import signature  # which takes long to import
-
-            known = signature(function).parameters
-            unknown = [name for name in named if name not in known]
-            hint = did_you_mean(unknown[0], known) if unknown else ""
-            said = str(error).partition(". Did you mean")[0]  # Python 3.13 has a hint of its own
-            raise WrongCall(f"{said}{hint}") from None
-
-    return call

@@ -7,7 +7,8 @@ of the figures follow from these declarations.
 from dataclasses import dataclass
 from numbers import Real
 
-from twodiscs.model.checks import LONGEST, SHORTEST, InputError, check_number, quote
+from twodiscs.model.checks import LONGEST, SHORTEST, InputError, check_number
+from twodiscs.model.formats import quote
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,47 @@
-"""Numbers as texts."""
+"""Texts of numbers and of values, as pages and messages write them."""
+
+import math
+import re
+import reprlib
+
+#: The form of quoted values: some items of a list, and of the lists in it.
+_SHORT = reprlib.Repr()
+_SHORT.maxlevel = 2
+
+
+def quote(value):
+    """Return the short text of any ``value`` for a message."""
+    try:
+        return " ".join(_SHORT.repr(value).split())
+    except Exception:  # an integer of more than 4300 digits, or an odd class
+        return f"a {type(value).__name__}"
+
+
+def decimal_hint(value):
+    """Return the hint about a decimal comma in the text ``value``, "" for any other value."""
+    if not isinstance(value, str) or not re.fullmatch(r"[-+]?\d+,\d+", value):
+        return ""
+    return f"; decimals follow a point, {value.replace(',', '.')}"
+
+
+def format_number(value, form=""):
+    """Return a number as the pages write it: 1e60 for Python's 1e+60."""
+    return re.sub(r"e\+?(-?)0*(\d)", r"e\1\2", format(value, form))
+
+
+#: (seconds, the unit that they are) from the longest unit down.
+_UNITS = (
+    (365.25 * 86400, "years"), (86400.0, "d"), (3600.0, "h"), (60.0, "min"), (1.0, "s"),
+    (1e-3, "ms"), (1e-6, "µs"),
+)  # fmt: skip
+
+
+def format_seconds(seconds):
+    """Return a time to two digits: 0.12 s, 20 min, 3.5 d; "–" for None and infinity."""
+    if seconds is None or not math.isfinite(seconds):
+        return "–"
+    length, unit = next((pair for pair in _UNITS if seconds >= pair[0]), _UNITS[-1])
+    return f"{format_number(float(f'{seconds / length:.2g}'), 'g')} {unit}"
 
 
 def shortest_decimal(value, distance, avoid=()):

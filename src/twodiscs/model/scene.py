@@ -19,6 +19,7 @@ from dataclasses import KW_ONLY, dataclass, fields, replace
 from fractions import Fraction
 from functools import cached_property
 
+from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import (
     LONGEST,
     MOST_DISCS,
@@ -28,11 +29,10 @@ from twodiscs.model.checks import (
     check_integer,
     check_length,
     check_number,
-    checked_call,
-    quote,
 )
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS
+from twodiscs.model.formats import quote
 from twodiscs.model.geometry import MANY_DISCS, TWO_DISCS
 from twodiscs.model.many_geometry import check_box
 from twodiscs.model.two_geometry import ENERGY

@@ -2,7 +2,8 @@
 
 from hashlib import blake2b
 
-from twodiscs.model.checks import InputError, check_choice, check_integer, check_length, quote
+from twodiscs.model.checks import InputError, check_choice, check_integer, check_length
+from twodiscs.model.formats import quote
 from twodiscs.model.scene import check_scene
 
 #: The methods with random numbers, each with separate streams.

@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.checks import InputError, quote
+from twodiscs.model.checks import InputError
+from twodiscs.model.formats import quote
 from twodiscs.sampling.conditioned import (
     ConditionedSampler,
     conditioned_sampler,

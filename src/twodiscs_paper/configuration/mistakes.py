@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 
 from twodiscs.model import checks
-from twodiscs.model.checks import InputError, decimal_hint
+from twodiscs.model.checks import InputError
+from twodiscs.model.formats import decimal_hint
 from twodiscs_paper.configuration.schema import keys
 
 #: Pydantic's errors about a key: it is unknown or no text, or it is missing.

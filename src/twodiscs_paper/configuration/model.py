@@ -9,16 +9,10 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, create_model
 
-from twodiscs.model.checks import (
-    LARGEST_INTEGER,
-    LONGEST,
-    MOST_DISCS,
-    PRESETS,
-    SHORTEST,
-    format_number,
-)
+from twodiscs.model.checks import LARGEST_INTEGER, LONGEST, MOST_DISCS, PRESETS, SHORTEST
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS, HOPS
+from twodiscs.model.formats import format_number
 from twodiscs_paper.catalogue import STUDIES
 
 #: A decimal number. YAML 1.1 has others: it reads 010 as 8 and 1:30 as 90.

@@ -3,8 +3,9 @@
 A mistake raises ``InputError`` with the key in the block of the scene.
 """
 
-from twodiscs.model.checks import MOST_WITH_VOLUME, PRESETS, InputError, format_number
+from twodiscs.model.checks import MOST_WITH_VOLUME, PRESETS, InputError
 from twodiscs.model.events import EVENTS, HOPS
+from twodiscs.model.formats import format_number
 from twodiscs.model.scene import Box
 from twodiscs.theory.exact import MIN_FRACTION, events_per_interval, free_fraction
 from twodiscs_paper.configuration.model import Accuracy, Histogram, Watch

@@ -7,7 +7,8 @@ from pathlib import Path
 import yaml
 from pydantic import ValidationError
 
-from twodiscs.model.checks import InputError, format_number
+from twodiscs.model.checks import InputError
+from twodiscs.model.formats import format_number
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.mistakes import ConfigError, describe, name_of_scene, sentences
 from twodiscs_paper.configuration.model import (

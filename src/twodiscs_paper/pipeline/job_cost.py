@@ -13,7 +13,7 @@ from pathlib import Path
 
 from twodiscs.analysis.tables import CostTable, MeanTimesTable, shortfall
 from twodiscs.dynamics.stages import STAGES
-from twodiscs.model.checks import format_number, format_seconds
+from twodiscs.model.formats import format_number, format_seconds
 from twodiscs.theory import exact
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.pipeline.points import shard_ranges

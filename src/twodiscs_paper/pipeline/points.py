@@ -3,7 +3,8 @@
 import json
 from pathlib import Path
 
-from twodiscs.model.checks import InputError, quote
+from twodiscs.model.checks import InputError
+from twodiscs.model.formats import quote
 from twodiscs.points.base import MALFORMED, SECONDS, read_json, restore_arrays
 
 #: What to do about a wrong file.

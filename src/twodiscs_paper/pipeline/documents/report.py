@@ -25,7 +25,7 @@ from twodiscs.analysis.tables import (
 )
 from twodiscs.figures.scene_figures import ANIMATION, GEOMETRY
 from twodiscs.measure.measurements import measurement
-from twodiscs.model.checks import format_number, format_seconds
+from twodiscs.model.formats import format_number, format_seconds
 from twodiscs.model.scene import Box
 from twodiscs_paper.catalogue import ALL_FIGURES
 from twodiscs_paper.pipeline.job_cost import missed, taken

@@ -1,0 +1,39 @@
+"""Calls with wrong arguments: an ``InputError`` that names the nearest right one."""
+
+from difflib import get_close_matches
+from functools import wraps
+from inspect import signature
+
+from twodiscs.model.checks import InputError
+
+
+class WrongCall(InputError, TypeError):
+    """A call with an unknown argument, with too many arguments or with too few."""
+
+
+def did_you_mean(name, allowed):
+    """Return the hint about an unknown ``name``: the nearest of ``allowed``, or ""."""
+    found = get_close_matches(str(name).lower().replace("-", "_"), [*allowed], 1)
+    return f"; did you mean {found[0]}?" if found else ""
+
+
+def checked_call(function):
+    """Return a ``function`` that raises a ``WrongCall`` for wrong arguments, or such a class."""
+    if isinstance(function, type):
+        function.__init__ = checked_call(function.__init__)
+        return function
+
+    @wraps(function)
+    def call(*given, **named):
+        try:
+            return function(*given, **named)
+        except TypeError as error:
+            if error.__traceback__.tb_next is not None:  # the body raised it, not the call
+                raise
+            known = signature(function).parameters
+            unknown = [name for name in named if name not in known]
+            hint = did_you_mean(unknown[0], known) if unknown else ""
+            said = str(error).partition(". Did you mean")[0]  # Python 3.13 has a hint of its own
+            raise WrongCall(f"{said}{hint}") from None
+
+    return call
