@@ -112,9 +112,9 @@ def all_reached(point):
     return all(e and e.relative_stderr <= point.target[event] for event, e in estimates.items())
 
 
-def through_json(pieces):
-    """Return ``pieces`` of a run as they come back from a file."""
-    content = file_content("simulate", {}, {}, {"all": {"sums": pieces}})
+def through_json(ranges):
+    """Return the sums of ``ranges`` of blocks as they come back from a file."""
+    content = file_content("simulate", {}, {}, {"all": {"sums": ranges}})
     return restore_arrays(json.loads(json.dumps(content))["parts"])["all"]["sums"]
 
 

@@ -226,7 +226,7 @@ MUTANTS = [
     ("two shells without their overlap", '"right*top": self.right_and_top, "top*top"', '"right*top": 0, "top*top"'),
     ("flux without the error of Monte Carlo", "stderr = ratio * math.hypot(*relative)", "stderr = ratio * relative[0]"),
     ("rate of decay of independent counts", "np.std(counted[:, 0] / early - counted[:, 1] / late", "np.std(counted[:, 0] / early + counted[:, 1] / late"),
-    ("earlier parts twice in the total", "before + done, sum(work.values()))", "before + done, before + sum(work.values()))"),
+    ("earlier components twice in the total", "before + number, sum(work.values()))", "before + number, before + sum(work.values()))"),
     ("axes of the start of a histogram", '(scene.width, scene.height)[:: 1 if AXIS[hop] == "y" else -1]', '(scene.width, scene.height)[:: 1 if AXIS[hop] == "x" else -1]'),
     ("first file of a list", "for moment in (min(times), max(times))", "for moment in (times[0], times[-1])"),
     ("nested survivals as independent", "math.sqrt(late - early) / time}", "math.sqrt(late + early) / time}"),

@@ -110,9 +110,9 @@ JOBS = {
 }  # fmt: skip
 
 
-def kept(path, stage, scene, settings, parts):
+def kept(path, stage, scene, settings, components):
     """Write the file of a job of the pipeline."""
-    content = file_content(STAGES[stage].call, scene.parameters(), settings, parts)
+    content = file_content(STAGES[stage].call, scene.parameters(), settings, components)
     write_json(path, content)
 
 
@@ -121,7 +121,7 @@ def test_a_point_of_the_pipeline_goes_on_and_a_saved_result_adds_up(stage, tmp_p
     settings, larger, function = JOBS[stage]
     settings = settings | {"seed": 3, "name": "paper"}
     run = STAGES[stage].run(NARROW, settings)
-    kept(tmp_path / "0.2.json", stage, NARROW, settings, run.run().parts)
+    kept(tmp_path / "0.2.json", stage, NARROW, settings, run.run().components)
     read, made = td.load_result(tmp_path / "0.2.json"), function(NARROW, **settings)
     assert read == made
     assert bits(read.more(**larger)) == bits(function(NARROW, **settings | larger))
@@ -129,12 +129,12 @@ def test_a_point_of_the_pipeline_goes_on_and_a_saved_result_adds_up(stage, tmp_p
     made.save(tmp_path / "saved.json")
     run, ranges = STAGES[stage].run(NARROW, settings | larger), {}
     saved = restore_arrays(read_json(tmp_path / "saved.json")["parts"])
-    for name, part in run.parts.items():
-        _, stop = reached(made.parts[name]["sums"])
-        rest = {(stop, part.planned): part.work(stop, part.planned)}
-        ranges[name] = check_coverage(part, saved[name]["sums"] | rest)
+    for name, component in run.components.items():
+        _, stop = reached(made.components[name]["sums"])
+        rest = {(stop, component.planned): component.work(stop, component.planned)}
+        ranges[name] = check_coverage(component, saved[name]["sums"] | rest)
     whole = run.point(ranges)
-    alone = {n: {(0, p.planned): p.work(0, p.planned)} for n, p in run.parts.items()}
+    alone = {n: {(0, p.planned): p.work(0, p.planned)} for n, p in run.components.items()}
     assert whole == run.point(alone)
 
 

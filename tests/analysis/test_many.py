@@ -64,7 +64,7 @@ def measured(request):
         "monte_carlo": [montecarlo.MonteCarloRun(scene, quantities, 100_000, 0.02, 4).run()],
     }
     for stage, some in points.items():
-        contents = [file_content(stage, {}, {}, point.parts) for point in some]
+        contents = [file_content(stage, {}, {}, point.components) for point in some]
         points[stage] = [
             STAGES[stage].point.of(scene, restore_arrays(content["parts"]))
             for content in json.loads(json.dumps(contents))

@@ -95,7 +95,7 @@ def test_a_blocked_hop_is_not_waited_for():
     scene = PAPER.with_radius(0.3)
     point = runs.DynamicsRun(scene, {"horizontal_hop": 1e-9}, 10**9, 1).run()
     assert point.counts == {"horizontal_hop": 0}
-    assert [*point.parts["all"]["sums"]] == [(0, 32)]
+    assert [*point.components["all"]["sums"]] == [(0, 32)]
 
 
 @pytest.mark.parametrize(

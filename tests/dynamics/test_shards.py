@@ -100,7 +100,7 @@ for point in (
     sample_point(scene, areas, 1, 0.02, 11),
     runs.DynamicsRun(bent, {"vertical_hop": 0.02, "any_wall": 0.02}, 10**6, 11).run(),
 ):
-    print(file_content("", {}, {}, point.parts))
+    print(file_content("", {}, {}, point.components))
 scenes = [Scene(1.5, 1.0, 0.15, discs=3), Scene(2.3, 0.6, 0.18, discs=8)]
 scenes += [Scene(1.5, 1.0, 0.2, discs=6), Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.3)]
 for scene in [*scenes, Scene(1.5, 1.0, 0.15, discs=4, periodic="x")]:

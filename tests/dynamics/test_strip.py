@@ -217,7 +217,7 @@ def test_every_rare_hop_has_random_numbers_of_its_own(monkeypatch):
     for radius, root in product((0.2499, 0.24999), (1, 2)):
         target = dict.fromkeys(HOPS, 0.1)
         run = runs.DynamicsRun(Scene(1.0, 1.0, radius), target, 10**6, root)
-        assert {*HOPS} < {*run.parts}
+        assert {*HOPS} < {*run.components}
         for hop in HOPS:
-            run.parts[hop].work(0, 1)
+            run.components[hop].work(0, 1)
     assert len({*streams.values(), 1, 2}) == len(streams) + 2 == 10

@@ -105,11 +105,11 @@ def test_draws_are_within_the_price_of_a_budget(drawn):
     try:
         scene = scene_of(width, 1.0, effects, share)
         require_initial_states(scene)
-        parts = runs.DynamicsRun(scene, dict.fromkeys(scene.events, 1e-3), 10**9, 1).parts
+        components = runs.DynamicsRun(scene, dict.fromkeys(scene.events, 1e-3), 10**9, 1).components
     except InputError:
         return
     proposals = 0
-    for name, run in parts.items():
+    for name, run in components.items():
         starts = run.budget / run.block_events * REPLICAS
         if name == "all":
             chance = exact.free_fraction(scene)

@@ -43,9 +43,9 @@ def new_run(scene, error, budget=None):
 def test_a_pilot_has_the_errors_of_a_run_of_the_same_blocks(blocks, scene):
     run, measured = new_run(scene, 1.0), td.simulate(scene, 1.0)
     found = forecast_dynamics(run, cost.pilots(run))
-    assert found.seconds == pytest.approx(len(run.parts) * 32e-3)
+    assert found.seconds == pytest.approx(len(run.components) * 32e-3)
     planned = forecast_dynamics(run, cost.pilots(run), planned=True)
-    assert planned.seconds == pytest.approx(sum(p.planned for p in run.parts.values()) * 1e-3)
+    assert planned.seconds == pytest.approx(sum(p.planned for p in run.components.values()) * 1e-3)
     for event, error in found.reached.items():
         assert error == pytest.approx(measured[f"{event}_time"].relative_stderr, rel=1e-3)
 
@@ -133,15 +133,18 @@ def test_ten_times_the_accuracy_takes_a_hundred_times_as_long(blocks):
 
 
 def test_without_a_budget_a_run_has_a_day():
-    easy = new_run(NEAR, 1e-3).parts
-    assert all(part.budget > 100 * part.planned * part.block_events for part in easy.values())
+    easy = new_run(NEAR, 1e-3).components
+    assert all(
+        component.budget > 100 * component.planned * component.block_events
+        for component in easy.values()
+    )
     hard = new_run(NEAR, 1e-9)
-    work = sum(part.budget * part.cost_ratio for part in hard.parts.values())
+    work = sum(component.budget * component.cost_ratio for component in hard.components.values())
     assert work == pytest.approx(DAY)
     assert hard.most_events == DAY
-    # All parts have the same fraction of their events.
-    far = new_run(NEAR, 1e-9, 10**18).parts
-    shares = [part.budget / far[name].budget for name, part in hard.parts.items()]
+    # All components have the same fraction of their events.
+    far = new_run(NEAR, 1e-9, 10**18).components
+    shares = [component.budget / far[name].budget for name, component in hard.components.items()]
     assert shares == pytest.approx([shares[0]] * len(shares))
 
 
@@ -176,7 +179,7 @@ def row(event, error, status="budget", target=1e-5):
     ],
 )
 def test_a_sentence_says_what_was_not_reached(rows, said):
-    """And if a part had too small a share of the budget, or no budget was given."""
+    """And if a component had too small a share of the budget, or no budget was given."""
     assert shortfall(rows, 2 * 10**9, 2e9, 20.0) == said
     found = shortfall([row("any_wall", 2e-5)], 10**9, 1e8)
     assert found.endswith("ended it at 2e-5 (any_wall_time); a budget of 4e9 is enough")
@@ -233,7 +236,7 @@ def test_an_event_that_no_pilot_counted_has_no_price_and_no_forecast():
     assert price.quantity == "disc_collision_time"
     run = DynamicsRun(SCENE, dict.fromkeys(errors, 1e-3), 10**7, 1)
     found = forecast_dynamics(run, {"all": pilot})
-    assert found.events == pytest.approx(run.parts["all"].budget)
+    assert found.events == pytest.approx(run.components["all"].budget)
     assert found.shortfall(run).endswith(
         "before there are enough events horizontal_hop for an error"
     )

@@ -65,28 +65,28 @@ def test_shards_cover_all_blocks_once(stage):
         watch={"volume": True, "mean_times": True,
                "hop_histogram": {"radii": [0.24], "intervals": 1e7}},
     )  # fmt: skip
-    parts = job_cost.run_at(request, stage, 0.24).parts
+    components = job_cost.run_at(request, stage, 0.24).components
     shards = job_cost.shards(request, stage, 0.24)
-    assert {part for part, *_ in shards} == {*parts}
-    for part, run in parts.items():
-        pieces = sorted((first, stop) for name, first, stop in shards if name == part)
-        assert pieces[0][0] == 0
-        assert pieces[-1][1] == run.planned
-        assert all(a[1] == b[0] for a, b in pairwise(pieces))
-        most = max(stop - first for first, stop in pieces)
+    assert {component for component, *_ in shards} == {*components}
+    for component, run in components.items():
+        ranges = sorted((first, stop) for name, first, stop in shards if name == component)
+        assert ranges[0][0] == 0
+        assert ranges[-1][1] == run.planned
+        assert all(a[1] == b[0] for a, b in pairwise(ranges))
+        most = max(stop - first for first, stop in ranges)
         assert most == 1 or most * run.block_events * run.cost_ratio <= request.shard_events
 
 
 @settings(max_examples=30)
 @given(st.floats(1e-5, 1e-3), st.floats(1.01, 10))
 def test_a_tighter_accuracy_keeps_the_shards_but_the_last(error, times):
-    """They are pieces of one grid: of each part all but the last one stay."""
+    """They are ranges of one grid: of each component all but the last one stay."""
     found = [
         job_cost.shards(scene(shard_events=1e8, accuracy=e, event_budget=1e15), "dynamics", 0.24)
         for e in (error, error / times)
     ]
-    for part in ("all", "horizontal_hop"):
-        coarse, fine = ([shard for shard in some if shard[0] == part] for some in found)
+    for component in ("all", "horizontal_hop"):
+        coarse, fine = ([shard for shard in some if shard[0] == component] for some in found)
         assert {*coarse[:-1]} <= {*fine}
 
 
@@ -115,9 +115,9 @@ def blocks(monkeypatch):
 def test_the_bound_on_the_events_of_an_accuracy_is_not_below_the_plan(radius):
     for accuracy in (1e-2, 1e-4):
         request = scene(radii=[radius], accuracy=accuracy, event_budget=1e15)
-        parts = job_cost.run_at(request, "dynamics", radius).parts
-        events = parts["all"].planned * parts["all"].block_events
-        assert job_cost._events(request, radius) * 1.07 + parts["all"].block_events >= events
+        components = job_cost.run_at(request, "dynamics", radius).components
+        events = components["all"].planned * components["all"].block_events
+        assert job_cost._events(request, radius) * 1.07 + components["all"].block_events >= events
     assert job_cost._events(scene(discs=3, radii=[0.1]), 0.1) == float("inf")
 
 

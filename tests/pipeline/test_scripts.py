@@ -70,7 +70,7 @@ def shards(run, stage, ranges):
     files = []
     for first, stop in ranges:
         files.append(f"all-{first}-{stop}.json")
-        where = {"stage": stage, "radius": "0.2", "part": "all", "first": first, "stop": stop}
+        where = {"stage": stage, "radius": "0.2", "component": "all", "first": first, "stop": stop}
         params = {"box": PARAMETERS, "work": WORK[stage] | SHARD[stage]}
         run("point", params, where, point=files[-1])
     return files
@@ -84,7 +84,7 @@ def test_work_of_known_length_gives_the_same_point_in_shards(run, stage):
 
 
 def test_counts_are_the_same_in_any_number_of_shards(run):
-    stop = STAGES["dynamics"].run(BOX.scene(0.2), WORK["dynamics"]).parts["all"].planned
+    stop = STAGES["dynamics"].run(BOX.scene(0.2), WORK["dynamics"]).components["all"].planned
     assert stop >= 3
     one = shards(run, "dynamics", [(0, stop)])
     some = shards(run, "dynamics", [(i, i + 1) for i in range(stop)][::-1])

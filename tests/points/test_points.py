@@ -52,8 +52,8 @@ def test_a_saved_result_is_a_point_and_no_other_point(tmp_path, stage, name):
     result.save(path)
     point = read_point(path, STAGES[stage], SCENES[name], result.settings)
     assert point.scene == SCENES[name]
-    assert point == type(point).of(point.scene, result.parts)
-    assert point.parts.keys() == result.parts.keys()
+    assert point == type(point).of(point.scene, result.components)
+    assert point.components.keys() == result.components.keys()
     for other in STAGES.keys() - {stage}:
         with pytest.raises(InputError, match=r"has kind '\w+', but its job asks for '\w+'; delete"):
             read_point(path, STAGES[other], SCENES[name], result.settings)

@@ -1,4 +1,4 @@
-"""Work in rounds or pieces could give other sums, be done twice or go beyond its budget."""
+"""Work in rounds or shards could give other sums, be done twice or go beyond its budget."""
 
 import math
 from dataclasses import replace
@@ -103,9 +103,9 @@ def test_rounds_end_where_the_error_is_reached_or_the_budget_spent(budget):
 
 def test_the_work_of_runs_one_after_the_other_ends_at_their_total():
     seen = []
-    parts = {name: fabricated(0.01, 1e12)[0] for name in ("all", "vertical_hop")}
-    done = rounds.run_all_in_rounds(parts, lambda *given: seen.append(given))
-    work = [reached(pieces)[1] * parts[name].block_work for name, pieces in done.items()]
+    components = {name: fabricated(0.01, 1e12)[0] for name in ("all", "vertical_hop")}
+    done = rounds.run_all_in_rounds(components, lambda *given: seen.append(given))
+    work = [reached(ranges)[1] * components[name].block_work for name, ranges in done.items()]
     assert seen[-1] == (sum(work), sum(work))
 
 
@@ -147,7 +147,7 @@ def test_what_is_kept_is_not_done_again():
 
 
 def test_a_run_goes_on_from_shards():
-    """Only the first round and the rest are done: the pieces between them join up."""
+    """Only the first round and the rest are done: the ranges between them join up."""
     run, counts = fabricated(0.003, 1e12)
     shards, done, work = done_in_shards(run, 256), [], run.work
     run = replace(run, work=lambda *ends: done.append(ends) or work(*ends))
@@ -165,14 +165,14 @@ def test_counts_in_pieces_are_those_of_their_blocks_and_reach_what_is_asked():
     """This holds for rare hops, too, which are counted from separate starts."""
     scene = PAPER.scene(0.24)
     run = runs.DynamicsRun(scene, TARGET, 4 * 10**7, 3)
-    assert {*run.parts} == {"all", "horizontal_hop"}
+    assert {*run.components} == {"all", "horizontal_hop"}
     found = [
-        run.point({name: done_in_shards(one, n) for name, one in run.parts.items()})
+        run.point({name: done_in_shards(one, n) for name, one in run.components.items()})
         for n in (16, 1024)
     ]
     assert found[0] == found[1]
     blocks = found[0].replicas // REPLICAS
-    assert blocks == run.parts["all"].planned
+    assert blocks == run.components["all"].planned
     sums, _ = find_engine(scene).run_blocks(scene, [*TARGET], 3, 0, blocks, found[0].duration)
     assert [*found[0].counts.values()] == [sums[EVENTS.index(event)] for event in found[0].counts]
     assert all_reached(found[0])
@@ -182,10 +182,10 @@ def test_counts_in_pieces_are_those_of_their_blocks_and_reach_what_is_asked():
 
 @pytest.mark.parametrize("budget", [10**12, 10**7, 4 * 10**6])
 def test_planned_events_follow_the_errors_asked_for_as_far_as_the_budget_goes(budget):
-    """Each part has what its own events need; too small a budget shortens all equally."""
+    """Each component has what its own events need; too small a budget shortens all equally."""
     scene = PAPER.scene(0.24)
     coarse, fine = (
-        runs.DynamicsRun(scene, {"horizontal_hop": error, "any_wall": 0.001}, budget, 1).parts
+        runs.DynamicsRun(scene, {"horizontal_hop": error, "any_wall": 0.001}, budget, 1).components
         for error in (2e-3, 1e-3)
     )
     ratio = fine["horizontal_hop"].planned / fine["all"].planned
@@ -194,18 +194,18 @@ def test_planned_events_follow_the_errors_asked_for_as_far_as_the_budget_goes(bu
     if budget == 10**12:
         assert fine["all"].planned == coarse["all"].planned
     else:
-        for parts in (coarse, fine):
-            events = sum(one.planned * one.block_events for one in parts.values())
+        for components in (coarse, fine):
+            events = sum(one.planned * one.block_events for one in components.values())
             assert 0.9 * budget < events < (1 + 1 / 16) * 1.05 * budget
 
 
 def test_intervals_in_pieces_are_those_of_one_process():
     run = runs.IntervalsRun(PAPER.scene(0.1), "vertical_hop", 200_000, 5)
-    assert run.parts["all"].planned == 4
-    found = [run.point({"all": done_in_shards(run.parts["all"], n)}) for n in (1, 2)]
+    assert run.components["all"].planned == 4
+    found = [run.point({"all": done_in_shards(run.components["all"], n)}) for n in (1, 2)]
     assert found[0] == found[1] == run.run()
     # A second method: the sums of the chains in floating point.
-    totals, _ = runs.recorded(run.scene, run.event, 5, 0, 4, np.ones(1, np.bool_))
+    totals, _ = runs.record_blocks(run.scene, run.event, 5, 0, 4, np.ones(1, np.bool_))
     means = totals / runs.RETURNS
     assert found[0].mean == pytest.approx(math.fsum(means) / means.size, rel=1e-14)
     error = np.std(means, ddof=1) / math.sqrt(means.size)

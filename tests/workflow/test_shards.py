@@ -53,12 +53,16 @@ def test_shards_are_jobs_that_a_dry_run_shows_and_do_not_depend_on_the_accuracy(
     first, files = planned(), []
     for words in first:
         one = dict(word.split("=") for word in words)
-        name = "results/{scene}/shards/{stage}/{radius}/{part}-{first}-{stop}.json".format(**one)
+        name = "results/{scene}/shards/{stage}/{radius}/{component}-{first}-{stop}.json".format(
+            **one
+        )
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("{}")
         files.append(name)
     assert len(files) > 3
-    assert all(any(f"/{part}-" in name for name in files) for part in ("all", "horizontal_hop"))
+    assert all(
+        any(f"/{component}-" in name for name in files) for component in ("all", "horizontal_hop")
+    )
     place.snakemake("--cores", "1", "results/code/physics.sha256")
     place.snakemake("--cores", "1", "--touch", "--", *files)
     place_at(place.path, unbuilt, accuracy=5e-4)
@@ -83,7 +87,7 @@ def test_no_shard_is_done_twice_and_a_damaged_one_is_named(unbuilt, tmp_path):
     assert table.count(b",0.001,reached,") == 2
     first = shards(place)
 
-    # A tighter accuracy takes more shards: of each part the last one alone may be another.
+    # A tighter accuracy takes more shards: of each component the last one alone may be another.
     place_at(place.path, unbuilt, accuracy=5e-4)
     assert build(place).count(b",0.0005,reached,") == 2
     second = shards(place)

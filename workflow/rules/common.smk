@@ -123,7 +123,7 @@ wildcard_constraints:
     scene="|".join(SCENES),
     stage="|".join(STAGES),
     radius=r"[0-9][0-9.e+-]*",
-    part="[a-z_]+",
+    component="[a-z_]+",
     first="[0-9]+",
     stop="[0-9]+",
     group="|".join(CODE),
@@ -144,7 +144,7 @@ def shards(w):
     """Return the shards of a point, none if one job does all its work."""
     folder = f"{RESULTS}/{w.scene}/shards/{w.stage}/{w.radius}"
     shards = job_cost.shards(SCENES[w.scene], w.stage, float(w.radius))
-    return [f"{folder}/{part}-{first}-{stop}.json" for part, first, stop in shards]
+    return [f"{folder}/{component}-{first}-{stop}.json" for component, first, stop in shards]
 
 
 # The long runs that figures read: their paths are known only while this file is read.

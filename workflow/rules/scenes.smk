@@ -56,11 +56,11 @@ use rule monte_carlo as shard with:
     input:
         code=code("point", "physics"),
     output:
-        point=f"{RESULTS}/{{scene}}/shards/{{stage}}/{{radius}}/{{part}}-{{first}}-{{stop}}.json",
+        point=f"{RESULTS}/{{scene}}/shards/{{stage}}/{{radius}}/{{component}}-{{first}}-{{stop}}.json",
     log:
-        f"{RESULTS}/logs/{{scene}}/{{stage}}/{{radius}}_{{part}}-{{first}}-{{stop}}.log",
+        f"{RESULTS}/logs/{{scene}}/{{stage}}/{{radius}}_{{component}}-{{first}}-{{stop}}.log",
     benchmark:
-        f"{RESULTS}/benchmarks/{{scene}}/{{stage}}/{{radius}}_{{part}}-{{first}}-{{stop}}.tsv"
+        f"{RESULTS}/benchmarks/{{scene}}/{{stage}}/{{radius}}_{{component}}-{{first}}-{{stop}}.tsv"
     wildcard_constraints:
         stage="|".join(STAGES),
     params:

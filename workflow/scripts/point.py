@@ -14,15 +14,15 @@ wildcards, paths = snakemake.wildcards, snakemake.input.get("shards", [])
 params, stage = snakemake.params, STAGES[snakemake.wildcards.stage]
 scene = Scene(**params.box, radius=float(wildcards.radius))
 run, before = stage.run(scene, params.work), time.process_time()
-if part := wildcards.get("part"):
+if name := wildcards.get("component"):
     first, stop = int(wildcards.first), int(wildcards.stop)
-    parts = {part: {"sums": {(first, stop): run.parts[part].work(first, stop)}}}
+    components = {name: {"sums": {(first, stop): run.components[name].work(first, stop)}}}
 elif paths:
     shards = read_shards(paths, stage, scene, params.shard_work)
-    ranges = {name: check_coverage(run.parts[name], shards[name]) for name in run.parts}
-    parts = run.point(ranges).parts
+    ranges = {name: check_coverage(run.components[name], shards[name]) for name in run.components}
+    components = run.point(ranges).components
 else:
-    parts = run.run().parts
-content = file_content(stage.call, scene.parameters(), params.work, parts)
+    components = run.run().components
+content = file_content(stage.call, scene.parameters(), params.work, components)
 of_shards = sum(read_seconds(path) or 0.0 for path in paths)
 write_json(snakemake.output.point, content, round(time.process_time() - before + of_shards, 2))

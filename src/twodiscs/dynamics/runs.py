@@ -1,7 +1,7 @@
 """Runs: counts of events to an error or in a time, and intervals between hops.
 
-A run has its work as ``SequentialRun`` of blocks, ``parts``, and makes the point of their sums. The
-kernels are those of an ``Engine``, of two discs or of many.
+A run has its work as ``SequentialRun`` of blocks, its ``components``, and makes the point of their
+sums. The kernels are those of an ``Engine``, of two discs or of many.
 
 The mean count in a time T is rate × T exactly, for every T and without burn-in; the spread between
 independent replicas gives its error.
@@ -92,7 +92,7 @@ class DynamicsRun(Run):
         return [e for e in self._events if self.scene.is_possible(e) and e not in self._rare]
 
     @cached_property
-    def parts(self):
+    def components(self):
         """Runs by name, ``SequentialRun``: "all" and the rare hops.
 
         The budget is divided in proportion to the events that the errors need. If it is too small
@@ -139,7 +139,7 @@ class DynamicsRun(Run):
         needed = needed / each
         needed = np.ceil(np.where(needed * block_events <= budget, needed, 0.0))
         planned = max([max(replicas, default=0.0) / each, *needed])
-        if scene.discs > 2:  # rare hops of two discs have their own parts
+        if scene.discs > 2:  # rare hops of two discs have their own components
             planned = min(planned, budget / block_events)
 
         unseen = np.array([corner_variance(scene, event, duration) for event in EVENTS])
@@ -158,18 +158,18 @@ class DynamicsRun(Run):
             engine.cost_ratio(scene),
         )
 
-    def point(self, pieces):
-        """Return the ``DynamicsPoint``, given {name: pieces} of all parts."""
+    def point(self, ranges):
+        """Return the ``DynamicsPoint``, given {component: ranges of blocks with their sums}."""
         engine = find_engine(self.scene)
         constants = {
             "duration": engine.replica_duration(self.scene),
             "replicas": engine.block_replicas(self.scene),
             "target": self._target,
         }
-        parts = {"all": constants | {"sums": pieces["all"]}}
+        components = {"all": constants | {"sums": ranges["all"]}}
         for hop in self._rare:
-            parts[hop] = strip.constants(self.scene, hop) | {"sums": pieces[hop]}
-        return DynamicsPoint.of(self.scene, parts)
+            components[hop] = strip.constants(self.scene, hop) | {"sums": ranges[hop]}
+        return DynamicsPoint.of(self.scene, components)
 
     @property
     def _target(self):
@@ -230,7 +230,7 @@ class TimedRun(DynamicsRun):
         return dict.fromkeys(self._events)
 
     @cached_property
-    def parts(self):
+    def components(self):
         """The ``SequentialRun`` of all blocks, {"all": run}."""
         engine = find_engine(self.scene)
         each = engine.replica_duration(self.scene) * engine.block_replicas(self.scene)
@@ -317,7 +317,7 @@ class IntervalsRun(Run):
         return np.ones(1, np.bool_)
 
     @cached_property
-    def parts(self):
+    def components(self):
         """The ``SequentialRun`` of all blocks, {"all": run}.
 
         Sums are the sums of ``record_intervals``, and Σ t and Σ t² over the times of chains, in
@@ -342,16 +342,16 @@ class IntervalsRun(Run):
         ratio = find_engine(self.scene).chain_cost_ratio(self.scene)
         return {"all": fixed(work, self._blocks, self._each * self._events, ratio)}
 
-    def point(self, pieces):
-        """Return the ``IntervalsPoint``, given {"all": pieces}."""
-        part = {
+    def point(self, ranges):
+        """Return the ``IntervalsPoint``, given {"all": ranges of blocks with their sums}."""
+        component = {
             "event": self.event,
             "bin_width": _width(self.scene, self.event),
             "chains": CHAINS,
             "returns": RETURNS,
-            "sums": pieces["all"],
+            "sums": ranges["all"],
         }
-        return IntervalsPoint.of(self.scene, {"all": part})
+        return IntervalsPoint.of(self.scene, {"all": component})
 
     def run(self, progress=None, cores=1, resume_from=None):
         """Return the ``IntervalsPoint``; stop long kernels if nobody waits any more."""

@@ -61,7 +61,7 @@ def machine():
 
 
 class Pilot(NamedTuple):
-    """The mean block of a part of a run: its processor seconds, events and replicas.
+    """The mean block of a component of a run: its processor seconds, events and replicas.
 
     ``errors`` are the relative errors of one block by event, ``first_round`` is the fewest blocks
     of a run that waits for an error.
@@ -94,17 +94,17 @@ def timed(work, seconds, fewest=1):
 
 
 def pilots(run, seconds=PILOT):
-    """Return {part: ``Pilot``} of a ``DynamicsRun``: "all", and the rare hops in their strips."""
-    return {name: _pilot(run, name, seconds) for name in run.parts}
+    """Return {component: ``Pilot``} of a ``DynamicsRun``: "all", and rare hops in their strips."""
+    return {name: _pilot(run, name, seconds) for name in run.components}
 
 
 def _pilot(run, name, seconds):
     from twodiscs.dynamics.engine import find_engine
     from twodiscs.dynamics.runs import relative_errors
 
-    scene, engine, part = run.scene, find_engine(run.scene), run.parts[name]
+    scene, engine, one = run.scene, find_engine(run.scene), run.components[name]
     replicas = engine.block_replicas(scene)
-    sums, blocks, each = timed(part.work, seconds, -(-FEWEST_REPLICAS // replicas))
+    sums, blocks, each = timed(one.work, seconds, -(-FEWEST_REPLICAS // replicas))
     if name == "all":
         number, errors = blocks * replicas, {}
         duration = engine.replica_duration(scene)
@@ -116,16 +116,16 @@ def _pilot(run, name, seconds):
                 few = count < FEWEST_COUNTS and expected
                 errors[event] = math.sqrt(CLUSTER / (expected * number)) if few else error
     else:
-        error = float(part.error_over_target(sums, blocks)[0])
+        error = float(one.error_over_target(sums, blocks)[0])
         if not math.isfinite(error):
-            error = math.sqrt(part.planned / blocks)
+            error = math.sqrt(one.planned / blocks)
         errors = {name: error * run.target[name]}
     errors = {event: error * math.sqrt(blocks) for event, error in errors.items()}
-    return Pilot(each, part.simulated_in(sums) / blocks, replicas, errors, part.first_round)
+    return Pilot(each, one.simulated_in(sums) / blocks, replicas, errors, one.first_round)
 
 
 def blocks_wanted(scene, pilots, target):
-    """Return {part: blocks} that a run to the errors ``target``, {event: error}, takes."""
+    """Return {component: blocks} that a run to the errors ``target``, {event: error}, takes."""
     from twodiscs.sampling.rounds import MARGIN
 
     blocks = {}
@@ -308,7 +308,7 @@ class Cost(Printed):
     prices : list of Price
         A price for each quantity and method.
     pilots : dict
-        The pilots of dynamics, {part: ``Pilot``}.
+        The pilots of dynamics, {component: ``Pilot``}.
 
     Attributes
     ----------

@@ -85,7 +85,7 @@ class Intervals(Result):
 
     def __init__(self, scene, point, settings):
         self.scene, self.hop = scene, point.event
-        self.settings, self.parts = settings, point.parts
+        self.settings, self.components = settings, point.components
         self.intervals, self.overflow = point.intervals, point.overflow
         self.note = note_of_number("intervals", settings["number"], self.intervals)
         self.rows = HopHistogramTable.rows([point])
@@ -116,7 +116,7 @@ class Intervals(Result):
         return hash((self.scene, self.hop))
 
     def _again(self, settings, options):
-        return run_intervals(self.scene, **settings, **options, resume_from=self.parts)
+        return run_intervals(self.scene, **settings, **options, resume_from=self.components)
 
     def _texts(self) -> pd.DataFrame:
         """Return the texts of the printed table: the mean and the density at 0."""
@@ -193,7 +193,7 @@ def intervals(
 def run_intervals(
     scene, hop, number, seed, name, cores=1, progress=None, resume_from=None, budget=None
 ):
-    """Return the ``Intervals`` of ``intervals``; the parts ``resume_from`` are not done again.
+    """Return the ``Intervals`` of ``intervals``; the components ``resume_from`` are not done again.
 
     ``budget`` is the largest number of wall hits and collisions, None for the usual one.
     """

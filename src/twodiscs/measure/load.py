@@ -145,8 +145,8 @@ def from_dict(content):
             from twodiscs.measure.measurements import MAKERS
 
             make = MAKERS[content["kind"]]
-        settings, parts = content["settings"], Ended(restore_arrays(content["parts"]))
-        found = make(Scene(**content["scene"]), **settings, resume_from=parts)
+        settings, components = content["settings"], Ended(restore_arrays(content["parts"]))
+        found = make(Scene(**content["scene"]), **settings, resume_from=components)
         # A point of a build has some of the settings, maybe in another order.
         is_right, known = settings.keys() <= found.settings.keys(), {"settings": settings}
     made = found.to_dict() | known | {"twodiscs": content["twodiscs"]}

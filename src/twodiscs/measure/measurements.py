@@ -277,7 +277,7 @@ class Measurements(Result, Mapping[str, Measurement]):
 
     def __init__(self, kind, scene, rows, settings, point, note=None):
         self.kind, self.scene, self.rows, self.settings = kind, scene, rows, settings
-        self.point, self.parts, self.note = point, point.parts, note
+        self.point, self.components, self.note = point, point.components, note
         found = (measurement(scene, row, self) for row in rows)
         self._measurements = Quantities((one.quantity, one) for one in found)
 
@@ -304,7 +304,7 @@ class Measurements(Result, Mapping[str, Measurement]):
         return by_name
 
     def _again(self, settings, options):
-        return MAKERS[self.kind](self.scene, **settings, **options, resume_from=self.parts)
+        return MAKERS[self.kind](self.scene, **settings, **options, resume_from=self.components)
 
     def __getitem__(self, name: str) -> Measurement:
         return self._measurements[name]

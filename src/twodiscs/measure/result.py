@@ -65,13 +65,13 @@ class Result(Printed):
     """A result and how it was made: ``kind`` is the function of the face that made it.
 
     ``settings`` are its arguments beside the scene, {name: value}, with the seed and the error that
-    was asked for; ``version`` is the version of the package. ``parts`` are the parts of its run
+    was asked for; ``version`` is the version of the package. ``components`` are those of its run
     (see ``points.base``), from which it goes on. A class has a method ``_again(settings, options)``
     that returns the result of these ``settings`` and uses the sums of this one.
     """
 
     kind: ClassVar[str]
-    parts: dict[str, dict]
+    components: dict[str, dict]
     version: str = twodiscs.__version__
     #: The difference between the work that was asked for and the work that was done, None if none.
     note: str | None = None
@@ -145,7 +145,7 @@ class Result(Printed):
         >>> content["kind"], content["settings"]["seed"]
         ('simulate', 7)
         """
-        return file_content(self.kind, self.scene.parameters(), self.settings, self.parts)
+        return file_content(self.kind, self.scene.parameters(), self.settings, self.components)
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write the result to a JSON file that ``load_result`` reads.

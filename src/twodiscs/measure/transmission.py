@@ -177,8 +177,8 @@ class Transmission(Result):
         others.
     settings : dict, optional
         {argument: value} beside the scene.
-    parts : dict, optional
-        The parts of its run, from which it goes on.
+    components : dict, optional
+        The components of its run, from which it goes on.
     note : str, optional
         The difference between the work that was asked for and the work that was done.
 
@@ -199,13 +199,13 @@ class Transmission(Result):
     times: tuple[float, ...]
     curve: list[Estimate]
     settings: dict[str, object] = field(default_factory=dict)
-    parts: dict[str, dict] = field(default_factory=dict, compare=False)
+    components: dict[str, dict] = field(default_factory=dict, compare=False)
     note: str | None = None
 
     kind = "transmission"
 
     def _again(self, settings, options):
-        return run_transmission(self.scene, **settings, **options, resume_from=self.parts)
+        return run_transmission(self.scene, **settings, **options, resume_from=self.components)
 
     @property
     def passage_time(self) -> Estimate | None:
@@ -260,7 +260,7 @@ def _text_of(estimate):
     return f"{estimate.value:.6g} ± {estimate.stderr:.2g}"
 
 
-def parts_of(scene, hop, mean, gap, times, blocks, name, seed):
+def component_runs(scene, hop, mean, gap, times, blocks, name, seed):
     """Return {"times": run} for ``blocks`` of hops, and "clusters", too, if hops are rare."""
     seeds = {what: hop_seed(scene, hop, name, seed, what) for what in ("clusters", "times")}
     engine = find_engine(scene)
@@ -275,10 +275,10 @@ def parts_of(scene, hop, mean, gap, times, blocks, name, seed):
         sums, _ = engine.hop_sums(scene, hop, times, stop - first, seeds["times"], first)
         return (sums.sum(axis=0),)
 
-    parts = {"times": fixed(curve, blocks, times[-1] * events, work)}
+    runs = {"times": fixed(curve, blocks, times[-1] * events, work)}
     if are_rare(scene, hop, mean):
-        parts["clusters"] = fixed(clusters, blocks, 2 * gap * events, work)
-    return parts
+        runs["clusters"] = fixed(clusters, blocks, 2 * gap * events, work)
+    return runs
 
 
 @checked_call
@@ -346,14 +346,14 @@ def run_transmission(scene, hop, hops, seed, name, cores=1, progress=None, resum
     mean, gap = exact.mean_times(scene)[hop], quiet_time(scene, hop)
     neighbour_mean, others = engine.neighbours(scene, hop)
     times = tuple(box_time(scene, hop) * time for time in TIMES)
-    runs = parts_of(scene, hop, neighbour_mean, gap, times, blocks, stream_name(scene, name), seed)
+    given = scene, hop, neighbour_mean, gap, times, blocks, stream_name(scene, name), seed
     settings = {"hop": hop, "hops": int(hops), "seed": int(seed), "name": name}
     with progress_bar(progress, f"transmission r = {scene.radius:g}") as progress:
-        pieces = run_all_in_rounds(runs, progress, cores, resume_from)
-    parts = {name: {"sums": sums} for name, sums in pieces.items()}
-    ((sums,), _), clusters, kappa = reached(pieces["times"]), {}, None
-    if "clusters" in pieces:
-        (sizes,), _ = reached(pieces["clusters"])
+        ranges = run_all_in_rounds(component_runs(*given), progress, cores, resume_from)
+    components = {name: {"sums": sums} for name, sums in ranges.items()}
+    ((sums,), _), clusters, kappa = reached(ranges["times"]), {}, None
+    if "clusters" in ranges:
+        (sizes,), _ = reached(ranges["clusters"])
         sizes = sizes.reshape(LARGEST_CLUSTER + 1)  # raises for sums of another form
         clusters = {n: int(number) for n, number in enumerate(sizes) if number}
         law = partial(odd_clusters_per_passage, others=others)
@@ -361,5 +361,6 @@ def run_transmission(scene, hop, hops, seed, name, cores=1, progress=None, resum
     curve = time_estimates(sums.reshape(SUMS, len(times)), blocks * HOPS_OF_BLOCK)
     note = note_of_number("hops", settings["hops"], blocks * HOPS_OF_BLOCK)
     return Transmission(
-        scene, hop, kappa, gap, clusters, mean, neighbour_mean, times, curve, settings, parts, note
-    )
+        scene, hop, kappa, gap, clusters, mean, neighbour_mean, times, curve, settings, components,
+        note,
+    )  # fmt: skip

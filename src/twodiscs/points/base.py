@@ -1,10 +1,11 @@
 """Sums of a run, as a file with its digest and as a point.
 
-A run works in blocks, and its sums are integers. ``parts`` of a run are {name: part}. A part is a
-dict: "sums" are {(first, stop): sums of the blocks from ``first`` to ``stop`` − 1}, lists of
-integer arrays. All other entries are constants that its estimates need, such as the duration of a
-replica. The pipeline's points and shards, and saved results, are files of this one shape. A result
-goes on from its pieces, and the pieces of several files with other blocks add up.
+A run works in blocks, and its sums are integers. It has one or more components, {name: component}:
+"all", and rare hops in strips. A component is a dict: "sums" are {(first, stop): sums of the blocks
+from ``first`` to ``stop`` − 1}, lists of integer arrays. All other entries are constants that its
+estimates need, such as the duration of a replica. The pipeline's points and shards, and saved
+results, are files of this one shape, with the components as "parts". A result goes on from its
+sums, and the sums of several files with other blocks add up.
 """
 
 import json
@@ -77,10 +78,10 @@ def _digest_of(content):
 class Point:
     """The arithmetic on the sums of one method in one ``scene``.
 
-    ``parts`` are the parts of its run, None if it was made without one. A class has a method
-    ``of(scene, parts)``, which makes the point of the ``parts`` of a run, and ``estimate``, which
-    returns an ``Estimate`` by name, or None without a count. ``work`` is the number of events,
-    samples or intervals.
+    ``components`` are those of its run, None if it was made without one. A class has a method
+    ``of(scene, components)``, which makes the point of the ``components`` of a run, and
+    ``estimate``, which returns an ``Estimate`` by name, or None without a count. ``work`` is the
+    number of events, samples or intervals.
     """
 
     stage: ClassVar[str]
@@ -93,13 +94,13 @@ class Point:
         return self.scene.radius
 
 
-def reached(pieces, most=math.inf):
-    """Return (sums, stop) of pieces that join up from block 0 and end last, at ``stop``.
+def reached(ranges, most=math.inf):
+    """Return (sums, stop) of the ``ranges`` that join up from block 0 and end last, at ``stop``.
 
-    ``pieces`` are {(first, stop): sums}; none ends beyond ``most``. Without any, the sums are None.
+    They are {(first, stop): sums} of blocks; none ends beyond ``most``. Without any, sums are None.
     """
     joined = {0: None}
-    for (first, stop), sums in sorted(pieces.items()):
+    for (first, stop), sums in sorted(ranges.items()):
         if first in joined and stop <= most:
             joined[stop] = added(joined[first], sums)
     stop = max(joined)
@@ -121,35 +122,35 @@ def _narrow(values):
         return np.frompyfunc(operator.index, 1, 1)(np.array(values, object))
 
 
-def file_content(kind, scene, settings, parts):
-    """Return the ``parts`` of a run as a dict of plain values, for a JSON file.
+def file_content(kind, scene, settings, components):
+    """Return the ``components`` of a run as a dict of plain values, for a JSON file.
 
     ``kind`` is the function of the face with these ``settings``, ``scene`` are the parameters of a
     box and the radius.
     """
     plain = {
-        name: deepcopy({key: value for key, value in part.items() if key != "sums"})
+        name: deepcopy({key: value for key, value in component.items() if key != "sums"})
         | {
             "sums": {
                 f"{first}-{stop}": [np.asarray(entry).tolist() for entry in sums]
-                for (first, stop), sums in part["sums"].items()
+                for (first, stop), sums in component["sums"].items()
             }
         }
-        for name, part in parts.items()
+        for name, component in components.items()
     }
     content = {"kind": kind, "scene": scene, "settings": settings, "parts": plain}
     return {"twodiscs": twodiscs.__version__} | content
 
 
-def restore_arrays(parts):
-    """Return the ``parts`` of a run from those of ``file_content``."""
+def restore_arrays(components):
+    """Return the ``components`` of a run from those of ``file_content``."""
     return {
-        name: part
+        name: component
         | {
             "sums": {
                 tuple(map(int, blocks.split("-"))): [_narrow(entry) for entry in sums]
-                for blocks, sums in part["sums"].items()
+                for blocks, sums in component["sums"].items()
             }
         }
-        for name, part in parts.items()
+        for name, component in components.items()
     }

@@ -75,17 +75,17 @@ class StripCount(Count):
     strata: tuple
 
     @classmethod
-    def of(cls, part):
-        """Return the counts of a part of a run."""
-        (sums, events), blocks = reached(part["sums"])
+    def of(cls, component):
+        """Return the counts of a component of a run."""
+        (sums, events), blocks = reached(component["sums"])
         return cls(
-            duration=part["duration"],
-            share=part["share"],
-            replicas=blocks * part["replicas"],
+            duration=component["duration"],
+            share=component["share"],
+            replicas=blocks * component["replicas"],
             count=int(sums[1].sum()),
             squares=int(sums[2].sum()),
             events=int(events),
-            strata=(part["shares"], *sums.tolist()),
+            strata=(component["shares"], *sums.tolist()),
         )
 
     @cached_property
@@ -114,19 +114,19 @@ class DynamicsPoint(Point):
     products: dict[str, int]
     target: dict[str, float | None]
     strips: dict[str, StripCount]
-    parts: dict | None = field(default=None, compare=False, repr=False)
+    components: dict | None = field(default=None, compare=False, repr=False)
 
     @classmethod
-    def of(cls, scene, parts):
-        """Return the point of the ``parts`` of a run: "all", and the rare hops in strips."""
-        part = parts["all"]
-        (sums, products), blocks = reached(part["sums"])
-        places = {event: k for k, event in enumerate(EVENTS) if event in part["target"]}
-        strips = {name: StripCount.of(part) for name, part in parts.items() if name != "all"}
+    def of(cls, scene, components):
+        """Return the point of the ``components`` of a run: "all", and the rare hops in strips."""
+        component = components["all"]
+        (sums, products), blocks = reached(component["sums"])
+        places = {event: k for k, event in enumerate(EVENTS) if event in component["target"]}
+        strips = {name: StripCount.of(one) for name, one in components.items() if name != "all"}
         return cls(
             scene=scene,
-            duration=part["duration"],
-            replicas=blocks * part["replicas"],
+            duration=component["duration"],
+            replicas=blocks * component["replicas"],
             events=simulated_events(sums) + sum(strip.events for strip in strips.values()),
             counts={event: int(sums[k]) for event, k in places.items()},
             products={
@@ -134,9 +134,9 @@ class DynamicsPoint(Point):
                 for (a, i), (b, k) in product(places.items(), repeat=2)
                 if i <= k
             },
-            target=part["target"],
+            target=component["target"],
             strips=strips,
-            parts=parts,
+            components=components,
         )
 
     @property

@@ -78,33 +78,33 @@ class IntervalsPoint(Point):
     mean: float
     stderr: float
     intervals_squared: int | None = None
-    parts: dict | None = field(default=None, compare=False, repr=False)
+    components: dict | None = field(default=None, compare=False, repr=False)
 
     @classmethod
-    def of(cls, scene, parts):
-        """Return the point of the ``parts`` of a run, {"all": part}.
+    def of(cls, scene, components):
+        """Return the point of the ``components`` of a run, {"all": component}.
 
         Its sums are counts of the bins, equal ones, then wide ones, and Σ t and Σ t² over the times
         t of chains. If chains differ in their number n of intervals, there are Σ t n, Σ n and Σ n².
         """
-        part, edges = parts["all"], wide_edges()
-        (sums, moments), blocks = reached(part["sums"])
-        chains, (total, squares, *more) = blocks * part["chains"], map(int, moments)
+        component, edges = components["all"], wide_edges()
+        (sums, moments), blocks = reached(component["sums"])
+        chains, (total, squares, *more) = blocks * component["chains"], map(int, moments)
         if more:
             joint, intervals, intervals_squared = more
             mean = Fraction(total, intervals)
             spread = squares - 2 * mean * joint + mean**2 * intervals_squared
             error = math.sqrt(spread * chains / (chains - 1)) / intervals
-            unit = part["bin_width"] * GRAIN
+            unit = component["bin_width"] * GRAIN
         else:
-            intervals, intervals_squared, mean = chains * part["returns"], None, total / chains
+            intervals, intervals_squared, mean = chains * component["returns"], None, total / chains
             variance = (chains * squares - total * total) / (chains * chains * (chains - 1))
-            error, unit = math.sqrt(variance), part["bin_width"] * GRAIN / part["returns"]
+            error, unit = math.sqrt(variance), component["bin_width"] * GRAIN / component["returns"]
         rows, wide = sums.tolist(), slice(BINS + 1, BINS + len(edges))
         return cls(
             scene=scene,
-            event=part["event"],
-            bin_width=part["bin_width"],
+            event=component["event"],
+            bin_width=component["bin_width"],
             overflow=rows[0][BINS],
             equal=Bins([*range(BINS + 1)], *(row[:BINS] for row in rows)),
             wide=Bins(edges, *(row[wide] for row in rows)),
@@ -113,7 +113,7 @@ class IntervalsPoint(Point):
             chains=chains,
             mean=float(mean) * unit,
             stderr=error * unit,
-            parts=parts,
+            components=components,
         )
 
     @property

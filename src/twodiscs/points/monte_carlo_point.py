@@ -83,30 +83,30 @@ class MonteCarloPoint(SampledPoint):
     samples: int
     quantities: dict[str, Hits]
     right_and_top: int | None = None
-    parts: dict | None = field(default=None, compare=False, repr=False)
+    components: dict | None = field(default=None, compare=False, repr=False)
 
     @classmethod
-    def of(cls, scene, parts):
-        """Return the point of the ``parts`` of a run: this one, or an ``InsertionPoint``.
+    def of(cls, scene, components):
+        """Return the point of the ``components`` of a run: this one, or an ``InsertionPoint``.
 
         A quantity has the ``place`` of its hits among the sums, its measure and thickness.
         """
-        part = parts["all"]
-        if part["method"] == InsertionPoint.METHOD:
-            return InsertionPoint.of(scene, parts)
-        (hits,), blocks = reached(part["sums"])
+        component = components["all"]
+        if component["method"] == InsertionPoint.METHOD:
+            return InsertionPoint.of(scene, components)
+        (hits,), blocks = reached(component["sums"])
         quantities = {
             name: Hits(int(hits[one["place"]]), one["measure"], one["epsilon"])
-            for name, one in part["quantities"].items()
+            for name, one in component["quantities"].items()
         }
-        both = part["right_and_top"]
+        both = component["right_and_top"]
         return cls(
             scene,
-            part["method"],
-            blocks * part["samples"],
+            component["method"],
+            blocks * component["samples"],
             quantities,
             None if both is None else int(hits[both]),
-            parts,
+            components,
         )
 
     def sampled(self, quantity):
@@ -169,20 +169,20 @@ class InsertionPoint(SampledPoint):
     unit: int
     quantities: dict[str, Weights]
     products: dict[str, int]
-    parts: dict | None = field(default=None, compare=False, repr=False)
+    components: dict | None = field(default=None, compare=False, repr=False)
 
     @classmethod
-    def of(cls, scene, parts):
-        """Return the point of the ``parts`` of a run: Σ w, then the rows of Σ w_a w_b."""
-        part = parts["all"]
-        ((sums, *products),), blocks = reached(part["sums"])
-        sampled = part["quantities"]
+    def of(cls, scene, components):
+        """Return the point of the ``components`` of a run: Σ w, then the rows of Σ w_a w_b."""
+        component = components["all"]
+        ((sums, *products),), blocks = reached(component["sums"])
+        sampled = component["quantities"]
         places = {name: one["place"] for name, one in sampled.items()}
         return cls(
             scene=scene,
-            method=part["method"],
-            samples=blocks * part["samples"],
-            unit=part["unit"],
+            method=component["method"],
+            samples=blocks * component["samples"],
+            unit=component["unit"],
             quantities={
                 name: Weights(int(sums[k]), int(products[k][k]), sampled[name]["measure"])
                 for name, k in places.items()
@@ -193,12 +193,12 @@ class InsertionPoint(SampledPoint):
                 for (a, i), (b, k) in permutations(places.items(), 2)
                 if i < k
             },
-            parts=parts,
+            components=components,
         )
 
     def _sums(self, quantity):
-        part = self.quantities[quantity]
-        return part.sum, part.squares, self.unit, self.samples
+        weights = self.quantities[quantity]
+        return weights.sum, weights.squares, self.unit, self.samples
 
     def sampled(self, quantity):
         """Return a quantity as ``Sampled``, None if the point does not have it.

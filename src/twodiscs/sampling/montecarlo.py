@@ -548,12 +548,12 @@ class MonteCarloRun(Run):
         return make(self.scene, self.quantities, self.shell, self.seed)
 
     @cached_property
-    def parts(self):
+    def components(self):
         """The ``SequentialRun`` of all samples, {"all": run}."""
         _, block, count, _, ratio = self.sampler
         blocks = plan(self.scene, self.samples)[1] // block
         return {"all": fixed(lambda first, stop: (count(first, stop),), blocks, block, ratio)}
 
-    def point(self, pieces):
-        """Return the point, given {"all": pieces}."""
-        return self.sampler.point(pieces["all"])
+    def point(self, ranges):
+        """Return the point, given {"all": {(first, stop): sums}}."""
+        return self.sampler.point(ranges["all"])

@@ -1,9 +1,9 @@
-"""Work in blocks whose sums are integers: by one process in rounds, or by many in pieces.
+"""Work in blocks whose sums are integers: by one process in rounds, or by many in shards.
 
 One process works in rounds until all errors are small enough (``run_in_rounds``). Many processes
-can do pieces of the planned blocks, whose number is known before anything runs. The bits depend
-neither on the size of the pieces nor on the process that does a piece. Pieces are {(first, stop):
-sums}, as in ``points.base``.
+can each do a shard, a range of the planned blocks, whose number is known before anything runs. The
+bits depend neither on the size of a shard nor on the process that does it. The sums of ranges of
+blocks are {(first, stop): sums}, as in ``points.base``.
 
 A process works in threads (``map_in_threads``): on several cores, and so that Ctrl-C stops it
 without delay. Kernels release Python's lock, so threads can use all cores. Python handles no signal
@@ -86,12 +86,12 @@ def fixed(work, blocks, block_events, cost_ratio=1.0):
     )  # fmt: skip
 
 
-def _done(run, stop, pieces, cores, progress):
-    """Return the sums of the blocks 0 … ``stop`` − 1, which go on from ``pieces``.
+def _done(run, stop, ranges, cores, progress):
+    """Return the sums of the blocks 0 … ``stop`` − 1, which go on from those in ``ranges``.
 
-    The new blocks are added to ``pieces``. One call of a thread does some blocks.
+    The new blocks are added to ``ranges``. One call of a thread does some blocks.
     """
-    sums, first = reached(pieces, stop)
+    sums, first = reached(ranges, stop)
     if first == stop:
         return sums
     step, new = max(1, int(CALL / run.block_work)), None
@@ -99,22 +99,22 @@ def _done(run, stop, pieces, cores, progress):
     for done, more in enumerate(map_in_threads(run.work, calls, cores, lambda: progress(None)), 1):
         new = added(new, more)
         progress(min(first + done * step, stop))
-    pieces[first, stop] = new
+    ranges[first, stop] = new
     return added(sums, new)
 
 
 def run_in_rounds(run, progress=None, cores=1, resume_from=None):
-    """Work in rounds until the errors are small enough or the budget is spent; return the pieces.
+    """Work in rounds until the errors are small enough or the budget is spent; return the sums.
 
     The first round is small: it keeps to the budget, but has at least one block. The errors so far
     predict the length of each next round. If no error is asked for, there is one round.
     ``progress``, if given, is called repeatedly with the work that is done and the expected total,
     in events of the plain ensemble.
 
-    ``resume_from`` are pieces of an earlier run to another error. This run does not repeat them,
-    and the sums are the same as without.
+    Sums are those of ranges of blocks, {(first, stop): sums}. ``resume_from`` are sums of an
+    earlier run to another error. This run does not repeat them, and its sums are the same.
     """
-    pieces = dict(resume_from or {})
+    ranges = dict(resume_from or {})
     blocks = int(max(1, min(run.first_round, run.budget / run.block_events)))
     last, done = max(blocks, min(run.planned, run.budget / run.block_events)), 0
 
@@ -124,7 +124,7 @@ def run_in_rounds(run, progress=None, cores=1, resume_from=None):
 
     while True:
         done += blocks
-        sums = _done(run, done, pieces, cores, report)
+        sums = _done(run, done, ranges, cores, report)
         excess, simulated = run.error_over_target(sums, done), run.simulated_in(sums)
         if not excess.size:
             break
@@ -137,15 +137,15 @@ def run_in_rounds(run, progress=None, cores=1, resume_from=None):
             break
         blocks = math.ceil(min(missing, GROWTH) * done)
         blocks = min(blocks, math.floor(affordable * done))
-    return {ends: sums for ends, sums in pieces.items() if ends[1] <= done}
+    return {ends: sums for ends, sums in ranges.items() if ends[1] <= done}
 
 
 class Sampler(NamedTuple):
     """Draws in blocks of ``block`` samples.
 
     ``count(first, stop)`` returns the counts of a range of blocks, ``constants`` are those of the
-    part of a ``MonteCarloPoint`` of the ``scene``. ``cost_ratio`` is the time of a sample over the
-    time of a sample of the prism.
+    component of a ``MonteCarloPoint`` of the ``scene``. ``cost_ratio`` is the time of a sample over
+    the time of a sample of the prism.
     """
 
     scene: Scene
@@ -154,46 +154,46 @@ class Sampler(NamedTuple):
     constants: dict
     cost_ratio: float = 1.0
 
-    def point(self, pieces):
-        """Return the ``MonteCarloPoint`` of the ``pieces`` of a run."""
-        return MonteCarloPoint.of(self.scene, {"all": self.constants | {"sums": pieces}})
+    def point(self, ranges):
+        """Return the ``MonteCarloPoint`` of a run, given {(first, stop): sums}."""
+        return MonteCarloPoint.of(self.scene, {"all": self.constants | {"sums": ranges}})
 
 
 class Ended(dict):
-    """The parts of a run that has ended: no more work is done than they have."""
+    """The components of a run that has ended: no more work is done than they have."""
 
-    def pieces(self, name, run):
-        """Return the pieces of a ``run``; raise ``InputError`` if blocks are missing."""
-        _, stop = reached(pieces := self[name]["sums"])
+    def ranges(self, name, run):
+        """Return the sums of a ``run``; raise ``InputError`` if blocks are missing."""
+        _, stop = reached(ranges := self[name]["sums"])
         if stop < 1 or (run.budget == math.inf and stop != run.planned):
             raise InputError(f"{name} must have all blocks from 0 on, not {stop} of {run.planned}")
-        return pieces
+        return ranges
 
 
-def run_all_in_rounds(parts, progress=None, cores=1, resume_from=None):
-    """Return {name: pieces} of the runs in ``parts``, {name: run}, one after the other.
+def run_all_in_rounds(components, progress=None, cores=1, resume_from=None):
+    """Return {name: sums} of the runs in ``components``, {name: run}, one after the other.
 
-    ``progress`` is called with the work of all of them; ``resume_from`` are the parts of an earlier
-    run. If they are ``Ended``, nothing is computed.
+    ``progress`` is called with the work of all of them; ``resume_from`` are the components of an
+    earlier run. If they are ``Ended``, nothing is computed.
     """
     if isinstance(resume_from, Ended):
-        return {name: resume_from.pieces(name, run) for name, run in parts.items()}
+        return {name: resume_from.ranges(name, run) for name, run in components.items()}
     resume_from = {} if resume_from is None else resume_from
-    done_parts, work = {}, {name: run.planned * run.block_work for name, run in parts.items()}
+    done, work = {}, {name: run.planned * run.block_work for name, run in components.items()}
 
-    def report(done, expected):
+    def report(number, expected):
         work[name] = expected
         if progress is not None:
-            before = sum(work[earlier] for earlier in done_parts)
-            progress(done if done is None else before + done, sum(work.values()))
+            before = sum(work[earlier] for earlier in done)
+            progress(number if number is None else before + number, sum(work.values()))
 
-    for name, run in parts.items():
-        done_parts[name] = run_in_rounds(run, report, cores, resume_from.get(name, {}).get("sums"))
-    return done_parts
+    for name, run in components.items():
+        done[name] = run_in_rounds(run, report, cores, resume_from.get(name, {}).get("sums"))
+    return done
 
 
 class Run:
-    """Work in ``parts``, {name: SequentialRun}; ``point`` makes a result of {name: pieces}.
+    """Work in ``components``, {name: SequentialRun}; ``point`` makes the point of {name: sums}.
 
     A class of a stage has a method ``of(scene, settings)``. It makes the run of the arguments of
     the stage's call, for the face and for a job.
@@ -202,19 +202,19 @@ class Run:
     def run(self, progress=None, cores=1, resume_from=None):
         """Do all work in this process and return the point.
 
-        ``resume_from`` are the parts of an earlier run, which are not done again (see
+        ``resume_from`` are the components of an earlier run, which are not done again (see
         ``run_all_in_rounds``).
         """
-        return self.point(run_all_in_rounds(self.parts, progress, cores, resume_from))
+        return self.point(run_all_in_rounds(self.components, progress, cores, resume_from))
 
 
-# Pieces ------------------------------------------------------------------------------------------
+# Shards ------------------------------------------------------------------------------------------
 
 
 def round_up_blocks(blocks):
     """Return the next number of blocks on a grid of ``STEPS`` while it doubles, at least 1.
 
-    A slightly smaller error then needs the same pieces, or a few more.
+    A slightly smaller error then needs the same shards, or a few more.
     """
     blocks = max(1, math.ceil(blocks))
     step = max(1, (1 << (blocks - 1).bit_length()) // (2 * STEPS))

@@ -1,4 +1,4 @@
-"""The time of a job, and the errors that it reaches within its budget, from pilots of its parts."""
+"""The time of a job, and the errors that it reaches within its budget, from pilots of its run."""
 
 import math
 from typing import NamedTuple
@@ -29,15 +29,15 @@ class Forecast(NamedTuple):
 
 
 def forecast_dynamics(run, pilots, planned=False):
-    """Return the ``Forecast`` of a ``DynamicsRun`` from the ``pilots`` of its parts.
+    """Return the ``Forecast`` of a ``DynamicsRun`` from the ``pilots`` of its components.
 
     If its blocks are ``planned``, it does all of these: its jobs are shards.
     """
     seconds, events, reached = 0.0, 0.0, {}
     for name, wanted in blocks_wanted(run.scene, pilots, run.target).items():
-        part, pilot = run.parts[name], pilots[name]
-        affordable = max(1.0, part.budget / max(pilot.events, 1.0))
-        blocks = part.planned if planned else min(wanted, affordable)
+        one, pilot = run.components[name], pilots[name]
+        affordable = max(1.0, one.budget / max(pilot.events, 1.0))
+        blocks = one.planned if planned else min(wanted, affordable)
         seconds, events = seconds + blocks * pilot.seconds, events + blocks * pilot.events
         own = (e for e in pilot.errors if name != "all" or e not in pilots)
         reached |= {event: pilot.errors[event] / math.sqrt(blocks) for event in own}
@@ -46,12 +46,12 @@ def forecast_dynamics(run, pilots, planned=False):
 
 def forecast_samples(run, seconds):
     """Return the ``Forecast`` of a ``MonteCarloRun`` from a pilot of some ``seconds``."""
-    part = run.parts["all"]
+    one = run.components["all"]
     sums, blocks, each = timed(run.sampler.count, seconds)
     found = variances(run.scene, run.sampler, sums, blocks)
     errors = {
-        quantity: math.sqrt(found[quantity][0] / part.planned)
+        quantity: math.sqrt(found[quantity][0] / one.planned)
         for quantity in run.quantities
         if quantity in found
     }
-    return Forecast(each * part.planned, part.planned * part.block_events, errors)
+    return Forecast(each * one.planned, one.planned * one.block_events, errors)

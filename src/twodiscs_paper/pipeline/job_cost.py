@@ -48,7 +48,7 @@ def run_at(scene, stage, radius):
 
 def _work(run):
     """Return the work of all planned blocks of a run."""
-    return sum(part.planned * part.block_work for part in run.parts.values())
+    return sum(one.planned * one.block_work for one in run.components.values())
 
 
 def seconds(scene, stage, radius):
@@ -137,7 +137,7 @@ def _days(scene):
 
 
 def shards(scene, stage, radius):
-    """Return the shards (part, first, stop) of a point, blocks ``first`` … ``stop`` − 1 of a part.
+    """Return the shards of a point, (component, first, stop): its blocks ``first`` … ``stop`` − 1.
 
     A point without shards is one job. Shards depend only on the exact rates, so they are known
     before any job runs. A smaller error adds shards to the same ones.
@@ -149,14 +149,14 @@ def shards(scene, stage, radius):
         return []
     return [
         (name, *ends)
-        for name, part in run.parts.items()
-        for ends in shard_ranges(part.planned, _per_shard(scene, part))
+        for name, one in run.components.items()
+        for ends in shard_ranges(one.planned, _per_shard(scene, one))
     ]
 
 
-def _per_shard(scene, part):
-    """Return the number of blocks in a shard of a part: a power of two, so that shards stay."""
-    return 1 << max(0, math.floor(math.log2(scene.shard_events / part.block_work)))
+def _per_shard(scene, run):
+    """Return the number of blocks in a shard of a ``SequentialRun``: a power of two."""
+    return 1 << max(0, math.floor(math.log2(scene.shard_events / run.block_work)))
 
 
 # Pilots -------------------------------------------------------------------------------------------
@@ -173,17 +173,17 @@ def forecast(scene, stage, radius):
         return forecast_dynamics(run, cost.pilots(run, PILOT), in_shards), run
     if stage == "monte_carlo":
         return forecast_samples(run, PILOT), run
-    part = run.parts["all"]
-    each = cost.timed(part.work, PILOT)[-1]
-    return Forecast(each * part.planned, part.planned * part.block_events, {}), run
+    one = run.components["all"]
+    each = cost.timed(one.work, PILOT)[-1]
+    return Forecast(each * one.planned, one.planned * one.block_events, {}), run
 
 
 def _is_short(scene, radius):
     """Return whether the budget of dynamics at a ``radius`` may end it before its accuracy."""
     if scene.event_budget and _events(scene, radius) <= scene.event_budget:
         return False
-    parts = run_at(scene, "dynamics", radius).parts.values()
-    return any(part.budget <= 1.1 * part.planned * part.block_events for part in parts)
+    runs = run_at(scene, "dynamics", radius).components.values()
+    return any(one.budget <= 1.1 * one.planned * one.block_events for one in runs)
 
 
 def shortfalls(scenes):

@@ -11,8 +11,8 @@ from twodiscs.points.base import MALFORMED, SECONDS, read_json, restore_arrays
 REMEDY = "delete it, and it is made again"
 
 
-def read_parts(path, stage, scene, settings):
-    """Return the ``parts`` of a run in the file of a point or a shard.
+def read_components(path, stage, scene, settings):
+    """Return the ``components`` of a run in the file of a point or a shard.
 
     Raises ``InputError`` if the file was changed, or if it is not of this ``Stage``, this ``Scene``
     and these ``settings`` of its call; ``OSError`` if it cannot be read.
@@ -20,7 +20,7 @@ def read_parts(path, stage, scene, settings):
     content = read_json(path)
     try:
         found = {"kind": content["kind"]} | content["scene"] | content["settings"]
-        parts = restore_arrays(content["parts"])
+        components = restore_arrays(content["parts"])
     except MALFORMED:
         raise InputError(f"{path} must be a point or a shard of one; {REMEDY}") from None
     asked = json.loads(json.dumps({"kind": stage.call} | scene.parameters() | settings))
@@ -29,14 +29,14 @@ def read_parts(path, stage, scene, settings):
         if has != wanted:
             wrong = f"has {name} {quote(has)}, but its job asks for {quote(wanted)}"
             raise InputError(f"{path} {wrong}; {REMEDY}")
-    return parts
+    return components
 
 
 def read_point(path, stage, scene, settings):
-    """Return the point of a ``Stage`` in a file; the arguments are those of ``read_parts``."""
-    parts = read_parts(path, stage, scene, settings)
+    """Return the point of a ``Stage`` in a file; the arguments are those of ``read_components``."""
+    components = read_components(path, stage, scene, settings)
     try:
-        return stage.point.of(scene, parts)
+        return stage.point.of(scene, components)
     except MALFORMED:
         raise InputError(f"{path} is a point of another version; {REMEDY}") from None
 
@@ -47,14 +47,14 @@ def read_seconds(path):
 
 
 def read_shards(paths, stage, scene, settings):
-    """Return {part: {(first, stop): sums}} of the shards of a point.
+    """Return {component: {(first, stop): sums}} of the shards of a point.
 
-    Raises ``InputError`` as ``read_parts``, and if a shard has other blocks than its name says.
+    Raises ``InputError`` as ``read_components``, and if a shard has other blocks than in its name.
     """
     ranges = {}
     for path in paths:
-        for name, part in read_parts(path, stage, scene, settings).items():
-            for (first, stop), sums in part["sums"].items():
+        for name, component in read_components(path, stage, scene, settings).items():
+            for (first, stop), sums in component["sums"].items():
                 if Path(path).stem != f"{name}-{first}-{stop}":
                     raise InputError(f"{path} has the blocks {name}-{first}-{stop}; {REMEDY}")
                 ranges.setdefault(name, {})[first, stop] = sums

@@ -285,7 +285,7 @@ def relative_error(fractions, sums):
 
 
 def constants(scene, hop):
-    """Return the constants of the part of a rare ``hop``, see ``points.dynamics.StripCount``."""
+    """Return the constants of the component of a rare ``hop`` (see ``StripCount``)."""
     strip = choose_strip(scene, hop)
     return {
         "duration": 2 * strip.time,
