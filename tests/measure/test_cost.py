@@ -134,10 +134,7 @@ def test_ten_times_the_accuracy_takes_a_hundred_times_as_long(blocks):
 
 def test_without_a_budget_a_run_has_a_day():
     easy = new_run(NEAR, 1e-3).components
-    assert all(
-        component.budget > 100 * component.planned * component.block_events
-        for component in easy.values()
-    )
+    assert all(one.budget > 100 * one.planned * one.block_events for one in easy.values())
     hard = new_run(NEAR, 1e-9)
     work = sum(component.budget * component.cost_ratio for component in hard.components.values())
     assert work == pytest.approx(DAY)

@@ -60,9 +60,7 @@ def test_shards_are_jobs_that_a_dry_run_shows_and_do_not_depend_on_the_accuracy(
         (tmp_path / name).write_text("{}")
         files.append(name)
     assert len(files) > 3
-    assert all(
-        any(f"/{component}-" in name for name in files) for component in ("all", "horizontal_hop")
-    )
+    assert all(any(f"/{each}-" in name for name in files) for each in ("all", "horizontal_hop"))
     place.snakemake("--cores", "1", "results/code/physics.sha256")
     place.snakemake("--cores", "1", "--touch", "--", *files)
     place_at(place.path, unbuilt, accuracy=5e-4)
