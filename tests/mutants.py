@@ -177,7 +177,7 @@ MUTANTS = [
     ("the same kicks in all blocks", "block * HOPS_OF_BLOCK + l, kicks)", "l, kicks)"),
     ("one stream for kicks and initial states", "open_stream(seed ^ SEED, replica)", "open_stream(seed, replica)"),
     ("the same kicks of all blocks of states", "open_kicks(i, seed, first + i, kicks)", "open_kicks(i, seed, i, kicks)"),
-    ("each call repeats the first blocks", 'seeds["clusters"], first\n', 'seeds["clusters"], 0\n'),
+    ("each call repeats the first blocks", 'seeds["clusters"], first)', 'seeds["clusters"], 0)'),
     ("passages of other pairs", "partial(odd_clusters_per_passage, others=others)", "odd_clusters_per_passage"),
     ("proposals of heights as states", "    settle(state, initial, centres, initial.chain)\n", ""),
     ("error of the second estimate", "math.hypot(found.stderr, reference.stderr)\n    return {\n        \"reference\": reference.value,\n", "found.stderr\n    return {\n        \"reference\": reference.value,\n"),
