@@ -57,10 +57,15 @@ numpydoc_show_class_members = False
 
 
 def formula(translator, node):
-    """Write a block of LaTeX as MathML, which a browser shows without a script."""
+    """Write a block of LaTeX as MathML, which a browser shows without a script.
+
+    Formulas with a ``\\qquad`` between them stand beside each other, on a narrow screen beneath.
+    """
     from docutils import nodes
 
-    translator.body.append(f"<div>{convert(node.astext(), display='block')}</div>")
+    parts = [convert(part, display="block") for part in node.astext().split(r"\qquad")]
+    formulas = "".join(f"<div>{part}</div>" for part in parts)
+    translator.body.append(f'<div class="formulas">{formulas}</div>')
     raise nodes.SkipNode
 
 

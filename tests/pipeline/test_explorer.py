@@ -337,6 +337,7 @@ def test_who_wants_no_motion_starts_it_himself_and_it_can_be_paused(driven):
     assert page.look("[runs.done, drawn.time, at('pause').textContent]") == [0, 0, "Run"]
     page.look("at('pause').click()")
     page.until("runs.done > 10 && drawn.time > 0")
+    assert page.look(r"/, [1-9][\d\u202f]*(\.\d million)? events$/.test(at('status').textContent)")
     page.look("at('pause').click()")
     before = page.look("[runs.done, drawn.time]")
     page.look("new Promise(done => setTimeout(done, 300))")

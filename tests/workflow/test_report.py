@@ -1,4 +1,4 @@
-"""Without these tests the report could ask the network, miss a figure or disagree with its tables.
+"""The report has every figure, agrees with its tables, fits a narrow window and asks no network.
 
 Skipped where no Chromium is installed.
 """
@@ -36,8 +36,9 @@ LOOK = """
         thumbnails: all(".thumbnails img").map(image => [image.naturalWidth, image.alt.length]),
         sections: all("section h2").map(heading => heading.innerText),
         paused: [...labels, button.innerText, picture.querySelector("source").media],
-        right: Math.max(document.documentElement.scrollWidth,
-                        place(document.querySelector("#agreement")).right),
+        right: document.documentElement.scrollWidth,
+        cut: place(document.querySelector("#agreement")).right
+             - place(document.querySelector("#agreement").parentNode).right,
         links: all("a").map(link => link.getAttribute("href")),
         anchors: all("a[href^='#']").map(link => place(document.querySelector(link.hash)).top),
         numbers: all(".numbers").map(table => [...table.tBodies].map(body => body.rows.length)),
@@ -112,6 +113,7 @@ def test_every_section_is_there_and_nothing_is_wider_than_the_window(front):
     scenes = ["How accurate, how long", "Scene full", "Scene walls"]
     assert front["sections"] == [*scenes, "Studies, over all scenes", "How it was made"]
     assert front["right"] <= front["width"]
+    assert front["cut"] <= 0
 
 
 def test_it_has_all_mean_times_and_its_links_lead_to_files_and_sections(front, complete):

@@ -382,8 +382,9 @@ function showTable() {
     return `<tr id="${event}"><th scope="row">${key(event)} ${NAMES[event]}</th>${row}</tr>`;
   }).join("");
   const { done, events } = runs;
+  const number = events < 1e6 ? spaced(events) : `${(events / 1e6).toFixed(1)} million`;
   at("status").textContent = done
-    ? `${spaced(done)} runs of ${short(unit * DURATION)} time units, ${(events / 1e6).toFixed(1)} million events`
+    ? `${spaced(done)} runs of ${short(unit * DURATION)} time units, ${number} events`
     : state.paused ? "Paused: press Run to count." : "";
 }
 
