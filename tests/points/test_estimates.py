@@ -147,6 +147,16 @@ def test_mean_time_agrees_with_the_replicas_themselves():
     assert z > 0 or counts.mean() > 30.5
 
 
+def test_the_law_of_a_test_does_not_depend_on_what_was_counted():
+    """At the border runs with more events than expected, and with fewer, have the same test."""
+    for replicas, due in ((2000, "cluster-bound"), (2200, "normal")):
+        for count in (1800, 2100, 2400):  # of 1 expected in a replica
+            sums = count, 2 * count, replicas
+            assert scores.mean_time_z(*sums, 1.0, 1.0)[1] == due
+    assert estimates.has_error_bar(80, 90, 1000, expected=1.0)
+    assert not estimates.has_error_bar(400, 500, 1000, expected=0.1)
+
+
 def test_no_event_and_no_spread_divide_by_nothing():
     assert estimates.mean_time(0, 0, 1000, 10.0) is None
     assert estimates.effective_count(0, 0, 1000) == 0

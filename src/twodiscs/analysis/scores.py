@@ -9,7 +9,7 @@ import math
 
 import scipy  # which imports ``special`` when it is used, because that takes long
 
-from twodiscs.points.estimates import CLUSTER, MIN_EVENTS, effective_count
+from twodiscs.points.estimates import CLUSTER, is_enough
 
 #: Fewer expected (or effective) events than this are not tested with a normal law. Rare counts have
 #: skewness 1/√n: at five errors, n = 1000 doubles one tail and n = 100 multiplies it by eight.
@@ -119,9 +119,9 @@ def mean_time_z(total, squares, replicas, duration, exact, mean=None):
     The test is about the count, because ⟨N⟩ = T/τ holds for every T while T/⟨N⟩ is biased. The sign
     is changed, because a positive z means a time that is too long. ``test`` is
 
-    - "normal" with at least 100 replicas and 1000 effective events: Student's t of the mean count,
-      as a normal deviate. ``mean``, if given, is a better estimate (count, error) than these sums
-      give; the other test does not use it.
+    - "normal" with at least 100 replicas and 1000 effective events, as expected from the exact
+      time: Student's t of the mean count, as a normal deviate. ``mean``, if given, is a better
+      estimate (count, error) than these sums give; the other test does not use it.
     - "cluster-bound" for less: Chernoff's bound for independent replicas, P ≤ exp(−(λ/K) h(n/λ))
       with h(x) = x ln x − x + 1 for n counted and λ expected in all. It holds if no replica has
       more than K events; K is Σ N²/Σ N, and at least 4. A Poisson law (K = 1) would be wrong,
@@ -133,7 +133,7 @@ def mean_time_z(total, squares, replicas, duration, exact, mean=None):
     if exact is None:
         return None, None
     expected = duration / exact
-    if replicas >= MIN_EVENTS and effective_count(total, squares, replicas) >= NORMAL:
+    if is_enough(NORMAL, total, squares, replicas, expected):
         error = math.sqrt((replicas * squares - total**2) / (replicas - 1)) / replicas
         count, error = mean or (total / replicas, error)
         return student_deviate((expected - count) / error, replicas - 1), "normal"

@@ -478,7 +478,7 @@ def _mean_time_row(point, event, count):
         estimate, status = None, "impossible"
     elif estimate is None:
         status, bound = "none-seen", count.bound()
-    elif not has_error_bar(*count.sums):
+    elif not has_error_bar(*count.sums, exact and count.time(multiplicity) / exact):
         status = "too-few"
     if count.share == 1 and scene.is_possible(event):
         errors = [target or 1.0, estimate.relative_stderr if estimate else 1.0]

@@ -28,6 +28,7 @@ from twodiscs.model.formats import format_number
 from twodiscs.model.scene import Scene, why_absent
 from twodiscs.model.seeds import job_seed
 from twodiscs.points.dynamics_point import DynamicsPoint, simulated_events
+from twodiscs.points.estimates import relative_variance
 from twodiscs.points.intervals_point import BINS, GRAIN, IntervalsPoint, wide_edges
 from twodiscs.sampling.initial_states import require_initial_states
 from twodiscs.sampling.rounds import Run, SequentialRun, fixed, round_up_blocks
@@ -174,17 +175,6 @@ class DynamicsRun(Run):
     @property
     def _target(self):
         return {event: self.target[event] for event in self._events}
-
-
-def relative_variance(count):
-    """Return the largest variance to expect of a replica's count over its mean ``count`` squared.
-
-    Random counts have a variance of less than 2⟨N⟩; discs that keep their motion for long add a
-    fraction of ⟨N⟩². It is infinite if none is expected. Both numbers hold at all radii of the
-    repository's boxes without effects. The fraction is up to 0.16 there, at a hundredth of the
-    height and close to the largest radius.
-    """
-    return 2 / count + 1 / 6 if count else math.inf
 
 
 def relative_errors(sums, products, replicas, unseen=0.0):

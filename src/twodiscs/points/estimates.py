@@ -140,9 +140,33 @@ def effective_count(total, squares, replicas):
     return total**2 * (replicas - 1) / spread if spread else 0.0
 
 
-def has_error_bar(total, squares, replicas):
+def relative_variance(count):
+    """Return the largest variance to expect of a replica's count over its mean ``count`` squared.
+
+    Random counts have a variance of less than 2⟨N⟩; discs that keep their motion for long add a
+    fraction of ⟨N⟩². It is infinite if none is expected. Both numbers hold at all radii of the
+    repository's boxes without effects. The fraction is up to 0.16 there, at a hundredth of the
+    height and close to the largest radius.
+    """
+    return 2 / count + 1 / 6 if count else math.inf
+
+
+def is_enough(least, total, squares, replicas, expected=None):
+    """Return whether there are 100 replicas and at least a number of effective events.
+
+    If the ``expected`` count of a replica is known, it decides, not the counts: runs with many
+    events by chance would else be judged by another law than those with few.
+    """
+    if replicas < MIN_EVENTS or not effective_count(total, squares, replicas):
+        return False
+    if expected is None:
+        return effective_count(total, squares, replicas) >= least
+    return replicas >= least * relative_variance(expected)
+
+
+def has_error_bar(total, squares, replicas, expected=None):
     """Return whether there is an error bar: from 100 replicas and 100 effective events on."""
-    return effective_count(total, squares, replicas) >= MIN_EVENTS and replicas >= MIN_EVENTS
+    return is_enough(MIN_EVENTS, total, squares, replicas, expected)
 
 
 def mean_time(total, squares, replicas, duration, mean=None):
