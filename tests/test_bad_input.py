@@ -1,4 +1,7 @@
-"""Bad input: a check could be lost, or a mistake end in a traceback instead of in one sentence.
+"""Bad input, through every door: one sentence for each mistake.
+
+Without these tests a check could be lost, or a mistake end in a traceback instead of in one
+sentence.
 
 A sentence has the key, the value and what is allowed. In the tables, "…" stands for any text.
 """

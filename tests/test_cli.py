@@ -1,4 +1,6 @@
-"""The command line: a number could lose digits, an option or a result could get lost on its way.
+"""The command line `twodiscs`: numbers, options and results.
+
+Without these tests a number could lose digits, an option or a result could get lost on its way.
 
 Mistakes in words are in ``test_bad_input.py``.
 """

@@ -1,4 +1,7 @@
-"""A scene could be accepted and then take hours or all memory, though little is asked for.
+"""Calls with extreme scenes end, in bounded time and memory.
+
+Without these tests a scene could be accepted and then take hours or all memory, though little is
+asked for.
 
 Effects are at their ends, radii close to the largest, rings of every aspect. A call runs in a
 process of its own, with limits on processor time and memory. The first call may compile, so that

@@ -1,4 +1,6 @@
-"""The pages for people: a command, a configuration or a number in them could be wrong.
+"""The pages for people: their commands, configurations and numbers.
+
+Without these tests a command, a configuration or a number in them could be wrong.
 
 A page shows commands in indented blocks, or after ``$`` in console blocks, followed by
 their output; scenes in blocks of YAML. ``twodiscs`` is run, ``snakemake`` and ``make`` dry.

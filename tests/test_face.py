@@ -1,4 +1,7 @@
-"""The face: its numbers, texts and errors could be others than those of the pipeline."""
+"""The face, `import twodiscs as td`: its numbers are those of the pipeline.
+
+Without these tests its numbers, texts and errors could be others than those of the pipeline.
+"""
 
 import ast
 import inspect

@@ -1,4 +1,7 @@
-"""The order of the house: imports could point upwards, and the drawing of it could be wrong."""
+"""The order of imports, and the drawing of it.
+
+Without these tests imports could point upwards, and the drawing of it could be wrong.
+"""
 
 import ast
 import re

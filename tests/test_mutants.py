@@ -1,4 +1,7 @@
-"""The mutants: an edit of the sources could take away the text of one, and nobody would see it."""
+"""The list of mutants: each has its text in the sources.
+
+Without these tests an edit of the sources could take away the text of one, and nobody would see it.
+"""
 
 import mutants
 import pytest

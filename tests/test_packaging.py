@@ -1,4 +1,8 @@
-"""A wheel: a file could be missing in it, or a package of the extras be needed without them."""
+"""Wheels: their files, and what works without the extras.
+
+Without these tests a file could be missing in it, or a package of the extras be needed without
+them.
+"""
 
 import json
 import os

@@ -1,4 +1,7 @@
-"""A user's process could be another one after a call: it is compared, in threads too.
+"""The state of a user's process before and after calls.
+
+Without these tests a user's process could be another one after a call: it is compared, in threads
+too.
 
 This file is also a program: ``python tests/test_process.py`` prints what changed.
 """

@@ -1,4 +1,7 @@
-"""The reference: a docstring could lack a section or a type, and its example could fail."""
+"""Docstrings of the face: sections, types and examples.
+
+Without these tests a docstring could lack a section or a type, and its example could fail.
+"""
 
 import doctest
 import inspect

@@ -1,4 +1,8 @@
-"""Results: a file could lose a number, more work could repeat or skip some, a state be wrong."""
+"""Results that are saved, loaded and continued; states of observe and starts.
+
+Without these tests a file could lose a number, more work could repeat or skip some, a state be
+wrong.
+"""
 
 import json
 import math

@@ -1,4 +1,7 @@
-"""The site: links could be dead, entries without a place, and lines of the gallery wrong."""
+"""The site: links, contents and the gallery.
+
+Without these tests links could be dead, entries without a place, and lines of the gallery wrong.
+"""
 
 import re
 import subprocess

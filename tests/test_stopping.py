@@ -1,4 +1,6 @@
-"""Ctrl-C, or the stop button of a notebook, could leave a call running.
+"""Ctrl-C, and the stop button of a notebook.
+
+Without these tests Ctrl-C, or the stop button of a notebook, could leave a call running.
 
 Each call would take most of an hour, except starts and a trajectory, which are bounded: minutes.
 The answer takes a few tenths of a second, and may not depend on the work that is left.

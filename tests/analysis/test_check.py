@@ -1,4 +1,7 @@
-"""The check: without it a wrong theory, count or error bar could pass, or a right one fail."""
+"""The check of a scene: its comparisons, bounds and verdicts.
+
+Without it a wrong theory, count or error bar could pass, or a right one fail.
+"""
 
 import math
 from collections import Counter

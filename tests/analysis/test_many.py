@@ -1,4 +1,7 @@
-"""N discs: without it a disc could be lost on its way to the rows, or two programs differ."""
+"""Tables and the check of more than two discs.
+
+Without it a disc could be lost on its way to the rows, or two programs differ.
+"""
 
 import json
 import math

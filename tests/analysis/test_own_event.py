@@ -1,4 +1,7 @@
-"""A new event, declared in a copy of the package, goes through all three methods."""
+"""An event of your own, in a copy of the package: theory, Monte Carlo and dynamics find it.
+
+A new event, declared in a copy of the package, goes through all three methods.
+"""
 
 import os
 import shutil

@@ -1,4 +1,7 @@
-"""Rows of a scene: without it a number of a point could be lost, or an error be made up."""
+"""The rows of the tables of a scene, made from points.
+
+Without it a number of a point could be lost, or an error be made up.
+"""
 
 import math
 from dataclasses import replace

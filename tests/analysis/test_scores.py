@@ -1,4 +1,6 @@
-"""Scores: without it a test could reject a right number too often, or a wrong one never.
+"""The scores z of estimates, and the bounds for many of them.
+
+Without it a test could reject a right number too often, or a wrong one never.
 
 They are compared with enumeration, mpmath, scipy and seeded simulation.
 """

@@ -1,4 +1,7 @@
-"""Tables: without it a digit, an empty cell or a truth value could change in a file."""
+"""Tables as files: columns, digits, empty cells, truth values.
+
+Without it a digit, an empty cell or a truth value could change in a file.
+"""
 
 import math
 from inspect import isclass

@@ -1,4 +1,6 @@
-"""The configuration: a key could be lost, a default wrong, or an edit concern the wrong jobs.
+"""The configuration: keys, defaults and the parameters of jobs.
+
+Without these tests a key could be lost, a default wrong, or an edit concern the wrong jobs.
 
 Mistakes in a configuration are in ``test_bad_input.py``.
 """

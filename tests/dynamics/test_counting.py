@@ -1,4 +1,8 @@
-"""Counts of the ensemble could miss an event, or end before or after they know enough."""
+"""Counts of events in the ensemble, and when a run ends.
+
+Without these tests counts of the ensemble could miss an event, or end before or after they know
+enough.
+"""
 
 import math
 

@@ -1,4 +1,7 @@
-"""Many discs could have another pressure than published: an error that all our programs share.
+"""The pressure of many discs, against published values.
+
+Without these tests many discs could have another pressure than published: an error that all our
+programs share.
 
 The discs have the diameter 1. The force on the walls over kT is ∂lnV/∂B, from the rate of wall
 hits. The pressure of the bulk follows without any theory of the walls. At equal chemical potential

@@ -1,4 +1,6 @@
-"""Kicks could have another law, repeat themselves, or change mean times.
+"""Kicks by friction: their law, their streams, and mean times with them.
+
+Without these tests kicks could have another law, repeat themselves, or change mean times.
 
 Statistical comparisons allow five standard errors, some 40 of them.
 """

@@ -1,4 +1,7 @@
-"""Roundings could add, lose or repeat an event where arithmetic has it hard."""
+"""Dynamics of two discs in cases that are numerically hard.
+
+Without these tests roundings could add, lose or repeat an event where arithmetic has it hard.
+"""
 
 import math
 

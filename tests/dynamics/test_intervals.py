@@ -1,4 +1,8 @@
-"""Intervals could be cut off at an end, put in another bin or have too small errors."""
+"""Intervals between hops: means, bins and their errors.
+
+Without these tests intervals could be cut off at an end, put in another bin or have too small
+errors.
+"""
 
 import math
 

@@ -1,4 +1,8 @@
-"""One event could be off by more than its inputs allow, where doubles have it hard."""
+"""The law of one event of two plain discs, against 50 digits.
+
+Without these tests one event could be off by more than its inputs allow, where doubles have it
+hard.
+"""
 
 import math
 

@@ -1,4 +1,8 @@
-"""The event law of an effect could be wrong at a contact, a wall or the end of a cell."""
+"""The law of one event with effects, against textbook formulas.
+
+Without these tests the event law of an effect could be wrong at a contact, a wall or the end of a
+cell.
+"""
 
 import doctest
 import math

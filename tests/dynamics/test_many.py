@@ -1,4 +1,8 @@
-"""Many discs could collide at another rate than theory, Monte Carlo or another program says."""
+"""Rates of many discs, against theory, Monte Carlo and a scalar program.
+
+Without these tests many discs could collide at another rate than theory, Monte Carlo or another
+program says.
+"""
 
 import math
 from dataclasses import replace

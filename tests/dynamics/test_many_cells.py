@@ -1,4 +1,8 @@
-"""The kernel of many discs could lose an event that the one of few discs finds, or drift."""
+"""The cell list of many discs, against the kernel of all pairs.
+
+Without these tests the kernel of many discs could lose an event that the one of few discs finds, or
+drift.
+"""
 
 import itertools
 import math

@@ -1,4 +1,7 @@
-"""Rough or kicked discs, more than two, could gain energy, or be kicked as another replica.
+"""Many discs that are rough or kicked.
+
+Without these tests rough or kicked discs, more than two, could gain energy, or be kicked as another
+replica.
 
 Statistical comparisons allow five standard errors.
 """

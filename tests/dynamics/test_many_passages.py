@@ -1,4 +1,7 @@
-"""Hops of a pair could be correlated in another way if other discs collide with it.
+"""Clusters of hops of a pair among many discs.
+
+Without these tests hops of a pair could be correlated in another way if other discs collide with
+it.
 
 Statistical comparisons allow five standard errors: with some 40 of them a false alarm comes in
 fewer than 3e-5 of all seeds.

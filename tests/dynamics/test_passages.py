@@ -1,4 +1,7 @@
-"""Hops that follow one another could be lost, counted twice or begin in other initial states.
+"""Clusters of hops of two discs, and their correlations.
+
+Without these tests hops that follow one another could be lost, counted twice or begin in other
+initial states.
 
 Statistical comparisons allow five standard errors: with some 40 of them a false alarm comes in
 fewer than 3e-5 of all seeds.

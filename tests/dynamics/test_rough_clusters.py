@@ -1,4 +1,7 @@
-"""Rough discs near a threshold could have an error bar that most runs make too small.
+"""Error bars of rough discs, whose events come in bursts.
+
+Without these tests rough discs near a threshold could have an error bar that most runs make too
+small.
 
 Whether a mean time has an error is decided from the scene, so it is the same for every seed; where
 it has one, its scores are standard normal.

@@ -1,4 +1,8 @@
-"""A result could depend on who computes which blocks, in how many lanes or on which processor."""
+"""Equal bits: the same sums from shards, lanes and processors of any kind.
+
+Without these tests a result could depend on who computes which blocks, in how many lanes or on
+which processor.
+"""
 
 import os
 from dataclasses import replace

@@ -1,4 +1,8 @@
-"""Rare hops counted in a strip could have another rate, or an error that does not cover it."""
+"""Rare hops from initial states in a strip: rates, errors and acceptance.
+
+Without these tests rare hops counted in a strip could have another rate, or an error that does not
+cover it.
+"""
 
 import math
 from itertools import product

@@ -1,4 +1,7 @@
-"""A trajectory could leave its periodic cell, begin elsewhere or be too long."""
+"""One trajectory, event by event.
+
+Without these tests a trajectory could leave its periodic cell, begin elsewhere or be too long.
+"""
 
 import math
 

@@ -1,4 +1,7 @@
-"""An input that is accepted could never end, because its work has no bound."""
+"""The work of a call has a bound for every input that is accepted.
+
+Without these tests an input that is accepted could never end, because its work has no bound.
+"""
 
 import math
 

@@ -1,4 +1,6 @@
-"""The errata: a formula could be called wrong that is right, or a correction be wrong itself.
+"""The errata: verdicts on formulas of the source.
+
+Without these tests a formula could be called wrong that is right, or a correction be wrong itself.
 
 The verdicts are computed; here they are compared with those found by hand, and formulas are spoilt
 to see them turn.

@@ -1,4 +1,7 @@
-"""Costs: without it a forecast could promise an error or a time that no run has."""
+"""The cost of an error: prices from pilots, and the forecast of a run.
+
+Without it a forecast could promise an error or a time that no run has.
+"""
 
 import math
 

@@ -1,4 +1,7 @@
-"""Pressures and diffusion: without it a factor of a wall or a covariance could be lost."""
+"""Pressures, free energies and diffusion, with their errors.
+
+Without it a factor of a wall or a covariance could be lost.
+"""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,7 @@
-"""Trajectories: without it another program could read other positions, cells or masses."""
+"""A trajectory as a table, and as a file for other programs.
+
+Without it another program could read other positions, cells or masses.
+"""
 
 import numpy as np
 import pandas as pd

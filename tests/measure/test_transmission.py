@@ -1,4 +1,7 @@
-"""Transmission: without it hops that return could count as passages, or an error be made up."""
+"""The transmission coefficient of a hop, and when it has an error.
+
+Without it hops that return could count as passages, or an error be made up.
+"""
 
 import math
 from functools import partial

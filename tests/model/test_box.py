@@ -1,4 +1,7 @@
-"""A box: without it a grid could miss a threshold, or two boxes, radii or methods share a seed."""
+"""A box: its radii, thresholds, keys and seeds.
+
+Without it a grid could miss a threshold, or two boxes, radii or methods share a seed.
+"""
 
 import itertools
 import json

@@ -1,4 +1,6 @@
-"""Values: without it an infinite field or a text as a length would reach the physics.
+"""Checks of single values: types, ranges and messages.
+
+Without it an infinite field or a text as a length would reach the physics.
 
 Allowed values are returned in their plain type, others are named in a short sentence.
 """

@@ -1,4 +1,7 @@
-"""Events: without it a new event could replace a published one, or a kind be forgotten."""
+"""The declarations of events, by kind.
+
+Without it a new event could replace a published one, or a kind be forgotten.
+"""
 
 import re
 

@@ -1,4 +1,7 @@
-"""N discs: without it discs that overlap would be a scene, or a jammed channel be ergodic."""
+"""The geometry of more than two discs.
+
+Without it discs that overlap would be a scene, or a jammed channel be ergodic.
+"""
 
 import itertools
 import math

@@ -1,4 +1,6 @@
-"""A scene: without it discs could pass where there is no room, or hit a wall out of reach.
+"""A scene: which radii fit, which events are possible, and how often by symmetry.
+
+Without it discs could pass where there is no room, or hit a wall out of reach.
 
 Closed forms are compared with bisection in exact arithmetic, scenes with effects with a
 configuration space made of cells. Centres are put on a grid, cells that overlap or lack energy are

@@ -1,4 +1,7 @@
-"""Without these tests a job could be killed at its limit, or blocks be counted twice or never."""
+"""Plans of jobs: their work, limits of time and shards.
+
+Without these tests a job could be killed at its limit, or blocks be counted twice or never.
+"""
 
 from itertools import pairwise
 

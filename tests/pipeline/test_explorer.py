@@ -1,4 +1,7 @@
-"""Without these tests the explorer could show other formulas, counts or errors than the package."""
+"""The explorer, a page in JavaScript: its theory, counts and errors.
+
+Without these tests the explorer could show other formulas, counts or errors than the package.
+"""
 
 import itertools
 import json

@@ -1,4 +1,7 @@
-"""Without these tests the manuscript could have typed numbers, or need more than there is."""
+"""The manuscript: it compiles from any build, and its captions fit the scene.
+
+Without these tests the manuscript could have typed numbers, or need more than there is.
+"""
 
 import re
 import shutil

@@ -1,4 +1,7 @@
-"""Without these tests numbers in paper and pages could differ from the tables, or be misrounded."""
+"""The numbers of manuscript and pages, against a second reading of the tables.
+
+Without these tests numbers in paper and pages could differ from the tables, or be misrounded.
+"""
 
 import json
 import re

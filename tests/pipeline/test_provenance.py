@@ -1,4 +1,7 @@
-"""Without these tests a report could name another commit, or hide that files differ from it."""
+"""The provenance of a build: commit, versions and files.
+
+Without these tests a report could name another commit, or hide that files differ from it.
+"""
 
 import os
 import re

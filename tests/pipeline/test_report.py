@@ -1,4 +1,7 @@
-"""Without these tests numbers of the report could be those of other rows, or too wide for it."""
+"""The report: its numbers and rows.
+
+Without these tests numbers of the report could be those of other rows, or too wide for it.
+"""
 
 import shutil
 from base64 import b64decode

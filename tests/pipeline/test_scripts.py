@@ -1,4 +1,7 @@
-"""Without these tests a script could join wrong shards, or take an edited file for a result."""
+"""The scripts of jobs.
+
+Without these tests a script could join wrong shards, or take an edited file for a result.
+"""
 
 import json
 import re

@@ -1,4 +1,7 @@
-"""Without these tests the tutorial could show what its blocks of Python do not print."""
+"""The tutorial: what it shows is what its code prints.
+
+Without these tests the tutorial could show what its blocks of Python do not print.
+"""
 
 import math
 import re

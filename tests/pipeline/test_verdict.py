@@ -1,4 +1,7 @@
-"""Without these tests a comparison beyond its bound, or a table without any, could pass."""
+"""The verdict on the comparisons of a build.
+
+Without these tests a comparison beyond its bound, or a table without any, could pass.
+"""
 
 import math
 from pathlib import Path

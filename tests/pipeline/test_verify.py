@@ -1,4 +1,7 @@
-"""Without these tests verification could miss a difference, or find one that is none."""
+"""`verify`: results against those expected, and on any processor.
+
+Without these tests verification could miss a difference, or find one that is none.
+"""
 
 import json
 import os

@@ -1,4 +1,6 @@
-"""Estimates: without it an error bar could be too small, or be there if a run could not know it.
+"""Estimates and their standard errors, from sums over replicas.
+
+Without it an error bar could be too small, or be there if a run could not know it.
 
 They are compared with enumeration, mpmath, numpy, scipy and seeded simulation.
 """

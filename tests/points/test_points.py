@@ -1,4 +1,7 @@
-"""Points: without it a file that was edited could be read, or a correlation be forgotten."""
+"""The points: sums as files and their estimates.
+
+Without it a file that was edited could be read, or a correlation be forgotten.
+"""
 
 import json
 import math

@@ -1,4 +1,8 @@
-"""Compiled code could be that of other sources, or of effects that a scene does not have."""
+"""Compiled kernels: which are kept, and which effects they contain.
+
+Without these tests compiled code could be that of other sources, or of effects that a scene does
+not have.
+"""
 
 import json
 import os

@@ -1,4 +1,8 @@
-"""Initial states of many discs could overlap, or one way to draw them have another law."""
+"""Initial states of many discs: all three methods have one law.
+
+Without these tests initial states of many discs could overlap, or one way to draw them have another
+law.
+"""
 
 import itertools
 import math

@@ -1,4 +1,8 @@
-"""Insertions could have another volume or area than theory, or an error that is too small."""
+"""Volume and areas of many discs by insertions.
+
+Without these tests insertions could have another volume or area than theory, or an error that is
+too small.
+"""
 
 import itertools
 

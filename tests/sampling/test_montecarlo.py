@@ -1,4 +1,7 @@
-"""A shell could be hit with another probability than its exact expectation."""
+"""Volume and areas of two discs by Monte Carlo.
+
+Without these tests a shell could be hit with another probability than its exact expectation.
+"""
 
 import math
 

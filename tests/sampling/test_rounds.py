@@ -1,4 +1,8 @@
-"""Work in rounds or shards could give other sums, be done twice or go beyond its budget."""
+"""Work in rounds of blocks, and in shards: sums, budgets and stopping.
+
+Without these tests work in rounds or shards could give other sums, be done twice or go beyond its
+budget.
+"""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,8 @@
-"""Initial states could have another law than the invariant measure, or the flux on a surface."""
+"""Initial states of two discs: the invariant measure, and the flux through a hop.
+
+Without these tests initial states could have another law than the invariant measure, or the flux on
+a surface.
+"""
 
 import math
 from fractions import Fraction

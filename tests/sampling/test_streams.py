@@ -1,4 +1,7 @@
-"""Two streams could be the same, or a draw have another law."""
+"""Streams of random numbers, and draws from them.
+
+Without these tests two streams could be the same, or a draw have another law.
+"""
 
 import math
 

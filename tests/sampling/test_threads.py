@@ -1,4 +1,7 @@
-"""Threads could change the order, hide an error or keep a process from ending."""
+"""Calls in threads: order, errors and ends.
+
+Without these tests threads could change the order, hide an error or keep a process from ending.
+"""
 
 import threading
 import time

@@ -1,4 +1,7 @@
-"""Without these tests an estimator, an engine or c of what accuracy costs could be wrong."""
+"""The study of what accuracy costs.
+
+Without these tests an estimator, an engine or c of what accuracy costs could be wrong.
+"""
 
 import math
 from itertools import pairwise

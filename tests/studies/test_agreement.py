@@ -1,4 +1,7 @@
-"""Without these tests the agreement could count what is no test, or weigh it wrongly."""
+"""The study of agreement over all scenes.
+
+Without these tests the agreement could count what is no test, or weigh it wrongly.
+"""
 
 import math
 

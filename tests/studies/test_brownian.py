@@ -1,4 +1,6 @@
-"""Without these tests Brownian steps or their κ could be wrong.
+"""Brownian dynamics of two discs in a narrow channel.
+
+Without these tests Brownian steps or their κ could be wrong.
 
 Comparisons are held to five standard errors: false alarms in fewer than one of a million each.
 """

@@ -1,4 +1,7 @@
-"""Without these tests a job could fail by what its study hands to it, or reads."""
+"""The declarations of studies, and what each takes and reads.
+
+Without these tests a job could fail by what its study hands to it, or reads.
+"""
 
 import dataclasses
 import inspect

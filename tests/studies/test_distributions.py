@@ -1,4 +1,6 @@
-"""Without these tests fits of hazards and what they are sorted by could be wrong, or their errors.
+"""The study of distributions: hazards, correlations, first passages.
+
+Without these tests fits of hazards and what they are sorted by could be wrong, or their errors.
 
 Statistical comparisons allow five standard errors. Errors from 128 blocks are known to 6 %, and
 their scores are turned into normal deviates; with some 150 comparisons a false alarm comes in fewer

@@ -1,4 +1,7 @@
-"""Without these tests shares of unmet starts, plain times or costs of effects could be wrong."""
+"""The study of effects: shares of unmet starts, plain times and costs.
+
+Without these tests shares of unmet starts, plain times or costs of effects could be wrong.
+"""
 
 import json
 from functools import cache

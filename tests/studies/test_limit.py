@@ -1,4 +1,7 @@
-"""Without these tests the limit of smooth discs at a threshold, and so c, could be wrong."""
+"""The limit of smooth discs at a threshold, and its constant c.
+
+Without these tests the limit of smooth discs at a threshold, and so c, could be wrong.
+"""
 
 import math
 

@@ -1,4 +1,6 @@
-"""Without these tests tables of long runs could differ from their counts, or from the build.
+"""The tables of long runs, against their counts and a build.
+
+Without these tests tables of long runs could differ from their counts, or from the build.
 
 A dozen scores are held to five standard errors: a false alarm in fewer than 1e-5 of all seeds.
 """

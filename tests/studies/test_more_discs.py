@@ -1,4 +1,7 @@
-"""Without these tests methods for more discs could disagree, or have the errors of others."""
+"""The study of more discs: methods against each other.
+
+Without these tests methods for more discs could disagree, or have the errors of others.
+"""
 
 import math
 

@@ -1,4 +1,6 @@
-"""Without these tests κ, exponents, and D of files could be wrong by factors, or their errors.
+"""The study of passages: κ, exponents, and diffusion in single files.
+
+Without these tests κ, exponents, and D of files could be wrong by factors, or their errors.
 
 Statistical comparisons allow five standard errors: with some 20 of them a false alarm comes in
 fewer than 2e-5 of all seeds.

@@ -1,4 +1,6 @@
-"""Without these tests stability could judge by wrong errors, and pass what is wrong.
+"""The studies of stability and of error bars.
+
+Without these tests stability could judge by wrong errors, and pass what is wrong.
 
 Statistical comparisons are held to five standard errors.
 """

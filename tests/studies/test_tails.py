@@ -1,4 +1,6 @@
-"""Without these tests weighted starts, the law C/t³ or the tests of a rate could be wrong.
+"""The study of tails: weighted starts, the law C/t³ and rates.
+
+Without these tests weighted starts, the law C/t³ or the tests of a rate could be wrong.
 
 Every statistical comparison allows five standard errors. Of 100 blocks, these errors are known to
 7 %, and for Student's law with 99 degrees of freedom five are beyond reach in all but 3e-6 of the

@@ -1,4 +1,7 @@
-"""Without these tests a fitted power, its error or its law at a threshold could be wrong."""
+"""The study of power laws at thresholds.
+
+Without these tests a fitted power, its error or its law at a threshold could be wrong.
+"""
 
 import math
 

@@ -1,4 +1,8 @@
-"""The theory of an ordered channel could be off from others, from sums of moments or its limits."""
+"""The theory of an ordered channel, against quadrature, moments and limits.
+
+Without these tests the theory of an ordered channel could be off from others, from sums of moments
+or its limits.
+"""
 
 import math
 

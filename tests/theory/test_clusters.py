@@ -1,4 +1,8 @@
-"""Regions in which events come in crowds could have another share or a share of nothing."""
+"""Bursts of rough discs: regions with their shares, and corners.
+
+Without these tests regions in which events come in crowds could have another share or a share of
+nothing.
+"""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,8 @@
-"""Rates could ignore the parts that confine events, or numbers keep what a caller changed."""
+"""Exact numbers: rates, components and copies.
+
+Without these tests rates could ignore the parts that confine events, or numbers keep what a caller
+changed.
+"""
 
 import math
 

@@ -1,4 +1,7 @@
-"""A closed form or a law of a limit could have another constant or power."""
+"""Closed forms, and laws of limits.
+
+Without these tests a closed form or a law of a limit could have another constant or power.
+"""
 
 import math
 

@@ -1,4 +1,8 @@
-"""Numbers of plain scenes could lose digits at some radius: antiderivatives of many digits."""
+"""Numbers of plain scenes, against antiderivatives of many digits.
+
+Without these tests numbers of plain scenes could lose digits at some radius: antiderivatives of
+many digits.
+"""
 
 import math
 

@@ -1,4 +1,8 @@
-"""The fifty digits of the paper could be wrong: antiderivatives give the same, with 150 of them."""
+"""The reference of 50 digits, against antiderivatives of 150.
+
+Without these tests the fifty digits of the paper could be wrong: antiderivatives give the same,
+with 150 of them.
+"""
 
 import math
 

@@ -1,4 +1,7 @@
-"""The integrals of three discs could miss a region or a kink."""
+"""Integrals of three discs, against other quadratures.
+
+Without these tests the integrals of three discs could miss a region or a kink.
+"""
 
 import math
 import random

@@ -1,4 +1,7 @@
-"""A momentum or a weight of the virial theorem could be another one with effects."""
+"""The virial theorem and the equation of state.
+
+Without these tests a momentum or a weight of the virial theorem could be another one with effects.
+"""
 
 import math
 from dataclasses import replace

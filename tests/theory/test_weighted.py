@@ -1,4 +1,7 @@
-"""Volumes and areas of scenes with effects could miss a kink, a mass or a power of the energy.
+"""Volumes and areas with effects, against a reference from their definition.
+
+Without these tests volumes and areas of scenes with effects could miss a kink, a mass or a power of
+the energy.
 
 The reference integrates over the signed separations with 40 digits, from the definition of each
 density: the range of the common motion and the energy left at its ends. It does not use slacks.

@@ -1,4 +1,6 @@
-"""Without these tests the workflow might build in its own folder only, or not as a module.
+"""The workflow in another folder, as a module, and in a storage.
+
+Without these tests the workflow might build in its own folder only, or not as a module.
 
 The configuration here is tiny, and what one build has made is copied for the others.
 """

@@ -1,4 +1,7 @@
-"""Without these tests a build could miss files, differ if repeated, or pass if it is wrong."""
+"""A whole build: its files, its verdict, and a repetition.
+
+Without these tests a build could miss files, differ if repeated, or pass if it is wrong.
+"""
 
 import json
 import subprocess

@@ -1,4 +1,7 @@
-"""Without these tests a queue or a Slurm could run other jobs, or give other bytes."""
+"""The workflow on a queue and on Slurm.
+
+Without these tests a queue or a Slurm could run other jobs, or give other bytes.
+"""
 
 import os
 import time

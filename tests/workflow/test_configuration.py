@@ -1,4 +1,7 @@
-"""Without these tests a mistake in the configuration could be a traceback, or begin to build."""
+"""Mistakes in a configuration, before anything is built.
+
+Without these tests a mistake in the configuration could be a traceback, or begin to build.
+"""
 
 import pytest
 from checkout import folder

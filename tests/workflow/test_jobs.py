@@ -1,4 +1,7 @@
-"""Without these tests an edit could leave what depends on it, or rerun what does not."""
+"""Which jobs an edit reruns.
+
+Without these tests an edit could leave what depends on it, or rerun what does not.
+"""
 
 import os
 import re

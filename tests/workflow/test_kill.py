@@ -1,4 +1,7 @@
-"""Without these tests jobs could outlive a killed run, or the next one trust what it left."""
+"""Builds that are killed.
+
+Without these tests jobs could outlive a killed run, or the next one trust what it left.
+"""
 
 import os
 import signal

@@ -1,4 +1,7 @@
-"""Without these tests ``twodiscs run`` could read files of others, or print another verdict."""
+"""`twodiscs run`: last lines, exit statuses and folders.
+
+Without these tests ``twodiscs run`` could read files of others, or print another verdict.
+"""
 
 import json
 import os

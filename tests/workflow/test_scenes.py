@@ -1,4 +1,7 @@
-"""Without these tests a scene could miss a job that it calls for, or run one that it does not."""
+"""The jobs of scenes.
+
+Without these tests a scene could miss a job that it calls for, or run one that it does not.
+"""
 
 import pytest
 import yaml

@@ -1,4 +1,7 @@
-"""Without these tests shards could be done twice, be lost, or have the numbers of others."""
+"""Shards in the workflow.
+
+Without these tests shards could be done twice, be lost, or have the numbers of others.
+"""
 
 import shutil
 

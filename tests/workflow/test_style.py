@@ -1,4 +1,7 @@
-"""Without these tests pages about the workflow could differ from rules, keys and names."""
+"""Pages about the workflow, against rules, keys and names.
+
+Without these tests pages about the workflow could differ from rules, keys and names.
+"""
 
 import re
 
