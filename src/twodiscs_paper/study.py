@@ -16,10 +16,11 @@ AS_ESTIMATE, AS_EXACT, SEE_QUANTITY = (
 class Study:
     """An analysis: its ``name``, what its target ``builds``, its ``tables`` and ``figures``.
 
-    The function ``rows`` of each table makes it. It takes, by their names, ``parameters`` of a
-    ``Configuration`` and, as ``tables``, the rows of the tables that the study ``reads``. These are
-    {name: (name of a scene or None, table)}. If the first table takes long, it has ``parts``,
-    {name: parameters}: jobs of its function ``part``, whose rows are read as tables of these names.
+    Each table has a function ``rows`` that makes it. Its arguments are the ``parameters`` that
+    follow from a ``Configuration``, by name, and ``tables``: the rows of the tables that the study
+    ``reads``, {name: (name of a scene or None, table)}. If the first table takes long, ``parts``
+    are {name: parameters} of jobs. Each job calls the function ``part`` of the table, and ``rows``
+    gets its rows as the table of this name.
 
     ``figures`` are {name: ``Figure``}. ``about_plain`` studies are about scenes without effects.
     ``seconds`` is about how long the table takes: a number, or a function of a ``Configuration``.

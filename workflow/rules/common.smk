@@ -147,7 +147,8 @@ def shards(w):
     return [f"{folder}/{component}-{first}-{stop}.json" for component, first, stop in shards]
 
 
-# The long runs that figures read: their paths are known only while this file is read.
+# {figure: {name: path}} of the long runs that figures read. Snakemake resolves the paths of sources while it reads
+# this file, not in functions of wildcards.
 FIGURE_LONG_RUNS = {
     figure: {name: source(path) for name, path in entry.long_runs.items()}
     for figure, entry in ALL_FIGURES.items()

@@ -1,4 +1,6 @@
-"""Each row compares one estimate with the exact theory. `z` is the deviation in standard errors. If
+"""The check of a scene: comparisons of estimates with the exact theory, and their verdicts.
+
+Each row compares one estimate with the exact theory. `z` is the deviation in standard errors. If
 a normal law would not be right, `z` is the standard normal deviate with the same two-sided
 probability `p`. A row has `passed` when |z| ≤ `bound`.
 

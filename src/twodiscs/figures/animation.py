@@ -156,7 +156,7 @@ class Motion:
         return path
 
 
-# What stands still --------------------------------------------------------------------------------
+# Parts that stand still ---------------------------------------------------------------------------
 
 
 def draw_panels(motion):
@@ -216,7 +216,7 @@ def draw_positions(strip, motion, colours):
         strip.plot(times, places, color=colour, lw=0.8)
 
 
-# What moves ---------------------------------------------------------------------------------------
+# Parts that move ----------------------------------------------------------------------------------
 #
 # Each function draws one artist, and returns it with the function that moves it to its place at a
 # time.

@@ -144,7 +144,7 @@ def blocks_wanted(scene, pilots, target):
 
 @dataclass(frozen=True)
 class Price:
-    """What a quantity costs by a method.
+    """The price of a quantity by one method.
 
     Parameters
     ----------
@@ -294,7 +294,7 @@ def _price_of_exact(scene):
 
 
 class Cost(Printed):
-    """What each quantity of a scene costs by each method; ``cost`` returns one.
+    """The prices of the quantities of a scene by each method; ``cost`` returns one.
 
     It prints as a table: processor times for relative errors, the error of the smallest run, and
     the floor, an error that no work removes.

@@ -133,8 +133,8 @@ def from_dict(content):
 
         refused = {float(radius): "".join(why) for radius, why in content["refused"]}
         found = Scan(map(from_dict, content["results"]), refused)
-        alike = {(one.kind, repr(one.scene.box), repr(one.settings)) for one in found}
-        is_right = len(alike) == 1 and found[0].kind == "simulate"
+        kinds = {(one.kind, repr(one.scene.box), repr(one.settings)) for one in found}
+        is_right = len(kinds) == 1 and found[0].kind == "simulate"
         known = {"results": content["results"]}
     else:
         if content["kind"] == "intervals":

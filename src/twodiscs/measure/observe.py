@@ -179,7 +179,7 @@ def _times(times):
 
 def _values(function, start, now):
     """Return the values of the ``function``, an array with a row for each replica."""
-    # The function gets the same start for all times: if it wrote into it, later times were wrong.
+    # The same start is used for all times. A function that changes it would spoil later times.
     start.flags.writeable = now.flags.writeable = False
     returned = function(start, now)
     try:

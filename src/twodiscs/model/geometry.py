@@ -1,4 +1,4 @@
-"""What geometry has to say of a scene, for two discs and for more."""
+"""The geometry of a scene, for two discs and for more."""
 
 from collections.abc import Callable
 from typing import NamedTuple

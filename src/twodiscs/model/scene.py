@@ -677,12 +677,11 @@ class Scene(Box):
         return 0.5 if declared.kind == "wall" and self.confined["xy".index(declared.axis)] else 1.0
 
     def multiplicity(self, event):
-        """Return the number of events with the rate of ``event`` by symmetry.
+        """Return how many events are equal to ``event`` by symmetry; their hits are counted as one.
 
-        By mirror images and for equal discs, four pairs of a disc and a wall have the same rate. If
-        the discs keep their sides, a trajectory can reach two of them. With a field there is no
-        mirror image along y. It is 2N for walls of more than two discs, and 1 for all events except
-        wall hits.
+        It is 1 except for wall hits. A wall and its mirror image, hit by either of two equal discs,
+        are four events with one rate. If the discs keep their sides, a trajectory can reach two of
+        them. In a field the bottom is no mirror image of the top. For N > 2 discs it is 2N.
         """
         return self._geometry.multiplicity(self, DECLARED[event])
 

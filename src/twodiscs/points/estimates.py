@@ -170,12 +170,12 @@ def has_error_bar(total, squares, replicas, expected=None):
 
 
 def mean_time(total, squares, replicas, duration, mean=None):
-    """Return T/⟨N⟩ with its error by the delta method, or ``None`` without a count.
+    """Return the mean time T/⟨N⟩ as an ``Estimate``, ``None`` if nothing was counted.
 
     ``total`` and ``squares`` are Σ N and Σ N² over the replicas that can have the event, each of
-    length ``duration`` = T. The time and the mean count have the same relative error. ``mean``, if
-    given, is a better estimate (count, error) than from these sums. Show the error only if
-    ``has_error_bar`` is true.
+    length ``duration`` = T. By the delta method the time and the mean count have the same relative
+    error. ``mean``, if given, is a better estimate (count, error) than these sums. The caller shows
+    the error only if ``has_error_bar`` is true.
     """
     if not total:
         return None

@@ -87,9 +87,9 @@ def fixed(work, blocks, block_events, cost_ratio=1.0):
 
 
 def _done(run, stop, ranges, cores, progress):
-    """Return the sums of the blocks 0 … ``stop`` − 1, which go on from those in ``ranges``.
+    """Simulate the blocks up to ``stop`` that ``ranges`` lack; return the sums of all of them.
 
-    The new blocks are added to ``ranges``. One call of a thread does some blocks.
+    The sums of the new blocks are added to ``ranges``. Each call of a thread does a few blocks.
     """
     sums, first = reached(ranges, stop)
     if first == stop:

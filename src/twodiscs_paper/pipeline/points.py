@@ -7,7 +7,7 @@ from twodiscs.model.checks import InputError
 from twodiscs.model.formats import quote
 from twodiscs.points.base import MALFORMED, SECONDS, read_json, restore_arrays
 
-#: What to do about a wrong file.
+#: The remedy for a wrong file.
 REMEDY = "delete it, and it is made again"
 
 

@@ -24,7 +24,8 @@ CONTACTS, CONTACTS_OF_CHAIN = 512, 16
 
 #: Below this room of discs, relative to their radius, contacts are more in proportion: each moves a
 #: disc by less. They are at most ``DENSEST`` times as many: closer to the largest radius all free
-#: lengths shrink alike, and as many moves, which shrink with them, mix the centres as well.
+#: lengths shrink by the same factor, and as many moves, which shrink with them, mix the centres as
+#: well.
 ROOMY, DENSEST = 1 / 3, 16
 
 

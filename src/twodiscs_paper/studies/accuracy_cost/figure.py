@@ -1,4 +1,4 @@
-"""What accuracy costs: error against processor time for every method, and what no time buys."""
+"""The cost of accuracy: error against processor time for every method, and errors that stay."""
 
 import math
 from statistics import median
@@ -32,7 +32,7 @@ GUIDES = {"1 s": 1.0, "1 min": 60.0, "1 h": 3600.0, "1 day": 86400.0}
 #: The errors at which one trajectory after another is compared with the engine: easy, hard.
 GAINED = 4e-6, 10**-2.5
 
-#: Every so many doublings of the time have a symbol, and the longest run.
+#: The number of doublings of the time from one symbol to the next; the longest run has one, too.
 THINNED = 2
 
 #: Errors of fewer runs than this have a bar.

@@ -1,4 +1,4 @@
-"""What accuracy costs: the true error of each method against the processor time that it takes.
+"""The cost of accuracy: the true error of each method against the processor time that it takes.
 
 A method runs block after block, each with its own random numbers. The blocks of a run, joined in
 pairs again and again, are independent runs of 1, 2, 4, … blocks, so one run has the root mean
