@@ -49,7 +49,7 @@ def at(*events, end=1000.0):
 
 def drawn(box, radius, rows):
     """Return the motion of a trajectory, the circles and the other moving parts of its picture."""
-    motion = animation.Motion(box, radius, rows)
+    motion = animation.MovingDiscs(box, radius, rows)
     with style.context():
         _, circles, others = animation.draw(motion)
     return motion, circles, others
@@ -102,7 +102,7 @@ def test_the_hop_is_a_frame_and_the_only_one_that_stops(rows, tmp_path, monkeypa
     paths = [tmp_path / f"a.{kind}" for kind in ("gif", "png", "html")]
     with style.context():
         animation.animate(BOX, RADIUS, rows, paths)
-    motion = animation.Motion(BOX, RADIUS, rows)
+    motion = animation.MovingDiscs(BOX, RADIUS, rows)
     frames, png = map(unpacked, paths[:2])
     text = paths[2].read_text(encoding="utf-8")
     assert "http" not in text

@@ -85,7 +85,7 @@ def frame_times(rows, step, discs=2):
     return frames, hop, centre
 
 
-class Motion:
+class MovingDiscs:
     """The discs of a trajectory at any time, and the times of the frames that show them.
 
     ``columns`` are the values of the ``rows`` of trajectory.csv, {name: array}. ``frames`` are the
@@ -222,23 +222,15 @@ def draw_positions(strip, motion, colours):
 # time.
 
 
-def draw_circle(axes, motion, disc, face, edge):
-    """Draw a disc."""
+def draw_circle(axes, motion, disc, face, edge, axis=None):
+    """Draw a disc, or its image at the other end of a periodic ``axis``."""
     circle = axes.add_patch(Circle((0, 0), motion.scene.radii[disc - 1], fc=face, ec=edge, lw=1.2))
 
     def move(time):
-        circle.center = motion.folded_place(disc, time)
-
-    return circle, move
-
-
-def draw_image(axes, motion, disc, face, edge, axis):
-    """Draw the image of a disc at the other end of a periodic ``axis``."""
-    circle, _ = draw_circle(axes, motion, disc, face, edge)
-
-    def move(time):
-        place, column = motion.folded_place(disc, time), "xy".index(axis)
-        place[column] -= np.copysign(motion.sides[axis], place[column])
+        place = motion.folded_place(disc, time)
+        if axis is not None:
+            column = "xy".index(axis)
+            place[column] -= np.copysign(motion.sides[axis], place[column])
         circle.center = place
 
     return circle, move
@@ -381,8 +373,8 @@ def draw(motion):
         draw_separation(strip, motion)
     circles, others = {}, {}
     for disc, look in enumerate(looks, 1):
-        images = [draw_image(axes, motion, disc, *look, axis) for axis in motion.periodic]
-        circles[disc] = [draw_circle(axes, motion, disc, *look), *images]
+        ends = (None, *motion.periodic)
+        circles[disc] = [draw_circle(axes, motion, disc, *look, axis) for axis in ends]
     for disc, (_, colour) in enumerate(looks, 1):
         others[f"trace {disc}"] = draw_trace(axes, motion, disc, colour)
         if f"s{disc}" in motion.columns:
@@ -422,7 +414,7 @@ def animate(box, radius, rows, paths):
         if not Path(path).parent.is_dir():
             with writing_to(path):  # raises before all frames are drawn
                 pass
-    motion = Motion(box, radius, rows)
+    motion = MovingDiscs(box, radius, rows)
     figure, circles, others = draw(motion)
     for artist, _ in moving_parts(motion, circles, others, motion.centre):
         artist.set_animated(True)
