@@ -5,14 +5,12 @@ Without these tests shares of unmet starts, plain times or costs of effects coul
 
 import json
 from functools import cache
-from importlib import import_module
 from pathlib import Path
 
 import numpy as np
 import pytest
 from factory import Laws, empty, written
 from marks import slow
-from numba.core.errors import NumbaError
 
 from twodiscs.analysis.tables import MeanTimesTable
 from twodiscs.dynamics.ensemble import REPLICAS
@@ -211,16 +209,14 @@ def test_costs_are_of_every_scene_and_of_what_is_watched(monkeypatch):
     """The speeds are fabricated: seconds are the events of the plain scene, halved without hops."""
     watched = {}
 
-    def lockstep(blocks, scene=price.SCENE, events=EVENTS, bare=None):
+    def lockstep(blocks, scene=price.SCENE, events=EVENTS):
         watched[scene.has_effects, tuple(events)] = scene
-        number = 8.0 if bare else 2.0 if scene.has_effects else 4.0
-        return number, 1.0 if events == EVENTS else 0.5
+        return 2.0 if scene.has_effects else 4.0, 1.0 if events == EVENTS else 0.5
 
+    bare = {"instructions(lockstep)": 10, f"lockstep({price.QUICK['blocks']})": (8.0, 1.0)}
     monkeypatch.setattr(price, "lockstep", lockstep)
-    monkeypatch.setattr(price, "package_without_effects", lambda: "bare")
-    monkeypatch.setattr(
-        price, "instructions", lambda work, package: 10 if package == "bare" else 20
-    )
+    monkeypatch.setattr(price, "result_without_effects", bare.get)
+    monkeypatch.setattr(price, "instructions", lambda work: 20)
     rows = EffectsCostTable.rows({}, {name: BOXES[name] for name in ("torus", "rough")})
     assert {row["variant"]: row["ratio"] for row in rows} == {
         "without_effects": 1.0, "plain": 0.5, "torus": 0.5, "rough": 0.25, "plain_walls": 1.0,
@@ -232,16 +228,7 @@ def test_costs_are_of_every_scene_and_of_what_is_watched(monkeypatch):
 
 
 @pytest.mark.slow
-def test_the_package_without_effects_counts_the_same_and_has_none():
-    """Its plain kernel has the same sums and as many instructions; an effect cannot be compiled."""
-    name = price.package_without_effects()
-    ours, bare = (
-        import_module(f"{package}.dynamics.two.event_counts") for package in ("twodiscs", name)
-    )
-    plain = PLAIN.scene(0.2), EVENTS, 1, 0, 2, 32.0
-    for found, due in zip(bare.run_blocks(*plain), ours.run_blocks(*plain), strict=True):
-        np.testing.assert_array_equal(found, due)
-    counted = price.instructions(lambda: price.lockstep(1), "twodiscs")
-    assert price.instructions(lambda: price.lockstep(1, bare=name), name) == counted
-    with pytest.raises(NumbaError):
-        bare.run_blocks(ROUGH, EVENTS, 1, 0, 1, 1.0)
+def test_the_engine_without_effects_counts_the_same_events_with_as_many_instructions():
+    assert price.result_without_effects("lockstep(2)")[0] == price.lockstep(2)[0]
+    found = price.result_without_effects("instructions(lockstep)")
+    assert found == price.instructions(price.lockstep)

@@ -80,7 +80,7 @@ QUICKER = (
         '"blocks": 8, "repetitions": 1',
     ),
     (f"{STUDIES}/effects/price.py", "scenes.items()} | MORE", "scenes.items()}"),
-    (f"{STUDIES}/effects/price.py", "_without_effects()\n", "_without_effects() and 'twodiscs'\n"),
+    (f"{STUDIES}/effects/price.py", "from {__package__} import engine_without_effects; ", ""),
 )
 
 #: The rules that build nothing but lists of files: targets, and checksums of sources.

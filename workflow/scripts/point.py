@@ -2,7 +2,6 @@
 
 import time
 
-import twodiscs.sampling.jit  # noqa: F401 - start saves collections of what is imported before it
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.scene import Scene
 from twodiscs.points.base import file_content, write_json

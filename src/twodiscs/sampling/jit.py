@@ -13,7 +13,6 @@ the error message for shapes that differ, which takes seconds.
 """
 
 import atexit
-import gc
 import os
 import sys
 import tempfile
@@ -23,30 +22,22 @@ from hashlib import blake2b
 from pathlib import Path
 from types import FunctionType
 
+import numba
+from llvmlite import binding
+from numba.core import caching, types
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.registry import CPUDispatcher, cpu_target
+from numba.extending import overload
+
 from twodiscs.model.checks import InputError
 
-# The objects of numba's import stay in memory: garbage collections meanwhile take a fifth of the
-# start.
-collecting = gc.isenabled()
-gc.disable()
-
-import numba  # noqa: E402
-from llvmlite import binding  # noqa: E402
-from numba.core import caching, types  # noqa: E402
-from numba.core.compiler_lock import global_compiler_lock  # noqa: E402
-from numba.core.registry import CPUDispatcher, cpu_target  # noqa: E402
-from numba.extending import overload  # noqa: E402
-
-# No kernel needs BLAS. Numba would import SciPy's, which takes a quarter of the start. We hide it;
-# numba then uses its own functions for inner products.
+# No kernel needs BLAS. Numba would import SciPy's, 0.15 s of the 0.6 s that a short job takes. We
+# hide it; numba then uses its own functions for inner products.
 if (blas := "scipy.linalg.cython_blas") not in sys.modules:
     sys.modules[blas] = None  # makes its import fail
     import numba.np.arraymath
 
     del sys.modules[blas]
-
-if collecting:
-    gc.enable()
 
 if numba.config.DISABLE_JIT:
     raise InputError(
@@ -54,20 +45,13 @@ if numba.config.DISABLE_JIT:
         "a negative number is an error; to step through one kernel, call its attribute py_func"
     )
 
-# LLVM uses 512-bit vectors if the processor has them, unless the user set a width or has compiled.
-features = binding.get_host_cpu_features()
-if features.get("avx512f") and not (numba.config.CPU_NAME or numba.config.CPU_FEATURES):
-    # Numba reads the features when it makes the context of all compilations. Afterwards the
-    # settings are again the user's, also in the keys of numba's caches: a user's kernels are found
-    # there whatever is imported first.
-    users = numba.config.CPU_FEATURES
+# LLVM prefers vectors of 256 bits on many processors that have 512, and kernels take 1.6 times as
+# long. Numba reads the features once, for all compilations of a process. A user's choice wins.
+features, users = binding.get_host_cpu_features(), numba.config.CPU_FEATURES
+if features.get("avx512f") and not (numba.config.CPU_NAME or users):
     numba.config.CPU_FEATURES = features.flatten() + ",-prefer-256-bit"
-    codegen = cpu_target.target_context.codegen()
+    cpu_target.target_context.codegen()
     numba.config.CPU_FEATURES = users
-    #: The features that kernels are compiled for, a part of the name of their folder.
-    FEATURES, codegen._tm_features = codegen._tm_features, codegen._customize_tm_features()
-else:
-    FEATURES = "the user's"
 
 # Daemon threads end with the process. During a compilation that crashes it, so we wait.
 atexit.register(global_compiler_lock.acquire)
@@ -87,13 +71,13 @@ SOURCES = {"twodiscs": _FLOORS, "twodiscs_paper": [*_FLOORS, "twodiscs_paper/stu
 def cache_folder(package):
     """Return the folder for compiled code of a ``package``, None if no code can be kept.
 
-    Its name changes with the path below the packages, the size and the time of each file in
-    ``SOURCES``, and with ``FEATURES``, so a copy of the sources elsewhere has the same folder.
+    Its name is a digest of the text of each file in ``SOURCES``, and of its path below the
+    packages, so a copy of the sources elsewhere has the same folder.
     """
-    digest = blake2b(FEATURES.encode(), digest_size=8)
+    digest = blake2b(repr(SOURCES[package]).encode(), digest_size=8)
     for path in sorted(p for folder in SOURCES[package] for p in (_ROOT / folder).rglob("*.py")):
-        name, status = path.relative_to(_ROOT), path.stat()
-        digest.update(f"{name} {status.st_size} {status.st_mtime_ns}\n".encode())
+        text = path.read_bytes()
+        digest.update(f"{path.relative_to(_ROOT)} {len(text)}\n".encode() + text)
     try:
         home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
         kept = Path(numba.config.CACHE_DIR or Path(home, "twodiscs"), digest.hexdigest())
@@ -113,7 +97,11 @@ class Locator(caching.UserProvidedCacheLocator):
     """Names the folder and the file for the code of a kernel."""
 
     def __init__(self, function, file):
-        self._cache_path, self._module = cache_folder(_package(function)), function.__module__
+        self._module = function.__module__
+
+    def get_cache_path(self):
+        """Return the folder for the package of the kernel."""
+        return cache_folder(_package(self._module))
 
     def get_source_stamp(self):
         """Return an empty text: the name of the folder is the stamp of the sources."""
@@ -125,25 +113,8 @@ class Locator(caching.UserProvidedCacheLocator):
 
     @classmethod
     def from_function(cls, function, file):
-        """Return the locator of a ``function``."""
-        return cls(function, file)
-
-
-class KernelCacheImpl(caching.CompileResultCacheImpl):
-    """The compiled code that numba keeps, in the folder that ``Locator`` names."""
-
-    _locator_classes = [Locator]
-
-
-class KernelCache(caching.FunctionCache):
-    """Numba's cache of the compiled code of one kernel."""
-
-    _impl_class = KernelCacheImpl
-
-    def __init__(self, function):
-        super().__init__(function)
-        # Numba numbers its files: two processes that save together would use a number twice.
-        self._cache_file._data_name = lambda number: f"{function.__name__}.{uuid.uuid4().hex}.nbc"
+        """Return the locator of a ``function``, None if its code is not kept here."""
+        return cls(function, file) if _package(function.__module__) in SOURCES else None
 
 
 def compiled(function, **options):
@@ -156,18 +127,28 @@ def compiled(function, **options):
 
 
 def _kept(kernel):
-    function, package = kernel.py_func, _package(kernel.py_func)
+    function, package = kernel.py_func, _package(kernel.py_func.__module__)
     if package in SOURCES and "<" not in function.__qualname__ and cache_folder(package):
-        kernel._cache = KernelCache(function)
+        users = numba.config.CACHE_LOCATOR_CLASSES
+        numba.config.CACHE_LOCATOR_CLASSES = f"{__name__}.{Locator.__name__}"
+        kernel.enable_caching()
+        numba.config.CACHE_LOCATOR_CLASSES = users
+        # Numba numbers its files: two processes that save together would use a number twice.
+        file = kernel._cache._cache_file
+        file._data_name = lambda number: f"{function.__name__}.{uuid.uuid4().hex}.nbc"
     return kernel
 
 
-def _package(function):
-    return function.__module__.partition(".")[0]
+def _package(module):
+    return module.partition(".")[0]
 
 
 class Inlined(CPUDispatcher):
-    """A function of kernels. The code for calls from Python takes long to compile."""
+    """A function of kernels.
+
+    The code for calls from Python takes 12 % of the compilation of a first simulation, so it is
+    made only for functions that Python calls.
+    """
 
     def __call__(self, *arguments):
         return self._for_python(*arguments)
