@@ -24,18 +24,22 @@ def name_of(path):
 FILES = {name_of(path): path for name in PACKAGES for path in sorted((ROOT / name).rglob("*.py"))}
 
 
-@cache
-def imports_of(module):
-    """Return the modules of the packages that a module imports directly, also in functions."""
+def imported_modules(path):
+    """Return the modules of the packages that a file imports directly, also in functions."""
     found = set()
-    for node in ast.walk(ast.parse(FILES[module].read_text(encoding="utf-8"))):
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             found |= {tuple(alias.name.split(".")) for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             base = tuple(node.module.split("."))
             found |= {base, *((*base, alias.name) for alias in node.names)}
-    packages = {(package,) for package in PACKAGES}
-    return (found & FILES.keys()) - packages - {module[:depth] for depth in range(len(module))}
+    return (found & FILES.keys()) - {(package,) for package in PACKAGES}
+
+
+@cache
+def imports_of(module):
+    """Return the modules that a module imports, without the packages that it is in."""
+    return imported_modules(FILES[module]) - {module[:depth] for depth in range(len(module))}
 
 
 def test_the_drawing_shows_which_room_uses_which():

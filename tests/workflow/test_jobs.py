@@ -5,8 +5,11 @@ Without these tests an edit could leave what depends on it, or rerun what does n
 
 import os
 import re
+from pathlib import Path
 
 import pytest
+from checkout import REPOSITORY
+from test_layout import FILES, imported_modules, imports_of
 
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.studies.effects.study import SCENES
@@ -49,17 +52,31 @@ def test_one_more_radius_runs_one_job_of_each_kind(built):
 #: Sources that no result depends on, or only through the parameters of jobs.
 NO_CODE = {"__init__", "__main__", "catalogue", "cli", "configuration"}
 
+#: Modules that are imported without an effect on a table: the start of a job, titles and captions.
+NO_NUMBER = {"src/twodiscs_paper/pipeline/job.py", "src/twodiscs/figures/scene_figures.py"}
 
-def test_the_checksums_are_those_of_all_sources(unbuilt):
-    """A folder or module that is added belongs to a group, or to ``NO_CODE``."""
-    targets = "all", "paper", "benchmark", *STUDIES
+#: The modules that import every study and every figure of a study; a job uses one of them.
+REGISTRIES = {("twodiscs_paper", "catalogue"), ("twodiscs_paper", "draw")}
+
+
+@pytest.fixture(scope="module")
+def planned_files(unbuilt):
+    """The jobs of all targets: [(rule, inputs, first output)]."""
+    targets = "all", "paper", "benchmark", "explorer", *STUDIES
     printed = unbuilt.snakemake("--dry-run", "--forceall", "--", *targets).stdout
-    jobs = printed.split("rule code:")[1:]
-    listed = {
-        path
-        for job in jobs
-        for path in re.search(r"^    input: (.*)$", job, re.MULTILINE)[1].split(", ")
-    }
+    job = r"^(?:local)?rule (\w+):\n    input: (.*)\n    output: ([^,\n]*)"
+    found = re.findall(job, printed, re.MULTILINE)
+    return [(rule, {*inputs.split(", ")}, output) for rule, inputs, output in found]
+
+
+@pytest.fixture(scope="module")
+def groups(planned_files):
+    """The sources of the groups of code by their checksums."""
+    return {output: inputs for rule, inputs, output in planned_files if rule == "code"}
+
+
+def test_the_checksums_are_those_of_all_sources(unbuilt, groups):
+    """A folder or module that is added belongs to a group, or to ``NO_CODE``."""
     source = unbuilt.path / "src"
     kinds = (".py", ".mplstyle", ".html")
     paths = {path.relative_to(source) for path in source.rglob("*") if path.suffix in kinds}
@@ -67,7 +84,29 @@ def test_the_checksums_are_those_of_all_sources(unbuilt):
     # Those that draw a figure of a study are inputs of its jobs; the folder of studies has no code.
     drawing = {path for path in counted if re.search("twodiscs_paper/studies/.*/figure", path)}
     counted -= drawing | {"twodiscs_paper/studies/__init__.py"}
-    assert listed == {f"src/{path}" for path in counted}
+    assert set().union(*groups.values()) == {f"src/{path}" for path in counted}
+
+
+def test_a_job_has_the_code_that_its_script_imports(planned_files, groups):
+    """An import in a function counts, too, and so do the imports of the module that it names."""
+    names = {path.relative_to(REPOSITORY).as_posix(): module for module, path in FILES.items()}
+    paths = {module: path for path, module in names.items()}
+    lacking = set()
+    for rule, inputs, _ in planned_files:
+        sums = inputs & groups.keys()
+        own = inputs.union(*(groups[one] for one in sums if Path(one).stem in STUDIES))
+        todo = {names[path] for path in own & names.keys()}
+        scripts = [path for path in inputs if path.startswith("workflow/scripts/")]
+        todo = todo.union(*(imported_modules(REPOSITORY / script) for script in scripts))
+        reached = set()
+        while scripts and todo:
+            reached.add(module := todo.pop())
+            if module not in REGISTRIES and module[1] not in NO_CODE:
+                todo |= imports_of(module) - reached
+        code = {paths[module] for module in reached if module[1] not in NO_CODE}
+        code = {path for path in code - NO_NUMBER if not path.endswith("__init__.py")}
+        lacking |= {(rule, path) for path in code - inputs.union(*(groups[one] for one in sums))}
+    assert lacking == set()
 
 
 CODE = "\n\nREMARK = 1\n"

@@ -170,9 +170,10 @@ def radius(w):
 
 
 def own_code(w):
-    """Return the sources of the figure of a study that are not in the group of all figures."""
-    studies = (one for one in STUDIES.values() if w.figure in one.figures)
-    return [path for study in studies for path in study_figures(study)]
+    """Return the code of the figure of a study that is not that of all figures: of its study."""
+    studies = [one for one in STUDIES.values() if w.figure in one.figures]
+    drawn = [path for study in studies for path in study_figures(study)]
+    return [*drawn, *sums(*(study.name for study in studies))]
 
 
 def study_reads(w):

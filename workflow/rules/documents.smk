@@ -39,7 +39,7 @@ if MAIN:
             long_runs=[source(f"paper/long_run/{path}.csv") for path in LONG_RUNS],
             results=CONFIGURATION.printed(),
             drawn=CONFIGURATION.studied("figures"),
-            code=code("paper", "documents"),
+            code=code("paper", "physics", "tables", "documents"),
         output:
             pdf=report(f"{RESULTS}/paper.pdf", category="Manuscript"),
             numbers=CONFIGURATION.table("paper_numbers"),
@@ -73,7 +73,7 @@ rule report:
         ],
         configuration=rules.configuration.output.json,
         front=source("workflow/report/front.html"),
-        code=code("report", "documents"),
+        code=code("report", "physics", "tables", "documents"),
     output:
         html=f"{RESULTS}/report.html",
     log:
@@ -132,7 +132,7 @@ rule explorer:
             if name in ("volume", "areas", "mean_times") and os.path.exists(path)
         ],
         parts=[source(f"workflow/explorer/{name}") for name in PAGE],
-        code=code("explorer", "physics", "documents"),
+        code=code("explorer", "physics", "tables", "figures", "documents"),
     output:
         html=f"{RESULTS}/explorer.html",
     log:
@@ -182,7 +182,7 @@ rule forecast:
 rule benchmark:
     """How fast the engines are on this machine."""
     input:
-        code=code("benchmark", "physics", "benchmark", "effects", "accuracy_cost"),
+        code=code("benchmark", "physics", "tables", "benchmark", "effects", "accuracy_cost"),
     output:
         table=f"{RESULTS}/benchmark.csv",
     log:

@@ -7,7 +7,7 @@ rule figure:
     """A figure of a scene, from its tables."""
     input:
         tables=lambda w: figure_reads(w).values(),
-        code=code("figure", "figures", "physics"),
+        code=code("figure", "figures", "physics", "tables"),
         own_code=own_code,
     output:
         pdf=f"{RESULTS}/{{scene}}/figures/{{figure}}.pdf",

@@ -118,7 +118,7 @@ rule check:
     """Do exact theory, Monte Carlo and dynamics agree? If not, it fails and names the comparisons."""
     input:
         tables=CONFIGURATION.checked(),
-        code=code("check", "tables", "documents"),
+        code=code("check", "physics", "tables", "documents"),
     output:
         passed=f"{RESULTS}/check.passed",
     log:
