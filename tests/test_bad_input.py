@@ -79,7 +79,8 @@ discs: 3, periodic: xy → periodic must be left out or x for more than two disc
 discs: 3, radius: 0.31 → radius 0.31 does not fit: 3 discs in a box of 1.5 × 1.0 need a radius below
 discs: 4, radius: 0.376, periodic: x → radius 0.376 does not fit
 discs: 20, radius: 0.2 → 20 discs in a box of 1.5 × 1.0 need a radius below 0.136
-discs: 64, width: 100000 → width and height must be in a unit of length in which
+discs: 64, width: 300, height: 1.3, radius: 0.33 → must be in a unit of length in which
+discs: 64, width: 300, height: 1.3, radius: 0.33, periodic: x → not 300.0 and 1.3
 radius: 0.5 → radius 0.5 does not fit: … need a radius below 0.3839745962155614
 width: 0.2, radius: 1.5 → radius 1.5 does not fit
 height: 1.0e+99 → height must … between 1e-60 and 1e60, not 1
@@ -130,7 +131,7 @@ td.scan(1.5, 1, [0.2, 0.2]) → radii must differ, because one radius has the sa
 td.sample(PAPER, 1).more(budget=1e7) → to go on, give samples=
 td.simulate(PAPER, 0.5, budget=1).more(duration=10) → duration must be left out for a result of …
 td.trajectory(RING, start=ROUND_THE_RING) → must have the discs apart
-td.intervals(Scene(1.5, 1, 0.3), 'horizontal_hop') → is blocked
+td.intervals(Scene(1.5, 1, 0.3), 'horizontal_hop') → has no intervals: it is blocked at radius 0.3
 td.intervals(Scene(1.6, 0.6, 0.18, discs=4), 'horizontal_hop') → is blocked
 td.intervals(Scene(1.5, 1, 0.13, discs=16), 'vertical_hop') → is so large for 16 discs that the time
 td.intervals(Scene(1, 1, 0.1, discs=3, moment_of_inertia=1), 'vertical_hop') → must have smooth
@@ -138,7 +139,7 @@ insertions.sample(Scene(1.5, 1.0, 0.13, discs=16), 1000, 1) → in none of them 
 td.pressure(FIELD) → field must be 0 for a pressure
 td.pressure(Scene(1, 1, 0.1, radius_ratio=2)) → radius_ratio must be 1 for a pressure
 td.pressure(Scene(1, 1, 0.1, periodic='xy')) → must have walls along x or y for a pressure
-td.pressure(td.sample(PAPER, 1)) → of must be a Scene or a result of simulate
+td.pressure(td.sample(PAPER, 1)) → a Scene or a result of simulate, not a result of sample
 td.free_energy(FIELD) → field must be 0 for the free energy
 td.free_energy('a') → of must be a Scene or a result of sample, not 'a'
 td.diffusion(PAPER, [1]) → axis must be periodic in the scene for diffusion
@@ -148,8 +149,13 @@ start(x1=0.2) → have the discs apart, with 0.4 or more between their centres, 
 start(x1=-0.6) → disc 1 inside the box, with x1 between -0.55 and 0.55, not -0.6
 start(y2=0.31) → disc 2 inside the box, with y2 between -0.3 and 0.3, not 0.31
 start(u1=2.0) → start must have a total energy of 0.5, not 2.0
+start(v2=np.ma.masked) → start must be the numbers x1, y1, x2, y2, u1, v1, u2, v2, not
+td.trajectory(PAPER, start={**START, 'v3': 0.0}) → start must be the numbers x1, y1, x2, y2, u1, v1
 start(v2=NAN) → start must be the numbers x1, y1, x2, y2, u1, v1, u2, v2, not
 observe(times={1: 0, 0: 0}) → times must be ascending numbers from 0 on, not [1, 0]
+observe(times=np.ma.masked_array([1, 2], [0, 1])) → from 0 on, not a MaskedArray object
+observe(lambda a, b: np.ma.masked_less(b['x1'], 0)) → 4096 replicas, not an array with masked values
+observe(lambda a, b: [np.ma.masked_less(b['x1'], 0)] * 2) → not an array with masked values
 observe(times=[1e9]) → where 1e7 events are due, not 1e9
 observe(lambda a, b: 1.0) → function must return a real number, or the same
 observe(lambda a, b: None) → 4096 replicas, not None: is its return missing?
@@ -157,9 +163,15 @@ observe(lambda a, b: b) → an array with the fields x1, y1, x2, y2, u1, v1
 observe(lambda a, b: b['x1'].astype(str)) → of shape (4096,) and kind <U
 observe(lambda a, b: b['x1'] + 1j) → real and imaginary part as two columns
 td.plot(td.observe(PAPER, nine, [1], 1)) → at most 8 averages at a time to be drawn, not 9
+td.trajectory(PAPER).states_at(np.ma.masked_array([1, 2], [0, 1])) → not a MaskedArray object
 td.trajectory(PAPER).states_at([1e9]) → times must be numbers from 0.0 to
 td.trajectory(PAPER)[['time', 'x1']].states_at([1]) → rows and lacks y1, x2, y2, u1, v1, u2, v2
 td.plot(td.sample(PAPER, 1), figure='mean_times') → figure must be one of volume,
+td.plot(td.sample(PAPER, 1), figure='volum') → not 'volum'; did you mean volume?
+td.plot(td.sample(PAPER, 1), ax=td.sample(PAPER, 1)) → Axes of matplotlib, not a result of sample
+td.sample(PAPER, shell=1e-300) → shell must lie between 1e-6 and 1, ends excluded, not 1e-300
+td.cost(PAPER, shell=1e-300) → shell must lie between 1e-6 and 1, ends excluded, not 1e-300
+td.sample(PAPER, 1, seed=2.0**53) → seed must be an integer of at least 0, not 9007199254740992.0
 td.plot(td.sample(PAPER, 1), ax='main') → ax must be one plane Axes of matplotlib, not
 td.plot(td.sample(PAPER, 1), ax=Figure().subplots(2)) → ax must be one plane Axes of matplotlib, not
 td.plot(td.sample(PAPER, 1), ax=Figure().add_subplot(projection='3d')) → ax must be one plane Axes
@@ -203,6 +215,7 @@ seed: 1⏎seed: 2 → FILE, line 2: the key 'seed' is given a second time
 scenes:⏎- box: {width: 1, width: 2} → FILE, line 2: the key 'width' is given a second …
 \tscenes: 1 → FILE, line 1: found character '\\t' that cannot start any token
 a: \x07 → FILE: unacceptable character …
+seed: 9007199254740993.0 → FILE, line 1: 9007199254740993.0 must be …: YAML reads 9007199254740992.0
 a: 1⏎b: 2001-13-41 → FILE: month must be in 1..12
 a: *b → FILE, line 1: found undefined alias 'b'
 # café⏎a: \udce9 → FILE: must be UTF-8, which has no byte 0xe9 here

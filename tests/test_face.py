@@ -9,8 +9,11 @@ import json
 import math
 import pickle
 import re
+from collections import namedtuple
+from copy import deepcopy
 
 import numpy as np
+import pandas as pd
 import pytest
 import yaml
 from checkout import REPOSITORY
@@ -25,6 +28,7 @@ from twodiscs.figures import style
 from twodiscs.measure.measurements import Measurement, measurement
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.seeds import job_seed
+from twodiscs.points.monte_carlo_point import InsertionPoint
 from twodiscs.sampling.initial_states import components
 from twodiscs_paper.configuration import schema, yaml_files
 from twodiscs_paper.pipeline import job_cost
@@ -126,7 +130,7 @@ def test_some_events_and_quantities_are_those_of_all(simulated, sampled):
     for errors in ({"error": {"any_wall": 0.05}}, {"error": 0.05, "events": "any_wall"}):
         some = td.simulate(SCENE, **errors, budget=1e6, **asked)
         assert list(some) == ["any_wall_time"]
-        assert some.rows == simulated.rows[-1:]
+        assert some.rows == [row for row in simulated.rows if row["event"] == "any_wall"]
     for names in (["volume"], "volume"):
         assert td.sample(SCENE, 1e6, quantities=names, **asked).rows == sampled.rows[:1]
 
@@ -147,8 +151,9 @@ def test_measurements_know_their_errors_and_print_themselves(simulated, sampled)
     assert " time, exact 1.3" in said
     lines = str(simulated).splitlines()
     assert lines[0] == "Two discs of radius 0.2 in a box of 1.5 × 1.0"
-    assert [line.split()[0] for line in lines[3:9]] == [f"{event}_time" for event in td.EVENTS]
-    assert len({line.index("time", 24) for line in lines[3:9]}) == 1
+    table = lines[3 : 3 + len(td.EVENTS)]
+    assert [line.split()[0] for line in table] == [f"{event}_time" for event in td.EVENTS]
+    assert len({line.index("time", 24) for line in table}) == 1
     assert sampled.frame().loc["volume", "estimate"] == sampled["volume"].value
     assert "length⁴" in str(sampled["volume"])
 
@@ -275,8 +280,16 @@ def test_what_holds_states_is_no_start_but_they_are():
         with pytest.raises(td.InputError, match=r"^start must be the numbers x1, .*; ") as caught:
             td.trajectory(SCENE, start=wrong)
         assert str(caught.value).endswith(hint)
-    for right in (states[0], path.states_at([1])[0]):
+    (named,) = path.states_at([1])
+    for right in (states[0], named):
         td.trajectory(SCENE, start=right, duration=1)
+    # Names of numbers decide, not their order.
+    known = {name: float(named[name]) for name in sorted(named.dtype.names)}
+    record = np.array([(*known.values(),)], [(name, float) for name in known])[0]
+    pair = namedtuple("Start", known)(*known.values())
+    due = td.trajectory(SCENE, start=named, duration=1)
+    for other in (known, record, pair, pd.Series(known)):
+        assert td.trajectory(SCENE, start=other, duration=1).equals(due)
 
 
 # Figures and tables -------------------------------------------------------------------------------
@@ -421,6 +434,12 @@ def test_a_shell_is_a_part_of_the_volume(sampled):
     ratio = many["disc_collision_area"].u / many["volume"].u
     due = many.point.ratio({"disc_collision_area": 1.0})
     assert (ratio.nominal_value, ratio.std_dev) == pytest.approx((due.value, due.stderr))
+    # An event at the other wall of an axis is counted by the same sum.
+    part = deepcopy(many.parts["all"])
+    part["quantities"]["bottom_wall_area"] = part["quantities"]["top_wall_area"]
+    names, means, covariances = InsertionPoint.of(many.scene, {"all": part}).moments()
+    places = [names.index(f"{wall}_wall_area") for wall in ("top", "bottom")]
+    assert len({*means[places]}) == len({*covariances[np.ix_(places, places)].flat}) == 1
 
 
 def test_a_radius_that_does_not_fit_has_a_row_that_says_why():

@@ -14,11 +14,10 @@ from argcomplete.completers import ChoicesCompleter
 
 import twodiscs
 from twodiscs.measure.load import plugin
-from twodiscs.model.calls import did_you_mean
-from twodiscs.model.checks import PRESETS, InputError
+from twodiscs.model.checks import PRESETS, InputError, parse_number
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS
-from twodiscs.model.formats import format_number
+from twodiscs.model.formats import did_you_mean, format_number
 from twodiscs.model.scene import Scene
 
 # Arguments, and one sentence for each mistake -----------------------------------------------------
@@ -61,14 +60,9 @@ def unrecognized(words, names):
 def value(text):
     """Return ``text`` as a number, or unchanged, for ``type=`` of an argument; the face checks."""
     try:
-        return int(text)
-    except ValueError:
-        pass
-    try:
-        number = float(text)
+        return parse_number(text)
     except ValueError:
         return text
-    return int(number) if number.is_integer() else number
 
 
 def add_scene(parser):

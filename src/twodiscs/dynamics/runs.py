@@ -278,7 +278,7 @@ class IntervalsRun(Run):
     def __post_init__(self):
         scene = self.scene
         if not scene.is_possible(self.event):
-            why = why_absent(scene, self.event) or f" is blocked at radius {scene.radius!r}"
+            why = why_absent(scene, self.event) or f": it is blocked at radius {scene.radius!r}"
             raise InputError(f"event {self.event!r} has no intervals{why}")
         require_initial_states(scene)
         if not self._blocks:

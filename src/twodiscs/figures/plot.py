@@ -26,6 +26,7 @@ from twodiscs.measure.trajectory import require_all_rows
 from twodiscs.measure.transmission import Transmission, box_time
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import InputError, check_choice
+from twodiscs.model.formats import quote
 from twodiscs.model.scene import Box, Scene
 from twodiscs.theory import laws
 
@@ -130,7 +131,9 @@ def _draw(result, figure):
                 f"result must be a table beside the configuration.json of its build, but "
                 f"{table!r} has none; the target report writes it"
             )
-        raise InputError(f"result must be {DRAWN}, with a quantity of a figure, not {result!r:.80}")
+        raise InputError(
+            f"result must be {DRAWN}, with a quantity of a figure, not {quote(result)}"
+        )
     name = _chosen(figure, fitting, rows)
     if not box.is_plain and name in BOX_DRAWINGS:
         more = ", ".join(f"{name} {value}" for name, value in box.calls_for.items())
@@ -163,11 +166,11 @@ def _chosen(figure, fitting, rows):
 def _beside(result, path, name, axes):
     """Draw quantities over the radius into ``axes`` of another figure, which is returned."""
     if not isinstance(axes, Axes) or axes.name != "rectilinear":
-        raise InputError(f"ax must be one plane Axes of matplotlib, not {axes!r:.80}")
+        raise InputError(f"ax must be one plane Axes of matplotlib, not {quote(axes)}")
     box, rows, fitting, _ = _read(result)
     fitting = [name for name in fitting if name in CURVES]
     if not fitting:
-        raise InputError(f"result must be over the radius to be drawn in ax, not {result!r:.80}")
+        raise InputError(f"result must be over the radius to be drawn in ax, not {quote(result)}")
     add(axes, box, rows, CURVES[_chosen(name, fitting, rows)].names)
     figure = axes.get_figure(root=True)
     if path is not None:
@@ -309,7 +312,7 @@ def animate(trajectory: pd.DataFrame, path: str | PathLike[str]) -> None:
     """
     scene = scene_or_none(trajectory)
     if scene is None or not hasattr(trajectory, "iterrows"):
-        raise InputError(f"trajectory must be a result of trajectory(), not {trajectory!r:.80}")
+        raise InputError(f"trajectory must be a result of trajectory(), not {quote(trajectory)}")
     with style.context():
         animation.animate(scene, scene.radius, trajectory_rows(trajectory), [path])
 

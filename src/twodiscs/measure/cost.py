@@ -20,7 +20,7 @@ import numpy as np
 
 from twodiscs.measure.result import Printed
 from twodiscs.model.calls import checked_call
-from twodiscs.model.checks import MOST_WITH_VOLUME, check_error, check_fraction
+from twodiscs.model.checks import MOST_WITH_VOLUME, THINNEST, check_error, check_fraction
 from twodiscs.model.events import EVENTS
 from twodiscs.model.formats import format_number, format_seconds, quote
 from twodiscs.model.scene import Scene, check_scene
@@ -456,7 +456,7 @@ def cost(
     if isinstance(errors, str) or not isinstance(errors, Iterable):
         errors = ERRORS if errors is None else [errors]
     errors = [check_error("errors", error) for error in errors]
-    check_fraction("shell", shell)
+    check_fraction("shell", shell, THINNEST)
     run = DynamicsRun(check_scene(scene), dict.fromkeys(scene.events, 1.0), 10**15, 0)
     measured = pilots(run)
     prices = [*_prices_of_times(scene, measured), *_prices_of_samples(scene, shell)]

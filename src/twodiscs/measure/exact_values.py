@@ -6,10 +6,10 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Unpack
 
 from twodiscs.analysis.tables import TheoryTable
-from twodiscs.model.calls import checked_call, did_you_mean
+from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import InputError, check_length
 from twodiscs.model.events import EVENTS
-from twodiscs.model.formats import quote
+from twodiscs.model.formats import did_you_mean, quote
 from twodiscs.model.scene import Box
 from twodiscs.theory import exact as theory
 

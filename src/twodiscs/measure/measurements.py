@@ -17,8 +17,9 @@ import numpy as np
 from twodiscs.analysis.tables import AreasTable, MeanTimesTable, VolumeTable, quantity_of, shortfall
 from twodiscs.measure.exact_values import Quantities
 from twodiscs.measure.result import Immutable, Result, note_of_number, progress_bar
-from twodiscs.model.calls import checked_call, did_you_mean
+from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import (
+    THINNEST,
     AccuracyWarning,
     InputError,
     check_count,
@@ -27,7 +28,7 @@ from twodiscs.model.checks import (
     check_integer,
     check_length,
 )
-from twodiscs.model.formats import quote
+from twodiscs.model.formats import did_you_mean, quote
 from twodiscs.model.scene import Scene, check_scene, why_absent
 from twodiscs.points.estimates import Estimate
 from twodiscs.points.monte_carlo_point import WALL_AREAS, wall_weights
@@ -549,7 +550,7 @@ def sample(
     quantities : str or iterable of str, optional
         Some of "volume" and "<event>_area"; all if left out.
     shell : float, default 0.02
-        The thickness of a shell, between 0 and 1, as a fraction of the radius or, if that is
+        The thickness of a shell, between 1e-6 and 1, as a fraction of the radius or, if that is
         smaller, of the distance to the radius at which the surface vanishes.
     seed, name, cores, progress : optional
         See ``help(twodiscs)``.
@@ -582,7 +583,8 @@ def run_sampling(
     quantities = _named("quantities", "quantity", quantities, allowed, scene)
     samples = check_count("samples", samples)
     settings = {"samples": samples, "seed": check_integer("seed", seed, 0)}
-    settings |= {"quantities": quantities, "shell": check_fraction("shell", shell), "name": name}
+    settings |= {"quantities": quantities, "name": name}
+    settings["shell"] = check_fraction("shell", shell, THINNEST)
     from twodiscs.sampling.initial_states import require_free_fraction
     from twodiscs.sampling.montecarlo import MonteCarloRun
 

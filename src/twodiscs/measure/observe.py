@@ -170,6 +170,7 @@ def _times(times):
     try:
         checked = np.atleast_1d(np.asarray(times, float))
         ascending = checked.ndim == 1 and checked.size and np.all(np.diff(checked) > 0)
+        ascending = ascending and not np.ma.is_masked(times)
         if ascending and checked[0] >= 0 and np.isfinite(checked[-1]):
             return checked
     except (TypeError, ValueError):
@@ -183,16 +184,20 @@ def _values(function, start, now):
     start.flags.writeable = now.flags.writeable = False
     returned = function(start, now)
     try:
-        values = np.asarray(returned)
+        values = np.ma.asarray(returned)  # a list may hold masked arrays
     except (TypeError, ValueError):  # lists of several lengths
         values = None
-    if values is None or values.dtype.kind not in "biuf" or values.shape[:1] != start.shape:
+    is_real = values is not None and values.dtype.kind in "biuf"
+    masked = is_real and np.ma.is_masked(values)
+    if not is_real or masked or values.shape[:1] != start.shape:
         allowed = (
             "function must return a real number, or the same number of them, for each of the "
             f"{start.size} replicas"
         )
         if returned is None:
             what = "None: is its return missing?"
+        elif masked:
+            what = "an array with masked values, which have to be filled or left out of the average"
         elif values is None or not values.shape:
             what = quote(returned)
         elif values.dtype.names:
@@ -205,7 +210,7 @@ def _values(function, start, now):
         else:
             what = f"an array of shape {values.shape} and kind {values.dtype}"
         raise InputError(f"{allowed}, not {what}")
-    return values.astype(float)
+    return values.data.astype(float)
 
 
 def _check_finite(values, times, first):

@@ -95,7 +95,8 @@ class Trajectory(pd.DataFrame):
             at = np.atleast_1d(np.asarray(times, float))
         except (TypeError, ValueError):
             raise InputError(f"times must be a list of numbers, not {quote(times)}") from None
-        if at.ndim > 1 or not np.all((at >= known[0]) & (at <= known[-1])):
+        is_plain = at.ndim == 1 and not np.ma.is_masked(times)
+        if not is_plain or not np.all((at >= known[0]) & (at <= known[-1])):
             raise InputError(
                 f"times must be numbers from {known[0]!s} to {known[-1]!s}, not {quote(times)}"
             )
@@ -300,8 +301,9 @@ def trajectory(
         Seed of the random numbers, from 0 to 2⁶³ − 1. The initial state is the first one of
         ``starts`` with this seed.
     start : sequence of float or state, optional
-        An initial state in the form of ``starts``, or its numbers: discs inside the box, without
-        overlap, with the energy 1/2.
+        An initial state in the form of ``starts``, or its numbers, in this order or by their names
+        (a dict, a ``Series``, a namedtuple): discs inside the box, without overlap, with the energy
+        1/2.
     name, progress : optional
         See ``help(twodiscs)``.
 

@@ -1,20 +1,14 @@
 """Calls with wrong arguments: an ``InputError`` that names the nearest right one."""
 
-from difflib import get_close_matches
 from functools import wraps
 from inspect import signature
 
 from twodiscs.model.checks import InputError
+from twodiscs.model.formats import did_you_mean
 
 
 class WrongCall(InputError, TypeError):
     """A call with an unknown argument, with too many arguments or with too few."""
-
-
-def did_you_mean(name, allowed):
-    """Return the hint about an unknown ``name``: the nearest of ``allowed``, or ""."""
-    found = get_close_matches(str(name).lower().replace("-", "_"), [*allowed], 1)
-    return f"; did you mean {found[0]}?" if found else ""
 
 
 def checked_call(function):

@@ -5,16 +5,20 @@ import numbers
 import os
 from collections.abc import Iterable
 from contextlib import contextmanager
+from decimal import Decimal
 from shutil import copymode
 from tempfile import TemporaryDirectory
 
-from twodiscs.model.formats import decimal_hint, format_number, quote
+from twodiscs.model.formats import decimal_hint, did_you_mean, format_number, quote
 
 #: Products of four lengths outside this range would overflow or underflow.
 SHORTEST, LONGEST = 1e-60, 1e60
 
 #: Seeds and counts are signed 64-bit integers in the kernels.
 LARGEST_INTEGER = 2**63 - 1
+
+#: The thinnest shell: thinner ones are of few grains (see ``sampling.montecarlo``).
+THINNEST = 1e-6
 
 #: The largest number of discs, and the largest for the volume of configuration space.
 MOST_DISCS, MOST_WITH_VOLUME = 1024, 64
@@ -136,13 +140,14 @@ def check_integer(name, value, least=1, most=LARGEST_INTEGER):
     return int(value)
 
 
-def check_fraction(name, value):
-    """Return ``value`` as a float; raise ``InputError`` unless it is strictly between 0 and 1."""
+def check_fraction(name, value, low=0):
+    """Return ``value`` as a float; raise ``InputError`` unless it is between ``low`` and 1."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         wrong = f"{quote(value)}{decimal_hint(value)}"
         raise InputError(f"{name} must be a number between 0 and 1, not {wrong}")
-    if not 0 < value < 1:
-        raise InputError(f"{name} must lie between 0 and 1, ends excluded, not {quote(value)}")
+    if not low < value < 1:
+        ends = f"{format_number(low, 'g')} and 1, ends excluded"
+        raise InputError(f"{name} must lie between {ends}, not {quote(value)}")
     return float(value)
 
 
@@ -169,6 +174,13 @@ def check_count(name, value, most=LARGEST_INTEGER):
     return check_integer(name, value, 1, most)
 
 
+def parse_number(text):
+    """Return the ``text`` of a number: an int without rounding if it is integral, else a float."""
+    number, exact = float(text), Decimal(text)
+    is_integer = number.is_integer() and abs(number) < 1e19 and exact == int(exact)
+    return int(exact) if is_integer else number
+
+
 def make_list(values):
     """Return an iterable, which may be an iterator, as a list; an array or a text is unchanged."""
     if isinstance(values, str | bytes) or hasattr(values, "__array__"):
@@ -179,5 +191,6 @@ def make_list(values):
 def check_choice(name, value, allowed):
     """Return ``value``; raise ``InputError`` unless it is one of ``allowed``."""
     if not isinstance(value, str) or value not in allowed:
-        raise InputError(f"{name} must be one of {', '.join(allowed)}, not {quote(value)}")
+        hint = did_you_mean(value, allowed) if isinstance(value, str) else ""
+        raise InputError(f"{name} must be one of {', '.join(allowed)}, not {quote(value)}{hint}")
     return value

@@ -3,6 +3,7 @@
 import math
 import re
 import reprlib
+from difflib import get_close_matches
 
 #: The form of quoted values: some items of a list, and of the lists in it.
 _SHORT = reprlib.Repr()
@@ -10,11 +11,20 @@ _SHORT.maxlevel = 2
 
 
 def quote(value):
-    """Return the short text of any ``value`` for a message."""
+    """Return the short text of any ``value`` for a message, of a large object its class."""
     try:
+        if type(value).__module__ != "builtins" and len(repr(value)) > _SHORT.maxother:
+            name = type(value).__name__
+            return f"a result of {value.kind}" if hasattr(value, "more") else f"a {name} object"
         return " ".join(_SHORT.repr(value).split())
     except Exception:  # an integer of more than 4300 digits, or an odd class
         return f"a {type(value).__name__}"
+
+
+def did_you_mean(name, allowed):
+    """Return the hint about an unknown ``name``: the nearest of ``allowed``, or ""."""
+    found = get_close_matches(str(name).lower().replace("-", "_"), [*allowed], 1)
+    return f"; did you mean {found[0]}?" if found else ""
 
 
 def decimal_hint(value):

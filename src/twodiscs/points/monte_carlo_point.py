@@ -191,7 +191,7 @@ class InsertionPoint(SampledPoint):
             products={
                 f"{a}*{b}": int(products[i][k])
                 for (a, i), (b, k) in permutations(places.items(), 2)
-                if i < k
+                if i <= k  # two walls of one axis have one place
             },
             components=components,
         )

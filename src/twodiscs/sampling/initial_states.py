@@ -6,6 +6,7 @@ initial states has ``COMPONENTS`` rows; rows that a scene does not use are zero.
 """
 
 import math
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -79,12 +80,25 @@ def components(scene):
     return ("x1", "y1", "x2", "y2", "u1", "v1", "u2", "v2", *balls, *rough)
 
 
+def labels_of(start):
+    """Return the names in a record, a namedtuple, a dict or a ``Series``, [] for anything else."""
+    names = getattr(getattr(start, "dtype", None), "names", None) or getattr(start, "_fields", None)
+    return [*(names or (start.keys() if hasattr(start, "keys") else ()))]
+
+
 def given_state(scene, start):
-    """Return a ``start`` that a user gives as floats, one for each of the ``components``."""
-    names = components(scene)
+    """Return a ``start`` that a user gives as floats, one for each of the ``components``.
+
+    If its numbers have names, their order does not matter.
+    """
+    names, labels = components(scene), labels_of(start)
     try:
-        state = [float(value) for value in start]
-    except (TypeError, ValueError, OverflowError):
+        values = start.values() if isinstance(start, Mapping) else start
+        state = [float(value) for value in values]
+        if any(isinstance(label, str) for label in labels):
+            known = dict(zip(labels, state, strict=True))
+            state = [known.pop(name) for name in names] + [*known.values()]
+    except (KeyError, TypeError, ValueError, OverflowError):
         state = []
     if len(state) == len(names) and all(map(math.isfinite, state)):
         return state

@@ -9,7 +9,15 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, create_model
 
-from twodiscs.model.checks import LARGEST_INTEGER, LONGEST, MOST_DISCS, PRESETS, SHORTEST
+from twodiscs.model.checks import (
+    LARGEST_INTEGER,
+    LONGEST,
+    MOST_DISCS,
+    PRESETS,
+    SHORTEST,
+    THINNEST,
+    parse_number,
+)
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.formats import format_number
@@ -49,7 +57,7 @@ def _to_float(value):
 def _to_integer(value):
     """Return 2e9 or "2e9" as an integer, if it is one; others as they are."""
     if isinstance(value, str) and DECIMAL.fullmatch(value):
-        value = float(value) if re.search("[.eE]", value) else int(value)
+        return parse_number(value)
     return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
@@ -239,7 +247,7 @@ class MonteCarlo(Block):
     fewer than 1/64 of the samples are accepted, a conditioned sampler draws 1/64 as many samples at
     the same cost."""
 
-    shell: number("a number above 0 and below 1", gt=0, lt=1) = 0.02
+    shell: number("a number above 1e-6 and below 1", gt=THINNEST, lt=1) = 0.02
     """The thickness of the shell that measures an area, as a fraction of the radius, or of the gap
     left to the discs if that is smaller."""
 

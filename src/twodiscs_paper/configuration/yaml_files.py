@@ -7,7 +7,7 @@ from pathlib import Path
 import yaml
 from pydantic import ValidationError
 
-from twodiscs.model.checks import InputError
+from twodiscs.model.checks import InputError, parse_number
 from twodiscs.model.formats import format_number
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.mistakes import ConfigError, describe, name_of_scene, sentences
@@ -71,8 +71,10 @@ class _Loader(yaml.SafeLoader):
 
     def compose_scalar_node(self, anchor):
         node = super().compose_scalar_node(anchor)
-        if node.tag in NUMBERS and not DECIMAL.fullmatch(node.value):
-            number = self.construct_object(node)
+        number = self.construct_object(node) if node.tag in NUMBERS else None
+        is_decimal = number is None or DECIMAL.fullmatch(node.value)
+        # A float may be a rounded integer.
+        if not is_decimal or (isinstance(number, float) and parse_number(node.value) != number):
             problem = (
                 f"{node.value} must be a decimal number or text in quotes: YAML reads {number}"
             )
