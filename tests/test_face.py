@@ -435,7 +435,7 @@ def test_a_shell_is_a_part_of_the_volume(sampled):
     due = many.point.ratio({"disc_collision_area": 1.0})
     assert (ratio.nominal_value, ratio.std_dev) == pytest.approx((due.value, due.stderr))
     # An event at the other wall of an axis is counted by the same sum.
-    part = deepcopy(many.parts["all"])
+    part = deepcopy(many.components["all"])
     part["quantities"]["bottom_wall_area"] = part["quantities"]["top_wall_area"]
     names, means, covariances = InsertionPoint.of(many.scene, {"all": part}).moments()
     places = [names.index(f"{wall}_wall_area") for wall in ("top", "bottom")]

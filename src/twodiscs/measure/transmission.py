@@ -14,7 +14,7 @@ from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK
 from twodiscs.dynamics.two.hop_clusters import LARGEST_CLUSTER, SUMS
 from twodiscs.measure.result import Result, note_of_number, progress_bar
 from twodiscs.model.calls import checked_call
-from twodiscs.model.checks import check_choice, check_count
+from twodiscs.model.checks import check_choice, check_count, check_integer
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.model.seeds import key, stream_name, stream_seed
@@ -343,11 +343,12 @@ def run_transmission(scene, hop, hops, seed, name, cores=1, progress=None, resum
     engine = find_engine(check_scene(scene))
     engine.require_coefficient(scene, check_choice("hop", hop, HOPS))
     blocks = -(-check_count("hops", hops, most=10**9) // HOPS_OF_BLOCK)
+    seed = check_integer("seed", seed, 0)
     mean, gap = exact.mean_times(scene)[hop], quiet_time(scene, hop)
     neighbour_mean, others = engine.neighbours(scene, hop)
     times = tuple(box_time(scene, hop) * time for time in TIMES)
     given = scene, hop, neighbour_mean, gap, times, blocks, stream_name(scene, name), seed
-    settings = {"hop": hop, "hops": int(hops), "seed": int(seed), "name": name}
+    settings = {"hop": hop, "hops": int(hops), "seed": seed, "name": name}
     with progress_bar(progress, f"transmission r = {scene.radius:g}") as progress:
         ranges = run_all_in_rounds(component_runs(*given), progress, cores, resume_from)
     components = {name: {"sums": sums} for name, sums in ranges.items()}
