@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from twodiscs.model.checks import check_integer
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
@@ -128,7 +129,7 @@ class DynamicsPoint(Point):
             duration=component["duration"],
             replicas=blocks * component["replicas"],
             events=simulated_events(sums) + sum(strip.events for strip in strips.values()),
-            counts={event: int(sums[k]) for event, k in places.items()},
+            counts={event: check_integer(event, int(sums[k]), 0) for event, k in places.items()},
             products={
                 f"{a}*{b}": int(products[i, k])
                 for (a, i), (b, k) in product(places.items(), repeat=2)
