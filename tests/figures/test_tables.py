@@ -30,6 +30,7 @@ from twodiscs_paper.studies.passages import figure_transmission as transmission
 from twodiscs_paper.studies.stability.figure_runs import rounded
 from twodiscs_paper.studies.tails import figure as tails
 from twodiscs_paper.studies.thresholds.measure import leading_law, near
+from twodiscs_paper.study import select
 
 EXPECTED = Path(__file__).parents[2] / "paper" / "expected"
 TABLES = SCENE_TABLES | STUDY_TABLES
@@ -61,30 +62,26 @@ def drawn(name):
     return {axes.get_label() or i: axes for i, axes in enumerate(figure.axes)}
 
 
-def of(rows, **wanted):
-    return [row for row in rows if all(row[name] == value for name, value in wanted.items())]
-
-
-def of_row(x, row, factor=1.0):
+def symbol(x, row, factor=1.0):
     """Return (x, y, standard error) of the estimate of a ``row`` times a ``factor``."""
     return x, row["estimate"] * factor, row["stderr"] * factor
 
 
 def columns(rows, x):
     """Return (x, y, standard error) of the estimates of ``rows`` over one of their columns."""
-    return [of_row(row[x], row) for row in rows]
+    return [symbol(row[x], row) for row in rows]
 
 
 def cases():
     """Yield (figure, panel, look, (x, y, standard error) of all symbols of this look)."""
-    yield from of_passages()
-    yield from of_long_files()
-    yield from of_thresholds()
-    yield from of_distributions()
-    for (_, _, own), look in zip(of_tails(), tails.LOOKS, strict=False):
+    yield from passage_cases()
+    yield from long_file_cases()
+    yield from threshold_cases()
+    yield from distribution_cases()
+    for (_, _, own), look in zip(tail_cases(), tails.LOOKS, strict=False):
         law = own[0]["law"]
         due = [
-            of_row(row["time"] / row["exact_mean"], row, 1 / row["law"] if law else 1.0)
+            symbol(row["time"] / row["exact_mean"], row, 1 / row["law"] if law else 1.0)
             for row in own
         ]
         yield "tails", "ratio" if law else "exponential", look, due
@@ -92,7 +89,7 @@ def cases():
     for radius in {row["radius"] for row in rows}:
         for event, look in LOOKS.items():
             due = []
-            for row in of(rows, radius=radius, event=event):
+            for row in select(rows, radius=radius, event=event):
                 n = row["discs"]
                 pairs = {"vertical_hop": n * (n - 1) / 2, "right_wall": 1 / n, "top_wall": 1}
                 each = pairs.get(event, n - 1)
@@ -101,16 +98,16 @@ def cases():
     rows = [row for row in table("effects") if row["quantity"] != "never_met_share"]
     for k, scene in enumerate(dict.fromkeys(row["scene"] for row in rows)):
         for panel, event in zip("abc", effects.SHOWN_EVENTS, strict=False):
-            own = of(rows, scene=scene, quantity=f"{event}_time")
+            own = select(rows, scene=scene, quantity=f"{event}_time")
             due = [
-                of_row(r["radius"], r, 1 / r["plain"]) for r in own if r["stderr"] and r["plain"]
+                symbol(r["radius"], r, 1 / r["plain"]) for r in own if r["stderr"] and r["plain"]
             ]
             yield "effects", panel, effects._look(k), due
-    rows = of(table("stability"), part="coverage")
+    rows = select(table("stability"), part="coverage")
     radii = sorted({row["radius"] for row in rows})
     for i, (event, look) in enumerate(LOOKS.items()):
         beside = 0.12 * (i - (len(LOOKS) - 1) / 2)
-        own = [row for row in of(rows, quantity=event) if row["value"] is not None]
+        own = [row for row in select(rows, quantity=event) if row["value"] is not None]
         due = [(radii.index(row["radius"]) + beside, row["value"], row["stderr"]) for row in own]
         yield "stability_of_runs", "d", look, due
     # Open and full symbols of one look are of crossings and of first passages.
@@ -119,16 +116,16 @@ def cases():
     for program, (colour, _) in brownian.LOOKS.items():
         for step, marker in brownian.MARKERS.items():
             for panel, quantity in (("kappa", "coefficient"), ("exponent", "local_exponent")):
-                own = of(rows, program=program, step=step, quantity=quantity)
+                own = select(rows, program=program, step=step, quantity=quantity)
                 yield "brownian", panel, (colour, marker), columns(own, "neck")
 
 
-def of_tails():
+def tail_cases():
     """Return [(event, radius, rows of its survival with an error that is drawn)]."""
     return [
         (event, radius, [
             row
-            for row in of(table("tails"), event=event, radius=radius, quantity="survival")
+            for row in select(table("tails"), event=event, radius=radius, quantity="survival")
             if row["stderr"] and row["stderr"] < 0.3 * row["estimate"]
         ])
         for event, radius in dict.fromkeys((r["event"], r["radius"]) for r in table("tails"))
@@ -139,7 +136,7 @@ def over_cube_root(row):
     """Return (x, y, standard error) of (1 − κ)(w − σ)/∛(σ²(h − 2σ)) over the root of distances."""
     sigma = 2 * row["radius"]
     factor = (row["width"] - sigma) / math.cbrt(sigma**2 * (row["height"] - 2 * sigma))
-    _, _, error = of_row(0, row, factor)
+    _, _, error = symbol(0, row, factor)
     return row["distance"] ** (1 / 6), (1 - row["estimate"]) * factor, error
 
 
@@ -147,68 +144,73 @@ def long_run(name):
     return read_table(EXPECTED.parent / "long_run" / name / "passages.csv")
 
 
-def of_passages():
+def passage_cases():
     rows = table("passages")
-    ours = of(rows, scene=rows[0]["scene"], event="horizontal_hop", periodic=None, friction=None)
+    ours = select(
+        rows, scene=rows[0]["scene"], event="horizontal_hop", periodic=None, friction=None
+    )
     for inertia, look in passages.LOOKS.items():
-        own = of(ours, moment_of_inertia=inertia)
-        kappa, times = of(own, quantity="coefficient"), of(own, quantity="passage_time")
+        own = select(ours, moment_of_inertia=inertia)
+        kappa, times = select(own, quantity="coefficient"), select(own, quantity="passage_time")
         yield "passages", "times", look, columns(times, "distance")
         due = columns(kappa, "distance")
         if inertia is None:
-            kappa = [*kappa, *of(long_run("passages"), quantity="coefficient", scene="h/4")]
+            kappa = [*kappa, *select(long_run("passages"), quantity="coefficient", scene="h/4")]
             due = [*map(over_cube_root, kappa)]
         yield "transmission", "rough" if inertia else "smooth", look, due
         shown = [2.0**-n for n in passages.SHOWN.get(inertia, ())]
-        curves = [row for row in of(own, quantity="correlation") if row["distance"] in shown]
-        yield "passages", "curves", look, [of_row(r["time"] / unit(r), r) for r in curves]
+        curves = [row for row in select(own, quantity="correlation") if row["distance"] in shown]
+        yield "passages", "curves", look, [symbol(r["time"] / unit(r), r) for r in curves]
         # Both methods, open symbols and dots.
-        ring = of(rows, quantity="diffusion", discs=2, moment_of_inertia=inertia)
+        ring = select(rows, quantity="diffusion", discs=2, moment_of_inertia=inertia)
         yield "diffusion", "ring", look, columns(ring, "distance")
     for rate, look in friction.LOOKS.items():
         kappa, exponents = [], []
         for some in (rows, long_run("passages")):
-            own = of(some, friction=rate, quantity="coefficient")
-            kappa += [of_row(scaled(row), row) for row in own]
+            own = select(some, friction=rate, quantity="coefficient")
+            kappa += [symbol(scaled(row), row) for row in own]
             # The first distance has no exponent.
             middle = [math.sqrt(scaled(a) * scaled(b)) for a, b in pairwise(own)]
-            steps = of(some, friction=rate, quantity="local_exponent")
-            exponents += map(of_row, middle, steps)
+            steps = select(some, friction=rate, quantity="local_exponent")
+            exponents += map(symbol, middle, steps)
         yield "friction", "kappa", look, kappa
         yield "friction", "exponent", look, exponents
 
 
-def of_long_files():
+def long_file_cases():
     """Yield the symbols of long files in the figures of diffusion and of files."""
     rows = long_run("displacements")
     for discs, look in diffusion.FILES.items():
-        own = of(long_run("files"), quantity="diffusion", discs=discs)
+        own = select(long_run("files"), quantity="diffusion", discs=discs)
         yield "diffusion", "files", look, columns(own, "distance")
-    order, moved = of(rows, quantity="diffusion", method="order"), of(rows, quantity="displacement")
+    order, moved = (
+        select(rows, quantity="diffusion", method="order"),
+        select(rows, quantity="displacement"),
+    )
     for is_kicked, look in ((False, diffusion.SMOOTH_FILE), (True, diffusion.KICKED_FILE)):
         own = [row for row in order if bool(row["friction"]) == is_kicked]
         yield "diffusion", "files", look, columns(own, "distance")
         # At the first blocked radius, and at the farthest distance where discs pass.
         due = [
-            of_row(row["time"] / math.sqrt(2 * row["discs"] - 1), row)
-            for row in of(moved, moment_of_inertia=None)
+            symbol(row["time"] / math.sqrt(2 * row["discs"] - 1), row)
+            for row in select(moved, moment_of_inertia=None)
             if bool(row["friction"]) == is_kicked
             and (row["radius"] == 0.28 or row["distance"] > 0.1)
         ]
         yield "files", "moved", look, due
     due = [
-        of_row(row["time"] / math.sqrt(3 * row["discs"]), row)
-        for row in of(moved, moment_of_inertia=0.5)
+        symbol(row["time"] / math.sqrt(3 * row["discs"]), row)
+        for row in select(moved, moment_of_inertia=0.5)
     ]
     yield "files", "moved", files.ROUGH_FILE, due
     kicked = [row for row in order if row["friction"]]
     for look, row in zip(files.OPEN, kicked, strict=True):
         where = {"distance": row["distance"], "friction": row["friction"]}
-        (single,) = of(rows, quantity="single_file", **where)
-        (rate,) = of(rows, quantity="rate", discs=row["discs"], **where)
+        (single,) = select(rows, quantity="single_file", **where)
+        (rate,) = select(rows, quantity="rate", discs=row["discs"], **where)
         twice_d = row["estimate"] * rate["estimate"]
         time = (single["estimate"] / twice_d) ** 2  # when F √t = 2 D t
-        due = [of_row(r["time"] / time, r, 1 / (twice_d * time)) for r in of(moved, **where)]
+        due = [symbol(r["time"] / time, r, 1 / (twice_d * time)) for r in select(moved, **where)]
         yield "files", "collapse", look, due
 
 
@@ -222,31 +224,31 @@ def unit(row):
     return box_time(PAPER.scene(row["radius"]), "horizontal_hop")
 
 
-def of_thresholds():
+def threshold_cases():
     for event in SHELLS:
         law, look = leading_law(PAPER, event), LOOKS[event]
-        rows = near(PAPER, law, of(table("mean_times"), event=event)) if law else []
+        rows = near(PAPER, law, select(table("mean_times"), event=event)) if law else []
         places = [1 - row["radius"] / law.limit for row in rows]
         if event in HOPS:
-            yield "thresholds", "hops", look, [*map(of_row, places, rows)]
-        due = [of_row(x, row, 1 / law(row["radius"])) for x, row in zip(places, rows, strict=True)]
+            yield "thresholds", "hops", look, [*map(symbol, places, rows)]
+        due = [symbol(x, row, 1 / law(row["radius"])) for x, row in zip(places, rows, strict=True)]
         yield "thresholds", "ratios", look, due
 
 
-def of_distributions():
-    rows = of(table("distributions"), scene=table("distributions")[0]["scene"])
-    own = of(rows, event=rows[0]["event"])
+def distribution_cases():
+    rows = select(table("distributions"), scene=table("distributions")[0]["scene"])
+    own = select(rows, event=rows[0]["event"])
     for radius, look in zip(dict.fromkeys(r["radius"] for r in own), style.SERIES, strict=False):
         due = [
-            of_row((row["first"] + row["last"]) / 2 / row["exact_mean"], row, row["exact_mean"])
-            for row in of(own, radius=radius, quantity="hazard")
+            symbol((row["first"] + row["last"]) / 2 / row["exact_mean"], row, row["exact_mean"])
+            for row in select(own, radius=radius, quantity="hazard")
             if row["stderr"] < 0.15 * row["estimate"]
         ]
         yield "distributions", "rates", look, due
     for hop, look in zip(HOPS, style.SERIES, strict=False):
         due = [
             (row["radius"], row[y] / row["exact_mean"], row[s] / row["exact_mean"])
-            for row in of(rows, event=hop, quantity="first_passage", last=None)
+            for row in select(rows, event=hop, quantity="first_passage", last=None)
             for y, s in (("estimate", "stderr"), ("reference", "reference_stderr"))
         ]
         yield "distributions", "passages", look, due
@@ -274,8 +276,8 @@ def test_every_figure_of_a_study_is_compared():
 
 def test_what_passages_leave_falls_at_twice_their_rate():
     """The curves κ exp(−2κt/τ) of the figure, at all their times."""
-    rows = of(table("passages"), scene=table("passages")[0]["scene"], event="horizontal_hop")
-    rows = of(rows, friction=None)
+    rows = select(table("passages"), scene=table("passages")[0]["scene"], event="horizontal_hop")
+    rows = select(rows, friction=None)
     shown = [
         line.get_data()
         for line in drawn("passages")["curves"].lines
@@ -285,7 +287,7 @@ def test_what_passages_leave_falls_at_twice_their_rate():
         row
         for inertia, halvings in passages.SHOWN.items()
         for n in halvings
-        for row in of(rows, quantity="coefficient", moment_of_inertia=inertia, distance=2.0**-n)
+        for row in select(rows, quantity="coefficient", moment_of_inertia=inertia, distance=2.0**-n)
     ]
     assert len(shown) == len(due) > 2
     for (times, values), row in zip(shown, due, strict=True):
@@ -305,8 +307,8 @@ def test_residuals_are_those_of_the_table():
     for name, looks in (("transmission", transmission), ("diffusion", diffusion)):
         for quantity, (colour, marker, _) in looks.RESIDUAL_LOOKS.items():
             # Two discs with friction have a figure of their own.
-            smooth = of(table("passages"), friction=None)
-            rows = of([*smooth, *long_run("displacements")], quantity=quantity)
+            smooth = select(table("passages"), friction=None)
+            rows = select([*smooth, *long_run("displacements")], quantity=quantity)
             due = {(r["distance"], r["z"]) for r in rows if r["z"] is not None and r["distance"]}
             axes = drawn(name)["residuals" if "residuals" in drawn(name) else quantity]
             assert points(axes, colour, marker) == due
@@ -314,11 +316,11 @@ def test_residuals_are_those_of_the_table():
 
 def test_the_panels_of_stability_are_those_of_the_table():
     rows, (volume, _) = table("stability"), style.SERIES[:2]
-    shares = of(rows, part="sampling", case="largest radius", method="conditioned")
+    shares = select(rows, part="sampling", case="largest radius", method="conditioned")
     due = {(-row["distance"], row["value"]) for row in shares}
     assert points(drawn("stability")["c"], *volume) == due
-    estimates = of(rows, part="estimates", status="sampled")
-    extremes = [row for row in of(rows, part="extremes") if row["z"] is not None]
+    estimates = select(rows, part="estimates", status="sampled")
+    extremes = [row for row in select(rows, part="extremes") if row["z"] is not None]
     axes, edges = drawn("stability")["d"], np.arange(-5, 6)
     counts = [np.histogram([r["z"] for r in own], edges)[0] for own in (estimates, extremes)]
     for bars_of, due in zip(axes.containers, counts, strict=True):
@@ -326,15 +328,15 @@ def test_the_panels_of_stability_are_those_of_the_table():
     (law,) = [patch for patch in axes.patches if isinstance(patch, StepPatch)]
     assert law.get_data().values.sum() == pytest.approx(sum(map(sum, counts)), rel=1e-6)
     assert law.get_data().values[5] / law.get_data().values[6] == pytest.approx(2.5116, rel=1e-4)
-    theory, end = of(rows, part="theory"), "largest radius"
+    theory, end = select(rows, part="theory"), "largest radius"
     for panel, own in (
-        ("a", of(theory, case=end)),
+        ("a", select(theory, case=end)),
         ("b", [row for row in theory if row["case"] != end]),
     ):
         for look, series in (
-            ((style.VERMILLION, "s"), of(own, method="closed-form", quantity="volume")),
-            ((style.ORANGE, "D"), of(own, method="closed-form", quantity="areas")),
-            (volume, of(own, method="stable")),
+            ((style.VERMILLION, "s"), select(own, method="closed-form", quantity="volume")),
+            ((style.ORANGE, "D"), select(own, method="closed-form", quantity="areas")),
+            (volume, select(own, method="stable")),
         ):
             worst = {}
             for row in series:
@@ -350,7 +352,7 @@ def test_the_panels_of_stability_of_runs_are_those_of_the_table():
     for column, (quantity, sign) in enumerate(
         [("energy_error", 1), ("smallest_gap", -1), ("excess", 1)]
     ):
-        due = [max(sign * row["value"], 0) for row in of(rows, quantity=quantity)]
+        due = [max(sign * row["value"], 0) for row in select(rows, quantity=quantity)]
         due = sorted("0" if value == 0 else f"${rounded(value)}$" for value in due)
         found = [cells[column + 0.5, line] for line in range(1, len(due) + 1)]
         assert sorted(found) == due != []
@@ -359,28 +361,28 @@ def test_the_panels_of_stability_of_runs_are_those_of_the_table():
         ("stable", "wall_time", style.SERIES[1]),
         ("textbook", "contact_time", (style.VERMILLION, "x")),
     ):
-        due = {row["value"] for row in of(rows, part="times", quantity=quantity, method=method)}
+        due = {row["value"] for row in select(rows, part="times", quantity=quantity, method=method)}
         assert {x for x, _ in points(axes["b"], *look)} == due != set()
-    extremes = of(rows, part="extremes")
+    extremes = select(rows, part="extremes")
     places = [*dict.fromkeys(row["case"] for row in extremes)]
     for event, look in LOOKS.items():
-        own = [row for row in of(extremes, quantity=f"{event}_time") if row["z"] is not None]
+        own = [row for row in select(extremes, quantity=f"{event}_time") if row["z"] is not None]
         due = {(row["z"], places.index(row["case"])) for row in own}
         assert points(axes["e"], *look) == due != set()
-    returns = of(rows, part="reversal", quantity="return_error")
+    returns = select(rows, part="reversal", quantity="return_error")
     radii = sorted({row["radius"] for row in returns})
     for radius, look in zip(radii, (*style.SERIES, (style.ORANGE, "v")), strict=True):
-        (exponent,) = of(rows, radius=radius, quantity="exponent", case="separation")
+        (exponent,) = select(rows, radius=radius, quantity="exponent", case="separation")
         due = {
             (exponent["value"] * row["count"] / math.log(2), row["value"])
-            for row in of(returns, radius=radius)
+            for row in select(returns, radius=radius)
         }
         assert points(axes["c"], *look) == due
 
 
 def test_tails_are_those_of_the_table_with_their_laws():
-    for (event, radius, own), look in zip(of_tails(), tails.LOOKS, strict=False):
-        rates = of(table("tails"), event=event, radius=radius, quantity="rate")
+    for (event, radius, own), look in zip(tail_cases(), tails.LOOKS, strict=False):
+        rates = select(table("tails"), event=event, radius=radius, quantity="rate")
         axes = drawn("tails")["exponential" if rates else "tails"]
         line = next(n for n in axes.lines if n.get_color() == look[0] and n.get_marker() == "None")
         times, values = line.get_data()
@@ -411,9 +413,11 @@ def test_curves_of_thresholds_are_exact_and_crosses_are_first_passages():
             np.testing.assert_allclose(curve.get_ydata(), np.divide(due, unit), rtol=1e-9)
         if event in HOPS:
             first = table("distributions")[0]["scene"]
-            rows = of(table("distributions"), scene=first, event=event, quantity="first_passage")
+            rows = select(
+                table("distributions"), scene=first, event=event, quantity="first_passage"
+            )
             due = {
                 (1 - row["radius"] / law.limit, row["estimate"])
-                for row in near(PAPER, law, of(rows, last=None))
+                for row in near(PAPER, law, select(rows, last=None))
             }
             assert points(hops, colour, "x") == due != set()
