@@ -19,7 +19,7 @@ from twodiscs.model.events import AXIS, EVENTS, HOPS
 from twodiscs.model.scene import Box, Scene
 from twodiscs.model.seeds import job_seed, stream_seed
 from twodiscs_paper.configuration import scene_block, schema, yaml_files
-from twodiscs_paper.configuration.request import Quantities
+from twodiscs_paper.configuration.request import RequestedQuantities
 from twodiscs_paper.configuration.yaml_files import read
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -87,7 +87,9 @@ def test_a_name_and_a_box_are_enough(width, height):
 
 def test_a_watch_block_is_everything_that_is_watched():
     request = one(watch={"mean_times": ["top_wall", "right_wall"]})
-    assert request.quantities == Quantities(False, (), ("right_wall", "top_wall"), (), None)
+    assert request.quantities == RequestedQuantities(
+        False, (), ("right_wall", "top_wall"), (), None
+    )
     assert request.quantities.names == {"right_wall_time", "top_wall_time"}
     assert request.keys["monte_carlo"] == request.keys["intervals"] == {}
     assert tuple(request.keys["dynamics"].values()) == request.radii
@@ -172,7 +174,7 @@ def jobs(request):
     }
 
 
-BASE = {"radii": [0.1, 0.2], "watch": dict.fromkeys(Quantities.__dataclass_fields__, True)}
+BASE = {"radii": [0.1, 0.2], "watch": dict.fromkeys(RequestedQuantities.__dataclass_fields__, True)}
 
 
 def edited(**keys):

@@ -225,7 +225,7 @@ def test_times_by_monte_carlo_know_the_conserved_momenta(effects):
         for event, area in exact.areas(scene).items()
     ]
     volume = common | {"estimate": exact.volume(scene)}
-    found = explorer.by_monte_carlo([volume], areas, scene.velocity_components)
+    found = explorer.monte_carlo_times([volume], areas, scene.velocity_components)
     times = exact.mean_times(scene)
     for event, rows in found.items():
         assert [row[1] for row in rows] == pytest.approx([times[event]] if times[event] else [])

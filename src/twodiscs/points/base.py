@@ -44,7 +44,7 @@ def write_json(path, content, seconds=None):
 
     ``seconds`` is the processor time that it took, if known.
     """
-    content = content | {KEY: _digest_of(content)}
+    content = content | {KEY: _content_digest(content)}
     if seconds is not None:
         content[SECONDS] = seconds
     text = json.dumps(content, sort_keys=True, indent=1, allow_nan=False)
@@ -60,7 +60,7 @@ def read_json(path):
     try:
         content = json.loads(Path(path).read_bytes())
         content.pop(SECONDS, None)
-        written = content.pop(KEY) == _digest_of(content)
+        written = content.pop(KEY) == _content_digest(content)
     except (*MALFORMED, RecursionError):
         written = False
     if not written:
@@ -68,7 +68,7 @@ def read_json(path):
     return content
 
 
-def _digest_of(content):
+def _content_digest(content):
     return sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 

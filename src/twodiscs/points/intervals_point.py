@@ -46,7 +46,7 @@ class Bins(NamedTuple):
     products: list[int] | None = None
 
 
-class Bin(NamedTuple):
+class HistogramBin(NamedTuple):
     """One bin: "equal" or "wide", its edges, its count, and the density as an ``Estimate``."""
 
     bins: str
@@ -135,14 +135,14 @@ class IntervalsPoint(Point):
         return Estimate(value, error, self.chains)
 
     def bins(self):
-        """Yield each ``Bin``, the equal ones first."""
+        """Yield each ``HistogramBin``, the equal ones first."""
         width = self.bin_width
         for kind in ("equal", "wide"):
             edges, counts, squares, products = getattr(self, kind)
             columns = counts, squares, products or repeat(None)
             for (left, right), count, *sums in zip(pairwise(edges), *columns, strict=False):
                 density = self._density((right - left) * width, count, *sums)
-                yield Bin(kind, left * width, right * width, count, density)
+                yield HistogramBin(kind, left * width, right * width, count, density)
 
     def _density(self, width, count, squares, product):
         """Return count/(intervals × width) as an ``Estimate``, from the spread between chains."""

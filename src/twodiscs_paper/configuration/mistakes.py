@@ -98,12 +98,12 @@ def sentences(errors, mapping):
     said = {}
     for mistake in found:
         if not any(mistake.follows_from(other) for other in found):
-            named = name_of_scene(mapping, mistake.steps)
+            named = scene_name(mapping, mistake.steps)
             said[mistake.steps, mistake.key] = mistake.sentence() + named
     return list(said.values())
 
 
-def name_of_scene(mapping, steps):
+def scene_name(mapping, steps):
     """Return the name of the scene at ``steps`` in brackets, "" if it has no name."""
     if len(steps) < 2 or steps[0] != "scenes" or steps[2:] == ("name",):
         return ""

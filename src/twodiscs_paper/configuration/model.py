@@ -49,12 +49,12 @@ def otherwise(text, meaning=None):
     return Field(default_factory=lambda: None, description=meaning, json_schema_extra=more)
 
 
-def _to_float(value):
+def _read_float(value):
     """Return text such as "2e9", which is no number in YAML, as a float; others as they are."""
     return float(value) if isinstance(value, str) and DECIMAL.fullmatch(value) else value
 
 
-def _to_integer(value):
+def _read_integer(value):
     """Return 2e9 or "2e9" as an integer, if it is one; others as they are."""
     if isinstance(value, str) and DECIMAL.fullmatch(value):
         return parse_number(value)
@@ -70,17 +70,17 @@ def _check_different(items):
 def number(allowed, unit=None, **limits):
     """Return the type of a finite number within limits."""
     limits = Field(allow_inf_nan=False, **limits)
-    return Annotated[float, limits, BeforeValidator(_to_float), words(allowed, unit=unit)]
+    return Annotated[float, limits, BeforeValidator(_read_float), words(allowed, unit=unit)]
 
 
 def integer(low, high, unit=None):
     """Return the type of an integer within limits."""
     last = "2^63 - 1" if high == LARGEST_INTEGER else format_number(high, "g")
     allowed = words(f"an integer from {format_number(low, 'g')} to {last}", unit=unit)
-    return Annotated[int, Field(ge=low, le=high), BeforeValidator(_to_integer), allowed]
+    return Annotated[int, Field(ge=low, le=high), BeforeValidator(_read_integer), allowed]
 
 
-def one_of(names):
+def choice(names):
     """Return the type of one of some names."""
     return Annotated[Literal[tuple(names)], words(f"one of {', '.join(names)}")]
 
@@ -112,7 +112,7 @@ Radii = Annotated[
     words("a non-empty list of different radii", unit="length"),
 ]
 Events = Annotated[
-    bool | different(one_of(EVENTS), "a non-empty list of different events", 1),
+    bool | different(choice(EVENTS), "a non-empty list of different events", 1),
     words("true, false, or a non-empty list of different events"),
 ]
 Error = Annotated[
@@ -165,13 +165,13 @@ def _effects(of_box):
         if not effect.is_number:
             keys[effect.name] = (Axes, Field([], description=meaning))
         elif effect.default is None:
-            keys[effect.name] = (_number_of(effect), otherwise("none", meaning))
+            keys[effect.name] = (_effect_number(effect), otherwise("none", meaning))
         else:
-            keys[effect.name] = (_number_of(effect), Field(effect.default, description=meaning))
+            keys[effect.name] = (_effect_number(effect), Field(effect.default, description=meaning))
     return keys
 
 
-def _number_of(effect):
+def _effect_number(effect):
     """Return the type of an effect that is a number."""
     kind = "ratio" if effect.name.endswith("_ratio") else "length" if effect.of_box else "number"
     low, high = format_number(effect.low, "g"), format_number(effect.high, "g")
@@ -208,7 +208,7 @@ class Histogram(Block):
     radii: Radii = otherwise("0.1, 0.3, 0.5 and 0.7 of the hop's threshold")
     """The radii of the histograms; they need not be among the radii of the scene."""
 
-    event: one_of(HOPS) = otherwise("`vertical_hop`, or the only hop of the scene")
+    event: choice(HOPS) = otherwise("`vertical_hop`, or the only hop of the scene")
     """The hop."""
 
     intervals: integer(1, 10**12) = 10**6
@@ -335,7 +335,7 @@ class Model(Block):
     """The study of the cost of accuracy by each method."""
 
     shared: different(
-        one_of(BUILT_ONCE), f"a list of different names among {', '.join(BUILT_ONCE)}"
+        choice(BUILT_ONCE), f"a list of different names among {', '.join(BUILT_ONCE)}"
     ) = Field(
         ["report"],
         description="The documents and studies to build, beside the tables and figures of the"

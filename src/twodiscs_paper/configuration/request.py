@@ -23,7 +23,7 @@ USUAL_EVENTS = 2 * 10**9
 
 
 @dataclass(frozen=True)
-class Quantities:
+class RequestedQuantities:
     """The quantities that a scene computes and measures; empty, ``False`` or ``None`` means not.
 
     ``areas`` and ``mean_times`` hold events in the order of ``EVENTS``, ``hop_histogram`` ascending
@@ -59,7 +59,7 @@ class SceneRequest:
     name: str
     box: Box
     radii: tuple
-    quantities: Quantities
+    quantities: RequestedQuantities
     monte_carlo: dict
     dynamics: dict
     histogram: dict

@@ -10,7 +10,7 @@ from twodiscs.model.scene import Box
 from twodiscs.theory.exact import MIN_FRACTION, events_per_interval, free_fraction
 from twodiscs_paper.configuration.model import Accuracy, Histogram, Watch
 from twodiscs_paper.configuration.radii import even_radii, radii
-from twodiscs_paper.configuration.request import Quantities, SceneRequest
+from twodiscs_paper.configuration.request import RequestedQuantities, SceneRequest
 
 #: Radii of the default hop histograms, over the radius at which the hop becomes blocked.
 HISTOGRAM_FRACTIONS = (0.1, 0.3, 0.5, 0.7)
@@ -41,7 +41,7 @@ def scene_request(block, seed, shard_events):
     if isinstance(watch, bool):
         watch = _everything(scene) if watch else Watch()
     histogram = _histogram(watch.hop_histogram, box, scene)
-    quantities = Quantities(
+    quantities = RequestedQuantities(
         volume=watch.volume,
         areas=_events(watch.areas, scene, "watch.areas"),
         mean_times=_events(watch.mean_times, scene, "watch.mean_times"),

@@ -10,7 +10,7 @@ from pydantic import ValidationError
 from twodiscs.model.checks import InputError, parse_number
 from twodiscs.model.formats import format_number
 from twodiscs_paper.catalogue import STUDIES
-from twodiscs_paper.configuration.mistakes import ConfigError, describe, name_of_scene, sentences
+from twodiscs_paper.configuration.mistakes import ConfigError, describe, scene_name, sentences
 from twodiscs_paper.configuration.model import (
     ABOUT_PLAIN,
     BUILT_ONCE,
@@ -103,7 +103,7 @@ def load(mapping):
         try:
             scenes.append(scene_request(block, model.seed, model.shard_events))
         except InputError as error:
-            named = name_of_scene(mapping, ("scenes", i))
+            named = scene_name(mapping, ("scenes", i))
             mistakes.append(f"scenes[{i}].{error}{named}")
     if mistakes:
         raise ConfigError(*mistakes)

@@ -23,7 +23,7 @@ SHOWN = {"periodic", "field", "friction"}
 COUNTED = ("vertical_hop", "horizontal_hop", "disc_collision", "any_wall")
 
 
-def by_dynamics(rows):
+def dynamics_times(rows):
     """Return {event: [[radius, mean time, standard error or None], …]} of rows of mean_times.csv.
 
     A time is a length over the speed √(v1² + v2²).
@@ -38,7 +38,7 @@ def by_dynamics(rows):
     }
 
 
-def by_monte_carlo(volumes, areas, components):
+def monte_carlo_times(volumes, areas, components):
     """Return the same from rows of volume.csv and areas.csv: volume over area.
 
     ``components`` is the number of velocity components minus the number of conserved momenta.
@@ -61,14 +61,14 @@ def by_monte_carlo(volumes, areas, components):
 def points(tables, periodic=""):
     """Return {event: {"dynamics": …, "monte_carlo": …}} of the tables of a scene, {name: path}.
 
-    Values are as in ``by_dynamics``; a scene need not have every table. The momentum along its
+    Values are as in ``dynamics_times``; a scene need not have every table. The momentum along its
     ``periodic`` axes is conserved.
     """
     volumes, areas, times = (
         table.read(tables[table.name()]) if table.name() in tables else []
         for table in (VolumeTable, AreasTable, MeanTimesTable)
     )
-    dynamics, sampled = by_dynamics(times), by_monte_carlo(volumes, areas, 4 - len(periodic))
+    dynamics, sampled = dynamics_times(times), monte_carlo_times(volumes, areas, 4 - len(periodic))
     return {
         event: {"dynamics": dynamics[event], "monte_carlo": sampled[event]} for event in COUNTED
     }
