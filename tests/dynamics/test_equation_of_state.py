@@ -17,7 +17,7 @@ import pytest
 from twodiscs.dynamics.many import class_counts, many_rates
 from twodiscs.model.events import SHELLS
 from twodiscs.model.scene import Scene
-from twodiscs.theory.virial import flux_constant
+from twodiscs.theory.flux import flux_constant
 
 #: B_k/B_2^(k−1) for k = 1 … 10: Tonks (1936) and Rowlinson (1964) for 3 and 4, above them Clisby
 #: and McCoy, J. Stat. Phys. 122, 15 (2006), Table 1.

@@ -20,7 +20,7 @@ from twodiscs.dynamics.runs import relative_errors
 from twodiscs.model.events import AXIS, EVENTS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import insertions, many_initial_states
-from twodiscs.theory.virial import rates
+from twodiscs.theory.flux import rates
 from twodiscs_paper.studies.more_discs.measure import known_derivatives
 
 

@@ -21,7 +21,7 @@ from twodiscs.figures import style
 from twodiscs.model.scene import Box, Scene
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.many import insertions
-from twodiscs.theory.virial import rates
+from twodiscs.theory.flux import rates
 from twodiscs_paper.studies.estimates import LinearFit, mean_of
 from twodiscs_paper.studies.passages import figure, figure_diffusion, figure_transmission, measure
 from twodiscs_paper.studies.passages.measure import passing_rate

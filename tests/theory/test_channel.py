@@ -12,7 +12,7 @@ from marks import slow
 
 from twodiscs.model.scene import Scene
 from twodiscs.theory import channel, three
-from twodiscs.theory.virial import Derivatives
+from twodiscs.theory.flux import Derivatives
 from twodiscs_paper.studies.more_discs.measure import known_derivatives
 from twodiscs_paper.studies.passages.models.file import limit
 

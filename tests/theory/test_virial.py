@@ -11,7 +11,7 @@ import pytest
 from effect_scenes import SCENES
 
 from twodiscs.model.scene import Scene
-from twodiscs.theory import exact, virial
+from twodiscs.theory import equation_of_state, exact, flux, virial
 from twodiscs_paper.studies.more_discs.measure import known_derivatives, virial_sum, virial_weights
 
 PAPER = Scene(1.5, 1.0, 0.2)
@@ -114,7 +114,7 @@ KNOWN = [
 
 @pytest.mark.parametrize("scene", KNOWN, ids=repr)
 def test_the_virial_theorem_holds(scene):
-    found = virial.rates(scene, known_derivatives(scene, hops=False))
+    found = flux.rates(scene, known_derivatives(scene, hops=False))
     size = found["right_wall"] * virial_weights(scene)["right_wall"]
     assert virial_sum(scene, found) == pytest.approx(1, abs=1e-11 * (1 + size))
 
@@ -127,4 +127,4 @@ def test_overlap_on_a_ring():
         v = b * (np.arange(200_000) + 0.5) / 200_000
         closed = 2 * np.sqrt(np.maximum(sigma**2 - v**2, 0)) / scene.width
         mean = np.mean(2 * (b - v) / b * closed)
-        assert virial.overlap_of_two(scene) == pytest.approx(mean, rel=1e-6)
+        assert equation_of_state.overlap_of_two(scene) == pytest.approx(mean, rel=1e-6)

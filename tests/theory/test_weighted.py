@@ -24,7 +24,7 @@ from theory.antiderivatives import relative_error
 
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
-from twodiscs.theory import exact, virial, weighted
+from twodiscs.theory import exact, flux, weighted
 from twodiscs_paper.studies.passages.measure import passing_rate
 
 BOUND = 1e-13
@@ -238,8 +238,8 @@ def test_constant():
         power = mpf(components - 2)
         mean = mp.quad(lambda a, p=power: mp.cos(a) * mp.sin(a) ** p, [0, mp.pi / 2])
         mean /= mp.quad(lambda a, p=power: mp.sin(a) ** p, [0, mp.pi / 2])
-        assert relative_error(virial.flux_constant(components), mean) < 1e-15
-    assert math.isclose(virial.flux_constant(4) / 2, 2 / (3 * math.pi), rel_tol=1e-15)
+        assert relative_error(flux.flux_constant(components), mean) < 1e-15
+    assert math.isclose(flux.flux_constant(4) / 2, 2 / (3 * math.pi), rel_tol=1e-15)
 
 
 BOXES = [(1.5, 1.0), slow((1.0, 1.0)), slow((1.0, 2.0)), (3.0, 1.0), (1e6, 1.0)]
@@ -373,7 +373,7 @@ def test_passages_along_a_ring():
     power, square = mpf(scene.velocity_components - 1) / 2, (2 * mpf(scene.radius)) ** 2
     level, other = (Axis(scene, axis, power) for axis in "xy")
     area = mp.sqrt(2) * level.density(mpf(0)) * beyond([other], square)
-    due = virial.flux_constant(scene.velocity_components) * area / reference(scene)["volume"]
+    due = flux.flux_constant(scene.velocity_components) * area / reference(scene)["volume"]
     assert relative_error(passing_rate(scene, "horizontal_hop"), due) < BOUND
 
 

@@ -36,7 +36,7 @@ from twodiscs.points.estimates import MIN_EVENTS, Estimate
 from twodiscs.points.monte_carlo_point import wall_weights
 from twodiscs.theory import virial
 from twodiscs.theory.exact import replicas_needed
-from twodiscs.theory.virial import flux_constant
+from twodiscs.theory.flux import flux_constant
 
 SUM_RULE = ("disc_collision", "right_wall", "top_wall")
 

@@ -29,8 +29,8 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.model.checks import InputError
+from twodiscs.theory.flux import Derivatives
 from twodiscs.theory.quadrature import gauss_legendre
-from twodiscs.theory.virial import Derivatives
 
 #: Nodes of a panel, the phase that they resolve, and the most panels that double.
 ORDER, PHASE, MOST_PANELS = 20, 15.0, 60

@@ -4,7 +4,7 @@ Speeds are uniform on the unit sphere in four dimensions, so the mean time betwe
 ergodic component is (3π/2) V/A, or half of it for a hop, whose surface is crossed from both sides
 (Chernov, J. Stat. Phys. 88, 1 (1997)). Scenes with effects have other constants and weights. For
 more than two discs exact values are known in some scenes. A value that is not known is None;
-``Scene.is_possible`` tells whether the event is impossible. ``theory_of`` finds the module that
+``Scene.is_possible`` tells whether the event is impossible. ``find_theory`` finds the module that
 computes them.
 """
 
@@ -12,26 +12,23 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import TypedDict
 
 from twodiscs.model.checks import check_choice
 from twodiscs.model.events import DECLARED, EVENTS
-from twodiscs.model.scene import check_scene
+from twodiscs.model.scene import Scene, check_scene
+from twodiscs.theory import clusters, n_discs, plain, weighted
 
-TYPE_CHECKING = False  # type checkers take it for true; the import of typing takes time
-if TYPE_CHECKING:
-    from typing import TypedDict
 
-    from twodiscs.model.scene import Scene
+class Exact(TypedDict):
+    """All exact numbers of a scene."""
 
-    class Exact(TypedDict):
-        """All exact numbers of a scene."""
-
-        regime: str
-        ergodic_components: int | None
-        largest_radius: float
-        volume: float
-        areas: dict[str, float]
-        mean_times: dict[str, float | None]
+    regime: str
+    ergodic_components: int | None
+    largest_radius: float
+    volume: float
+    areas: dict[str, float]
+    mean_times: dict[str, float | None]
 
 
 #: The least fraction of the prism (both centres in their ranges) without overlap in a scene with
@@ -45,19 +42,13 @@ CROSSINGS_PER_EVENT = 64
 KICK = 15
 
 
-def theory_of(scene):
-    """Return the module with the theory of a ``Scene``.
+#: The modules with the theory of each family of scenes.
+THEORIES = {"plain": plain, "effects": weighted, "many": n_discs}
 
-    It is imported when it is needed: the plain theory does without NumPy, for a quick start.
-    """
-    family = check_scene(scene).family
-    if family == "plain":
-        from twodiscs.theory import plain as theory
-    elif family == "effects":
-        from twodiscs.theory import weighted as theory
-    else:
-        from twodiscs.theory import n_discs as theory
-    return theory
+
+def find_theory(scene):
+    """Return the module with the theory of a ``Scene``."""
+    return THEORIES[check_scene(scene).family]
 
 
 def volume(scene: Scene) -> float:
@@ -90,7 +81,7 @@ def volume(scene: Scene) -> float:
     >>> round(td.volume(scene), 12)
     0.236114482448
     """
-    return theory_of(scene).volume(scene)
+    return find_theory(scene).volume(scene)
 
 
 def areas(scene: Scene) -> dict[str, float]:
@@ -98,7 +89,7 @@ def areas(scene: Scene) -> dict[str, float]:
 
     ``td.areas`` says what the areas are.
     """
-    return dict(theory_of(scene).areas(scene))
+    return dict(find_theory(scene).areas(scene))
 
 
 def rate(scene: Scene, event: str) -> float:
@@ -130,7 +121,7 @@ def rate(scene: Scene, event: str) -> float:
     >>> round(td.rate(scene, "any_wall"), 12)
     2.804358669238
     """
-    return theory_of(scene).rate(scene, check_choice("event", event, EVENTS))
+    return find_theory(scene).rate(scene, check_choice("event", event, EVENTS))
 
 
 def event_rate(scene):
@@ -190,8 +181,6 @@ def replicas_needed(scene, event, error):
     """
     if scene.moment_of_inertia is None:
         return 0.0
-    from twodiscs.theory import clusters
-
     pairs, others = math.comb(scene.discs, 2), scene.discs - 1
     if DECLARED[event].kind in ("wall", "walls"):
         error /= others
@@ -206,8 +195,6 @@ def corner_variance(scene, event, duration):
     """
     if scene.moment_of_inertia is None:
         return 0.0
-    from twodiscs.theory import clusters
-
     return clusters.corner_variance(scene, event, duration)
 
 
@@ -227,7 +214,7 @@ def fraction_near(scene, hop, distance):
     It is the probability, in the invariant measure, of a separation of at most ``distance`` along
     the axis of the hop, a length up to √2 times the smaller radius.
     """
-    return theory_of(scene).volume_near(scene, hop, distance) / volume(scene)
+    return find_theory(scene).volume_near(scene, hop, distance) / volume(scene)
 
 
 def shell_expectation(scene, event, epsilon):
@@ -244,4 +231,4 @@ def shell_expectation(scene, event, epsilon):
     empty. ``weighted.shell_expectation`` has the shells of scenes with effects, in which masses may
     differ. In a plain scene ``any_wall`` has no shell.
     """
-    return theory_of(scene).shell_expectation(scene, event, epsilon)
+    return find_theory(scene).shell_expectation(scene, event, epsilon)

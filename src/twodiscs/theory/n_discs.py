@@ -12,7 +12,7 @@ from twodiscs.model.checks import MOST_WITH_VOLUME
 from twodiscs.model.events import DECLARED, EVENTS, by_kind
 from twodiscs.model.many_geometry import is_ordered
 from twodiscs.theory import channel, three
-from twodiscs.theory.virial import flux_constant
+from twodiscs.theory.flux import flux_constant
 
 
 def exact_method(scene):

@@ -28,8 +28,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from twodiscs.theory.flux import Derivatives
 from twodiscs.theory.quadrature import gauss_legendre
-from twodiscs.theory.virial import Derivatives
 
 #: Nodes between two kinks, for the sum of the gaps and for the larger gap.
 OUTER, INNER = 48, 32

@@ -34,8 +34,8 @@ import numpy as np
 
 from twodiscs.model.events import AXIS, DECLARED, EVENTS
 from twodiscs.model.two_geometry import ENERGY
+from twodiscs.theory.flux import flux_constant
 from twodiscs.theory.quadrature import double_exponential, gauss_legendre
-from twodiscs.theory.virial import flux_constant
 
 # Functions of arrays ------------------------------------------------------------------------------
 

@@ -29,7 +29,7 @@ from twodiscs.sampling.many import insertions, many_initial_states
 from twodiscs.sampling.many.insertions import is_free
 from twodiscs.sampling.streams import open_stream, signed_uniform, uniform
 from twodiscs.theory import n_discs
-from twodiscs.theory.virial import flux_constant
+from twodiscs.theory.flux import flux_constant
 
 #: For the rate of hops, if it is not known exactly: states on the surface, the most proposals of
 #: them, and samples of the volume. The rate then has an error of about one per cent.

@@ -10,7 +10,8 @@ from twodiscs.sampling.many import insertions
 from twodiscs.sampling.many.chains import DENSEST, crowding
 from twodiscs.sampling.many.many_initial_states import method
 from twodiscs.theory import n_discs
-from twodiscs.theory.virial import bulk_derivatives, rates
+from twodiscs.theory.equation_of_state import bulk_derivatives
+from twodiscs.theory.flux import rates
 
 #: Events of a replica, and of a replica whose initial state takes as long as ten thousand events.
 REPLICA_EVENTS, EVENTS_OF_CHAIN = 256, 8192

@@ -26,7 +26,8 @@ from twodiscs.sampling.conditioned import draw_in_disc
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.rounds import Sampler, call_in_thread
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
-from twodiscs.theory.virial import Derivatives, overlap_of_two
+from twodiscs.theory.equation_of_state import overlap_of_two
+from twodiscs.theory.flux import Derivatives
 
 #: Samples with one random stream.
 BLOCK = 1 << 12

@@ -11,7 +11,7 @@ from pathlib import Path
 from twodiscs.analysis.tables import AreasTable, MeanTimesTable, VolumeTable
 from twodiscs.figures.style import LOOKS
 from twodiscs.model.events import DECLARED
-from twodiscs.theory.virial import flux_constant
+from twodiscs.theory.flux import flux_constant
 
 #: The scripts of the page in their order.
 SCRIPTS = ("theory.js", "dynamics.js", "plot.js", "page.js")

@@ -13,8 +13,8 @@ from twodiscs.model.events import DECLARED, SHELLS
 from twodiscs.model.many_geometry import multiplicity
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import insertions, many_initial_states
-from twodiscs.theory import n_discs, plain, virial
-from twodiscs.theory.virial import rates
+from twodiscs.theory import flux, n_discs, plain, virial
+from twodiscs.theory.flux import rates
 from twodiscs_paper.study import row
 
 #: The box per disc, 0.75 × 1: two discs have the box 1.5 × 1.
@@ -35,7 +35,7 @@ def known_derivatives(scene, hops=True):
         return n_discs.known_derivatives(scene, hops)
     volume, areas = plain.volume_and_areas(Scene(scene.width, scene.height, scene.radius))
     root = math.sqrt(2)
-    return virial.Derivatives(
+    return flux.Derivatives(
         math.log(volume),
         2 * areas["right_wall"] / volume,
         2 * areas["top_wall"] / volume,
@@ -46,7 +46,7 @@ def known_derivatives(scene, hops=True):
 
 
 def virial_weights(scene):
-    """Return ``virial.weights`` of the rates of all events of a class, as in ``virial.rates``."""
+    """Return ``virial.weights`` of the rates of all events of a class, as in ``flux.rates``."""
     return {
         e: weight / multiplicity(scene, DECLARED[e]) for e, weight in virial.weights(scene).items()
     }
