@@ -45,7 +45,7 @@ def drawn(sampler, samples):
 
 def sample_point(scene, quantities, samples, shell, seed):
     """Return the point of samples of the prism of two discs."""
-    sampler = montecarlo.in_prism if scene.is_plain else montecarlo.weighted
+    sampler = montecarlo.prism_sampler if scene.is_plain else montecarlo.weighted
     return drawn(sampler(scene, quantities, shell, seed), samples)
 
 

@@ -75,7 +75,7 @@ QUANTITIES = ("volume", *(f"{event}_area" for event in EVENTS))
 
 def sampling_engine(blocks=100):
     """Sample the volume and all shells with the compiled kernel."""
-    sampler = montecarlo.in_prism(SCENE, QUANTITIES, 0.02, 1)
+    sampler = montecarlo.prism_sampler(SCENE, QUANTITIES, 0.02, 1)
     _, seconds = timed(lambda: sampler.count(0, blocks))
     return blocks * montecarlo.BLOCK, seconds
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 
-from twodiscs.analysis.tables import Column, Table
+from twodiscs.analysis.columns import Column, Table
 
 # Columns whose unit is that of another column, or follows from the quantity.
 AS_ESTIMATE, AS_EXACT, SEE_QUANTITY = (

@@ -48,7 +48,7 @@ def points(laws):
     }
 
 
-def table_of(points, theory, alarm=scores.FALSE_ALARM, scene=SCENE):
+def text_table(points, theory, alarm=scores.FALSE_ALARM, scene=SCENE):
     points = [point for some in points.values() for point in some]
     with as_theory(theory):
         compared = check.comparisons(
@@ -78,7 +78,7 @@ def failed(rows):
 
 
 def test_all_that_was_measured_is_compared(points, theory):
-    found = table_of(points, theory)
+    found = text_table(points, theory)
     assert all(row["passed"] for row in found)
     n = len(RADII)
     assert Counter(row["comparison"] for row in found) == {
@@ -122,7 +122,7 @@ def test_a_number_off_by_one_percent_is_named(points, theory, name, monkeypatch)
     radii = possible_radii(event or "any_wall")
     for radius in radii if kind != "area" else ():
         theory[radius, name] *= 0.99 if event in HOPS else 1.01
-    found = failed(table_of(points, theory))
+    found = failed(text_table(points, theory))
     assert {("mean_time" if kind == "time" else kind, name, radius) for radius in radii} <= found
     assert {quantity for _, quantity, _ in found} <= {name, ALSO.get(name)}
 
@@ -131,7 +131,7 @@ def test_the_sum_rule_sees_collisions_that_were_missed(laws, theory):
     law = Laws(laws[2].scene)
     law.times["disc_collision"] *= 1.01
     point = law.dynamics(np.random.default_rng(3))
-    found = table_of({"dynamics": [point]}, theory)
+    found = text_table({"dynamics": [point]}, theory)
     assert ("sum_rule", "mean_times", 0.2) in failed(found)
 
 
@@ -151,7 +151,7 @@ def test_what_is_blocked_must_not_be_seen(points, theory):
         counts=point.counts | {"vertical_hop": 1},
         products=point.products | {"vertical_hop*vertical_hop": 1},
     )
-    found = table_of({**points, "dynamics": [seen]}, theory)
+    found = text_table({**points, "dynamics": [seen]}, theory)
     assert failed(found) == {("mean_time", "vertical_hop_time", 0.38)}
 
 
@@ -166,7 +166,7 @@ def test_what_is_due_must_be_seen(points, theory):
 
     dynamics = [silenced(point) for point in points["dynamics"]]
     radii = possible_radii("vertical_hop")
-    assert failed(table_of({**points, "dynamics": dynamics}, theory)) == {
+    assert failed(text_table({**points, "dynamics": dynamics}, theory)) == {
         ("mean_time", "vertical_hop_time", radius) for radius in radii
     }
     monte_carlo = [
@@ -174,7 +174,7 @@ def test_what_is_due_must_be_seen(points, theory):
         for p in points["monte_carlo"]
     ]
     assert ("volume", "volume", 0.38) in failed(
-        table_of({**points, "monte_carlo": monte_carlo}, theory)
+        text_table({**points, "monte_carlo": monte_carlo}, theory)
     )
 
 
@@ -197,7 +197,7 @@ def test_errors_of_the_wrong_size_show_in_the_spread(factor, sign):
         errors_times(factor, Laws(scene).dynamics(rng, 128, 5e-3, ("right_wall", "any_wall")))
         for scene in scenes(radii)
     ]
-    found = table_of({"dynamics": dynamics}, theory)
+    found = text_table({"dynamics": dynamics}, theory)
     names = failed(found)
     assert {(name, quantity) for name, quantity, radius in names if radius is None} >= {
         ("z_spread", "right_wall_time"),
@@ -218,7 +218,7 @@ def test_a_common_shift_below_one_error_shows_in_the_mean():
     ]
     for radius in radii:
         theory[radius, "disc_collision_time"] *= 1 + 1.6e-4  # ¾ of an error
-    found = table_of({"dynamics": dynamics}, theory)
+    found = text_table({"dynamics": dynamics}, theory)
     assert failed(found) == {("z_mean", "disc_collision_time", None)}
 
 
@@ -226,7 +226,7 @@ def test_what_cannot_be_compared_is_there_and_not_passed(laws, theory):
     rng = np.random.default_rng(6)
     interval = laws[1].intervals(rng, chains=50)
     dynamics = laws[1].dynamics(rng, replicas=64, relative=1e-2)
-    found = table_of({"dynamics": [dynamics], "intervals": [interval]}, theory)
+    found = text_table({"dynamics": [dynamics], "intervals": [interval]}, theory)
     untested = [row for row in found if row["passed"] is None]
     assert {row["comparison"] for row in untested} == {"hop_interval", "sum_rule"}
     for row in untested:
@@ -250,7 +250,7 @@ def test_the_sum_rule_is_for_equal_discs_between_walls():
 
 
 def test_independent_rows_could_fail_and_follow_from_no_other(points, theory):
-    good = table_of(points, theory)
+    good = text_table(points, theory)
     independent = [row for row in good if row["independent"]]
     compared = {row["comparison"] for row in independent}
     assert compared == {"volume", "area", "mean_time", "hop_interval"}
@@ -269,7 +269,7 @@ def test_walls_are_tests_of_their_own_where_they_are_not_counted_alone(laws, the
     """The whole of the walls is a sum of others only if those are watched, too."""
     rng = np.random.default_rng(7)
     for events in (("any_wall",), ("right_wall", "any_wall"), ("disc_collision", "any_wall")):
-        found = table_of({"dynamics": [laws[1].dynamics(rng, events=events)]}, theory)
+        found = text_table({"dynamics": [laws[1].dynamics(rng, events=events)]}, theory)
         assert [row["quantity"] for row in found if row["independent"]] == [
             f"{event}_time" for event in events
         ]

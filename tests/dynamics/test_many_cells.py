@@ -17,7 +17,7 @@ from twodiscs.dynamics.many import many_intervals, many_paths, many_rates
 from twodiscs.dynamics.many.many_intervals import mean_interval
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import many_initial_states
-from twodiscs.sampling.many.cell_grid import grid_of
+from twodiscs.sampling.many.cell_grid import make_grid
 
 #: At the border: where one kernel ends and the other one begins, and on rings.
 BORDER = [
@@ -57,7 +57,7 @@ def test_a_few_events_are_the_same_ones(scene):
         many.many_disc_law(scene),
     )
     one = many_cells.count_events(
-        *given, duration, duration / 3, law, grid_of(scene), True, hops_x, None
+        *given, duration, duration / 3, law, make_grid(scene), True, hops_x, None
     )
     other = many.count_events(*given, 64, duration, law, hops_x, None)
     assert one[0].sum() > (2 if scene is THREE else 10) * replicas
@@ -73,7 +73,7 @@ def test_which_kernel_runs():
     )
     assert many_initial_states.large_grid(small) is None
     assert many_initial_states.large_grid(large) is not None
-    assert [grid_of(scene).x.size for scene in SHORT] == [4, 3]
+    assert [make_grid(scene).x.size for scene in SHORT] == [4, 3]
 
 
 @pytest.mark.parametrize(

@@ -130,7 +130,7 @@ def test_kicks_belong_to_replicas_not_to_blocks(monkeypatch):
     assert duration * scene.friction > 3
     state = many_initial_states.states(scene, 1, 1)
     monkeypatch.setattr(
-        class_counts, "states_of", lambda _, number, *__: np.repeat(state, number, 1)
+        class_counts, "block_states", lambda _, number, *__: np.repeat(state, number, 1)
     )
     for _ in range(2):
         first, _ = class_counts.run_classes(scene, 5, 0, 1, duration, replicas=4)
@@ -149,9 +149,9 @@ def test_kicks_belong_to_replicas_not_to_blocks(monkeypatch):
 def test_chains_of_different_blocks_have_different_kicks(monkeypatch):
     """From one and the same state, chains differ by their kicks alone, in all blocks."""
     chains, mean = 4, many_intervals.mean_interval(FEW, "vertical_hop")
-    states = many_initial_states.states_of(many_initial_states.initial_of(FEW), 1, 3, 0)
+    states = many_initial_states.block_states(many_initial_states.make_initial(FEW), 1, 3, 0)
     monkeypatch.setattr(
-        many_intervals, "states_of", lambda *given: np.repeat(states, chains, axis=1)
+        many_intervals, "block_states", lambda *given: np.repeat(states, chains, axis=1)
     )
     bins = mean / 16, np.arange(65) // 8 + 65
     sums = np.zeros((3, 74), np.int64)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from figure_cases import BOXES, OTHERS, PAPER, bars, covered, draw, points, tables_of, unclear
 
-from twodiscs.analysis.tables import quantity_of
+from twodiscs.analysis.tables import row_quantity
 from twodiscs.figures import curves, panels, radius, style
 from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.model.events import EVENTS
@@ -76,7 +76,7 @@ def select_numbers(rows, quantity, factor=None, rooted=False):
     """
     found = []
     for row in rows:
-        if quantity_of(row) == quantity and row["stderr"]:
+        if row_quantity(row) == quantity and row["stderr"]:
             value, error, z = row["estimate"], row["stderr"] / row["estimate"], row["z"]
             if factor:
                 value, z = factor(row) / value, z and -z
@@ -122,7 +122,7 @@ def series(name, box, rows):
         for quantity in shown.names:
             curve = columns[quantity] ** (0.5 if shown.rooted else 1)
             due = select_numbers(rows, quantity, rooted=shown.rooted)
-            if any(quantity_of(row) == quantity for row in rows):
+            if any(row_quantity(row) == quantity for row in rows):
                 yield "main", "residuals", quantity, due, curve
 
 

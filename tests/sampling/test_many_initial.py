@@ -99,7 +99,7 @@ def difference(scene, one, other):
 
 def drawn(scene, number, seed, **changes):
     """Return ``number`` states of a ``Scene``, with some ``changes`` of how they are drawn."""
-    how = many_initial_states.initial_of(scene)._replace(**changes)
+    how = many_initial_states.make_initial(scene)._replace(**changes)
     found = np.zeros((4 * scene.discs, number))
     many_initial_states.draw_states(open_stream(np.uint64(seed), 0), how, found)
     return found
@@ -170,7 +170,7 @@ def test_long_channels_are_those_of_exact_draws():
 def test_heights_in_a_channel_are_accepted_at_every_density(scene, least):
     state, cells = (
         open_stream(np.uint64(1), 0),
-        many_initial_states.initial_of(scene, "channel").cells,
+        many_initial_states.make_initial(scene, "channel").cells,
     )
     heights = np.zeros(scene.discs)
     accepted = sum(

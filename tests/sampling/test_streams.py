@@ -8,11 +8,11 @@ import math
 import numpy as np
 from sampling.uniformity import assert_uniform
 
-from twodiscs.sampling.conditioned import second_largest_of
+from twodiscs.sampling.conditioned import draw_second_largest
 from twodiscs.sampling.streams import (
     GOLDEN,
+    draw_largest,
     exponential,
-    largest_of,
     next_bits,
     open_stream,
     signed_uniform,
@@ -25,7 +25,7 @@ def test_order_statistics():
     for n in (2, 3, 6):
         state = open_stream(np.uint64(n), 0)
         largest, second = np.array(
-            [(largest_of(state, n), second_largest_of(state, n)) for _ in range(50_000)]
+            [(draw_largest(state, n), draw_second_largest(state, n)) for _ in range(50_000)]
         ).T
         assert_uniform(largest**n)
         assert_uniform(n * second ** (n - 1) - (n - 1) * second**n)

@@ -9,7 +9,7 @@ import time
 import pytest
 from commands import python
 
-from twodiscs.sampling.rounds import map_in_threads
+from twodiscs.sampling.threads import map_in_threads
 
 
 @pytest.mark.parametrize("cores", [1, 4])
@@ -50,7 +50,7 @@ ENDING = """
 import contextlib, sys, time
 from numba.core.compiler_lock import global_compiler_lock
 from twodiscs.sampling import jit
-from twodiscs.sampling.rounds import map_in_threads
+from twodiscs.sampling.threads import map_in_threads
 
 def work(seconds, compiling):
     with global_compiler_lock if compiling else contextlib.nullcontext():

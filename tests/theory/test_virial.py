@@ -127,4 +127,4 @@ def test_overlap_on_a_ring():
         v = b * (np.arange(200_000) + 0.5) / 200_000
         closed = 2 * np.sqrt(np.maximum(sigma**2 - v**2, 0)) / scene.width
         mean = np.mean(2 * (b - v) / b * closed)
-        assert equation_of_state.overlap_of_two(scene) == pytest.approx(mean, rel=1e-6)
+        assert equation_of_state.pair_overlap(scene) == pytest.approx(mean, rel=1e-6)

@@ -130,7 +130,7 @@ def beyond(axes, square):
     return integral(line, points)
 
 
-def around(axes, square):
+def ring_separation(axes, square):
     """Return the integral of the densities of two axes along the circle."""
     rho = mp.sqrt(square)
     points = [k * mp.pi / 2 for k in range(5)]
@@ -166,7 +166,7 @@ def reference(scene):
     for hop in set(HOPS) & set(scene.events):
         level, other = axes(power, AXIS[hop] + {"x": "y", "y": "x"}[AXIS[hop]])
         found[hop] = relative * level.density(mpf(0)) * beyond([other], square)
-    found["disc_collision"] = relative * around(axes(power), square)
+    found["disc_collision"] = relative * ring_separation(axes(power), square)
     return found
 
 

@@ -1,132 +1,33 @@
-"""Tables: CSV files whose columns and rows are declared once, as a class.
-
-    class Tails(Table):
-        '''One row per time t: how probable an interval T longer than t is.'''
-
-        columns = {"radius": RADIUS, "time": TIME("t")}
-
-declares tails.csv. A class has ``columns`` and a function ``rows`` that makes its rows. Floats are
-written with all their digits, integers as integers, truth values as ``true`` and ``false``; an
-empty cell is a value that does not exist.
-
-The tables of a scene follow. The Snakefile reads this module, so NumPy and its users are imported
-only when rows are made.
-"""
+"""The tables of a scene: their columns, and how their rows follow from exact values and points."""
 
 import math
-import re
-from dataclasses import dataclass
 from functools import partial
-from numbers import Integral, Real
-from typing import ClassVar
 
-from twodiscs.model.checks import InputError
+from twodiscs.analysis import check, scores
+from twodiscs.analysis.columns import (
+    COUNT,
+    ERGODIC_COMPONENTS,
+    LENGTH,
+    NUMBER,
+    RADIUS,
+    RATE,
+    SECONDS,
+    SEE_QUANTITY,
+    TEST,
+    TEXT,
+    TIME,
+    TRUTH,
+    Column,
+    Table,
+    Z,
+)
 from twodiscs.model.events import EVENTS
 from twodiscs.model.formats import format_number, format_seconds
+from twodiscs.points.estimates import MIN_EVENTS, has_error_bar
 from twodiscs.theory import exact as theory
 
-
-@dataclass(frozen=True)
-class Column:
-    """A column: the type of its values, their unit ("" for none), and their meaning."""
-
-    type: type
-    unit: str
-    meaning: str
-
-
-TEXT, COUNT, TRUTH, NUMBER = (partial(Column, kind, "") for kind in (str, int, bool, float))
-LENGTH, TIME, RATE, SECONDS = (
-    partial(Column, float, unit) for unit in ("length", "time", "1/time", "s")
-)
-
-# Columns that several tables have.
-SCENE = TEXT("the scene")
-WIDTH = LENGTH("side of the box along x")
-HEIGHT = LENGTH("side of the box along y")
-RADIUS = LENGTH("radius of the discs")
-Z = NUMBER("standard normal deviate of the comparison, positive when the estimate is high")
-TEST = TEXT(
-    "how z was found: normal (1000 or more events expected), exact-tail (binomial tail, doubled), "
-    "cluster-bound (Chernoff's bound with an allowance for clusters of events), certain (the "
-    "probability is 0 or 1), chi-square (sum of squared scores)"
-)
-ERGODIC_COMPONENTS = COUNT("disjoint parts of configuration space")
-
-#: The types of pandas that have an empty cell.
-PANDAS = {float: "float64", bool: "boolean", str: "string"}
-
-#: The values that a cell of each type takes.
-TAKEN = {float: Real, int: Integral, bool: bool, str: str}
-
-
-class Table:
-    """A table; a row is a mapping from the names of its columns to values, None for an empty cell.
-
-    ``columns`` is {name: ``Column``} in the order of the file.
-    """
-
-    columns: ClassVar[dict[str, Column]]
-
-    @classmethod
-    def name(cls):
-        """Return the name of the table, that of its file without the ending."""
-        return re.sub(r"(?<!^)(?=[A-Z])", "_", cls.__name__.removesuffix("Table")).lower()
-
-    @classmethod
-    def meaning(cls):
-        """Return the meaning of a row of the table."""
-        return " ".join(cls.__doc__.split())
-
-    @classmethod
-    def columns_of(cls, names):
-        """Return the columns of a file or a row with these ``names``."""
-        return cls.columns
-
-    @classmethod
-    def write(cls, path, rows):
-        """Write ``rows`` as the CSV file ``path``; a cell that a row does not name is empty.
-
-        Raises ``ValueError`` for an unknown column, a value of another type, and NaN, before
-        anything is written.
-        """
-        import pandas as pd  # which takes long to import, and the Snakefile reads this module
-
-        rows = list(rows)
-        columns = cls.columns_of(rows[0] if rows else ())
-        for row in rows:
-            if odd := sorted(row.keys() - columns.keys()):
-                names = ", ".join(odd)
-                raise ValueError(f"rows must have the columns of {cls.name()}.csv, but see {names}")
-        cells = {n: [_cell(n, column, row.get(n)) for row in rows] for n, column in columns.items()}
-        pd.DataFrame(cells, dtype=object).to_csv(path, index=False, lineterminator="\n")
-
-    @classmethod
-    def frame(cls, path):
-        """Return the CSV file at ``path`` as a ``DataFrame``.
-
-        The file may have columns that the table does not know, which are left out. Raises
-        ``InputError`` if it lacks a column, or a cell is not of its type.
-        """
-        import pandas as pd
-
-        try:
-            # The engine in Python does not fill up a line that is too short with empty cells.
-            as_text = {"dtype": str, "keep_default_na": False, "engine": "python"}
-            texts = pd.read_csv(path, index_col=False, **as_text)
-            columns = cls.columns_of(texts)
-            return pd.DataFrame({n: _values(texts[n], column) for n, column in columns.items()})
-        except KeyError as missing:
-            why = f"has no column {missing}"
-        except ValueError as error:
-            why = " ".join(str(error).split())
-        raise InputError(f"{path} must be a table {cls.name()}, but {why}")
-
-    @classmethod
-    def read(cls, path):
-        """Return the rows of the CSV file at ``path``, as ``frame`` does, as a list of dicts."""
-        frame = cls.frame(path)
-        return frame.astype(object).where(frame.notna(), None).to_dict("records")
+#: A run that reaches an error below this one has the 100 effective events of an error bar.
+COARSE = 0.1
 
 
 def select_stage(points, stage):
@@ -134,46 +35,9 @@ def select_stage(points, stage):
     return sorted((p for p in points if p.stage == stage), key=lambda point: point.radius)
 
 
-def quantity_of(row):
+def row_quantity(row):
     """Return the quantity of a ``row`` of a table, as theory.csv names it."""
     return row["quantity"] if "quantity" in row else f"{row['event']}_time"
-
-
-def _cell(name, column, value):
-    """Return a value of a row as its column has it, or raise ``ValueError``."""
-    if value is None:
-        return None
-    wrong = isinstance(value, bool) and column.type is not bool
-    if wrong or not isinstance(value, TAKEN[column.type]) or value != value or value == "":
-        raise ValueError(f"{name} must be a {column.type.__name__} or None, not {value!r}")
-    return str(value).lower() if column.type is bool else column.type(value)
-
-
-def _values(texts, column):
-    """Return the cells of a column as its type; raise ``ValueError`` if a cell is of another."""
-    import pandas as pd
-
-    empty = texts == ""
-    if column.type is int:
-        numbers = [int(text) if text else None for text in texts]
-        # N! parts of configuration space may be more than 64 bits hold.
-        wide = any(number is not None and number.bit_length() > 63 for number in numbers)
-        return pd.Series(numbers, dtype=object if wide else "Int64")
-    values = texts.mask(empty)
-    if column.type is bool:
-        values = values.map({"true": True, "false": False})
-    values = values.astype(PANDAS[column.type])
-    if (values.isna() != empty).any():
-        wrong = texts[values.isna() != empty].iloc[0]
-        raise ValueError(f"{texts.name} has {wrong!r}, which is no {column.type.__name__}")
-    return values
-
-
-# The tables of a scene ----------------------------------------------------------------------------
-
-
-#: A run that reaches an error below this one has the 100 effective events of an error bar.
-COARSE = 0.1
 
 
 class GridTable(Table):
@@ -311,7 +175,6 @@ class AreasTable(Table):
 
 def _area_row(point, event):
     """Return the row of an ``event``, None if the point does not have its area."""
-    from twodiscs.analysis import scores  # which needs numpy and scipy
 
     scene, quantity = point.scene, f"{event}_area"
     sampled = point.sampled(quantity)
@@ -338,7 +201,6 @@ def _area_row(point, event):
 
 def _sampled_score(point, quantity, sampled, expectation):
     """Return (z, test) of a quantity of a point against its exact ``expectation``."""
-    from twodiscs.analysis import scores
 
     estimate = sampled.estimate
     if expectation is None:
@@ -357,7 +219,6 @@ def _sampled_score(point, quantity, sampled, expectation):
 
 def _sampled_row(point, quantity, sampled, exact, expectation, score=None):
     """Return the row of a quantity of a point, whose counts are ``sampled``."""
-    from twodiscs.points.estimates import MIN_EVENTS
 
     estimate = sampled.estimate
     z, test = score or _sampled_score(point, quantity, sampled, expectation)
@@ -461,9 +322,6 @@ class MeanTimesTable(Table):
 
 def _mean_time_row(point, event, count):
     """Return the row of an event of a ``point`` from a ``Count`` of it."""
-    from twodiscs.analysis import scores  # which needs numpy and scipy
-    from twodiscs.points.estimates import has_error_bar
-    from twodiscs.theory.exact import replicas_needed
 
     scene, exact = point.scene, theory.mean_times(point.scene)[event]
     target, multiplicity = point.target[event], scene.multiplicity(event)
@@ -482,7 +340,7 @@ def _mean_time_row(point, event, count):
         status = "too-few"
     if count.share == 1 and scene.is_possible(event):
         errors = [target or 1.0, estimate.relative_stderr if estimate else 1.0]
-        if count.replicas < replicas_needed(scene, event, min(errors)):
+        if count.replicas < theory.replicas_needed(scene, event, min(errors)):
             # The run may have missed the rare initial states with very many events, and its sample
             # would not show that.
             status, z, test, bound = "too-few" if estimate else status, None, None, None
@@ -593,8 +451,6 @@ class HopHistogramTable(Table):
 
 def _mean_interval(point):
     """Return the columns about the mean of a point; its exact mean may be None."""
-    from twodiscs.analysis import scores  # which needs numpy and scipy
-    from twodiscs.points.estimates import MIN_EVENTS
 
     z, mean, exact = None, point.estimate("mean"), theory.mean_times(point.scene)[point.event]
     stderr = mean.stderr or None if mean.n >= MIN_EVENTS else None
@@ -632,7 +488,7 @@ class TrajectoryTable(Table):
     columns = trajectory_columns(2)
 
     @classmethod
-    def columns_of(cls, names):
+    def present_columns(cls, names):
         """Return the columns; their ``names`` say how many discs there are."""
         discs = sum(name[0] == "x" and name[1:].isdigit() for name in names)
         return trajectory_columns(max(discs, 2))
@@ -656,7 +512,6 @@ class TrajectoryTable(Table):
 
 
 #: A unit that depends on the row.
-SEE_QUANTITY = partial(Column, float, "see quantity")
 
 
 class CheckTable(Table):
@@ -697,8 +552,6 @@ class CheckTable(Table):
 
         Areas are those of the ``events``.
         """
-        from twodiscs.analysis import check  # which needs numpy and scipy
-
         compared = check.comparisons(
             VolumeTable.rows(points),
             AreasTable.rows(points, events),

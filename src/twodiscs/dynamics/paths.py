@@ -9,7 +9,7 @@ from twodiscs.model.checks import InputError, check_length
 from twodiscs.model.formats import format_number
 from twodiscs.model.two_geometry import ENERGY
 from twodiscs.sampling.initial_states import MOST_NUMBERS, ROUNDING, components, given_state, states
-from twodiscs.sampling.rounds import map_in_threads
+from twodiscs.sampling.threads import map_in_threads
 
 #: The most events of a trajectory, because all its rows are kept. Those of many discs have at most
 #: ``MOST_NUMBERS``.
@@ -33,7 +33,7 @@ def path_events(scene, state, duration, seed=0):
 def check_start(scene, start):
     """Return ``start`` as a state of the ``Scene``, in the form that ``path_events`` takes.
 
-    ``start`` is one of ``initial_states.as_records``, or as many numbers. On periodic axes any
+    ``start`` is one of ``initial_states.make_records``, or as many numbers. On periodic axes any
     image serves, and it stays. Raises ``InputError`` for anything else, for discs that overlap or
     lie outside, and for another energy than 1/2.
     """

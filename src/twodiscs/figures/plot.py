@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends import backend_registry
 
-from twodiscs.analysis.tables import SCENE_TABLES, quantity_of
+from twodiscs.analysis.tables import SCENE_TABLES, row_quantity
 from twodiscs.figures import animation, panels, style
 from twodiscs.figures.draw import BOX_DRAWINGS, draw
 from twodiscs.figures.radius import CURVES, add
@@ -152,7 +152,7 @@ def _chosen(figure, fitting, rows):
         return check_choice("figure", figure, fitting)
     if fitting[0] in CURVES:
         shown = CURVES[fitting[0]].names
-        measured = [quantity_of(row) for row in rows if "estimate" in row]
+        measured = [row_quantity(row) for row in rows if "estimate" in row]
         others = dict.fromkeys(q for q in measured if q not in shown)
         if others:
             warnings.warn(
@@ -263,7 +263,7 @@ def _fitting_figures(rows, box):
     """Return the names of the figures that show quantities of these rows for a ``Box``."""
     if "left" in rows[0]:
         return ["hop_histogram"]
-    shown, names = {*map(quantity_of, rows)}, []
+    shown, names = {*map(row_quantity, rows)}, []
     for table in ("mean_times", "volume", "areas"):
         entries = ((name, one) for name, one in FIGURES.items() if one.tables == (table,))
         own = [name for name, one in entries if one.is_called(shown, box.calls_for)]

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.lines import Line2D
 
-from twodiscs.analysis.tables import quantity_of
+from twodiscs.analysis.tables import row_quantity
 from twodiscs.figures import curves, panels
 from twodiscs.figures.curves import hop_ends, limits
 from twodiscs.figures.scene_figures import FIGURES, Curves
@@ -118,7 +118,7 @@ def add(axes, box, rows, names):
     ``axes`` may show several.
     """
     kinds = [CURVES["volume"], CURVES["mean_times"], CURVES["areas"]]
-    present = {*map(quantity_of, rows)} & {*names}
+    present = {*map(row_quantity, rows)} & {*names}
     kind = next(one for one in kinds if present & {*one.names})
     before, looks = len(axes.get_legend_handles_labels()[1]), [*LOOKS.values()]
     texts = {q: text for one in kinds for q, text in one.names.items() if q in present}
@@ -146,7 +146,7 @@ def select_series(box, rows, names, looks):
     radii, exact = curves.exact_curves(box)
     by_quantity = {}
     for quantity, name in names.items():
-        own = [row for row in rows if quantity_of(row) == quantity]
+        own = [row for row in rows if row_quantity(row) == quantity]
         if own:
             measured = [row for row in own if "estimate" in row]
             look = looks.get(quantity)

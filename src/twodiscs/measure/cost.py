@@ -79,7 +79,7 @@ def timed(work, seconds, fewest=1):
 
     The blocks take roughly ``seconds``, and are at least ``fewest``.
     """
-    from twodiscs.sampling.rounds import call_in_thread
+    from twodiscs.sampling.threads import call_in_thread
 
     def run(blocks):
         start = time.thread_time()
@@ -211,12 +211,12 @@ def _prices_of_times(scene, pilots):
 def _samplers(scene):
     """Return {method: function that makes a ``Sampler``} of volume and areas."""
     from twodiscs.sampling import montecarlo
-    from twodiscs.sampling.many.insertions import inserted
+    from twodiscs.sampling.many.insertions import insertion_sampler
 
     if scene.discs > 2:
-        return {"insertions": inserted} if scene.discs <= MOST_WITH_VOLUME else {}
+        return {"insertions": insertion_sampler} if scene.discs <= MOST_WITH_VOLUME else {}
     if scene.is_plain:
-        return {"rejection": montecarlo.in_prism, "conditioned": montecarlo.conditioned}
+        return {"rejection": montecarlo.prism_sampler, "conditioned": montecarlo.conditioned}
     return {"rejection": montecarlo.weighted}
 
 

@@ -161,7 +161,7 @@ def exact_table(
     import pandas as pd
 
     box = Box(width, height, **effects)
-    scenes, refused = scenes_of(box, radii)
+    scenes, refused = fitting_scenes(box, radii)
     rows = [
         {
             "radius": scene.radius,
@@ -183,7 +183,7 @@ def exact_table(
     return frame
 
 
-def scenes_of(box, radii):
+def fitting_scenes(box, radii):
     """Return the scenes of a ``Box`` at some ``radii``, and {radius: why it does not fit}.
 
     Raises ``InputError`` if none of them fits.

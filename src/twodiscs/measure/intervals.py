@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from twodiscs.analysis.tables import HopHistogramTable
-from twodiscs.measure.measurements import Measurement, frame_of, table_of
+from twodiscs.measure.measurements import Measurement, indexed_frame, text_table
 from twodiscs.measure.result import Result, note_of_number, progress_bar
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import InputError, check_choice, check_count, check_integer
@@ -120,7 +120,7 @@ class Intervals(Result):
 
     def _texts(self) -> pd.DataFrame:
         """Return the texts of the printed table: the mean and the density at 0."""
-        return table_of([self.mean, self.at_zero])
+        return text_table([self.mean, self.at_zero])
 
     @property
     def density(self) -> list[float]:
@@ -142,7 +142,7 @@ class Intervals(Result):
         ['right', 'count', 'density', 'stderr']
         """
         names = "left", "right", "count", "density", "stderr"
-        return frame_of([{n: row[n] for n in names} for row in self._bins], index="left")
+        return indexed_frame([{n: row[n] for n in names} for row in self._bins], index="left")
 
 
 @checked_call

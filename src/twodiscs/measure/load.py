@@ -79,7 +79,7 @@ def load(folder: str | PathLike[str]) -> dict[str, pd.DataFrame]:
 def read(path, table):
     """Return the file of a ``Table`` as a ``DataFrame`` with units and meanings in ``attrs``."""
     frame, configuration = table.frame(path), _configuration(path)
-    columns = table.columns_of(frame)
+    columns = table.present_columns(frame)
     frame.attrs = {
         "table": table.name(),
         "meaning": table.meaning(),

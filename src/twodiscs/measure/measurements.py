@@ -14,7 +14,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from twodiscs.analysis.tables import AreasTable, MeanTimesTable, VolumeTable, quantity_of, shortfall
+from twodiscs.analysis.tables import (
+    AreasTable,
+    MeanTimesTable,
+    VolumeTable,
+    row_quantity,
+    shortfall,
+)
 from twodiscs.measure.exact_values import Quantities
 from twodiscs.measure.result import Immutable, Result, note_of_number, progress_bar
 from twodiscs.model.calls import checked_call
@@ -237,7 +243,7 @@ def _to_digits(x, n):
     return f"{x:#.{n}g}".rstrip(".")
 
 
-def table_of(measurements):
+def text_table(measurements):
     """Return the texts of ``measurements`` as a ``DataFrame``."""
     import pandas as pd
 
@@ -321,7 +327,7 @@ class Measurements(Result, Mapping[str, Measurement]):
 
     def _texts(self) -> pd.DataFrame:
         """Return the texts of the printed table, one row for each quantity."""
-        return table_of(self.values())
+        return text_table(self.values())
 
     def frame(self) -> pd.DataFrame:
         """Return a table of all measurements.
@@ -338,12 +344,12 @@ class Measurements(Result, Mapping[str, Measurement]):
         >>> table.loc["vertical_hop_time", ["estimate", "stderr", "exact"]].round(3).to_list()
         [1.328, 0.008, 1.338]
         """
-        return frame_of(rows_by_quantity(self.rows), index="quantity")
+        return indexed_frame(rows_by_quantity(self.rows), index="quantity")
 
 
 def measurement(scene, row, source=None):
     """Return the ``Measurement`` of a row of a table, which a result ``source`` has."""
-    quantity = quantity_of(row)
+    quantity = row_quantity(row)
     # A bound of 1 on the probability has z = 0 in the tables, as a perfect match would have.
     z = row["z"] if row["z"] or row.get("test") == "normal" else None
     return Measurement(
@@ -356,10 +362,10 @@ def measurement(scene, row, source=None):
 
 def rows_by_quantity(rows):
     """Return the ``rows`` with their quantity as a column."""
-    return [{"quantity": quantity_of(row)} | row for row in rows]
+    return [{"quantity": row_quantity(row)} | row for row in rows]
 
 
-def frame_of(rows, index):
+def indexed_frame(rows, index):
     import pandas as pd
 
     return pd.DataFrame(rows).set_index(index)

@@ -19,8 +19,8 @@ from twodiscs.model.formats import format_number, quote
 from twodiscs.model.many_geometry import LARGE
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.model.seeds import job_seed
-from twodiscs.sampling.initial_states import MOST_NUMBERS, as_records, components, states
-from twodiscs.sampling.rounds import map_in_threads
+from twodiscs.sampling.initial_states import MOST_NUMBERS, components, make_records, states
+from twodiscs.sampling.threads import map_in_threads
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -80,7 +80,7 @@ def starts(
     seed = job_seed(scene, "trajectory", seed, name)
 
     with progress_bar(progress, f"starts r = {scene.radius:g}") as progress:
-        return as_records(scene, states(scene, number, seed, progress=progress))
+        return make_records(scene, states(scene, number, seed, progress=progress))
 
 
 @dataclass(frozen=True, eq=False)
@@ -305,11 +305,11 @@ def averages(
         """Yield (states at time 0, states at a time) of a block, for all ``times``."""
         filled, wraps = states(scene, each, stream, block), engine.new_wraps(scene, each)
         kicks = open_block_kicks(engine.new_kicks(scene, each), stream, block)
-        start = as_records(scene, filled)
+        start = make_records(scene, filled)
         for step in steps:
             if step:
                 engine.advance_all(scene, filled, wraps, step, kicks)
-            now = as_records(scene, filled)
+            now = make_records(scene, filled)
             engine.unwrap(scene, now, wraps)
             yield start, now
 

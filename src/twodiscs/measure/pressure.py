@@ -16,7 +16,7 @@ import math
 from collections.abc import Mapping
 from typing import Any, overload
 
-from twodiscs.measure.measurements import Measurement, Measurements, derived, table_of
+from twodiscs.measure.measurements import Measurement, Measurements, derived, text_table
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import AXIS, WALLS
 from twodiscs.model.formats import quote
@@ -32,7 +32,7 @@ class Pressures(dict):
         super().__init__({one.quantity: one for one in measurements})
 
     def __repr__(self):
-        return f"{self.scene}\n\n{table_of(self.values()).to_string(index=False)}"
+        return f"{self.scene}\n\n{text_table(self.values()).to_string(index=False)}"
 
 
 def _require_simple(scene):
@@ -132,7 +132,7 @@ def pressure(of):
     True
     """
     if isinstance(of, Scene):
-        return {name: _of_rates(of, *term) for name, term in terms(of).items()}
+        return {name: _combine_rates(of, *term) for name, term in terms(of).items()}
     if isinstance(of, Measurements) and of.kind == "simulate":
         scene, rows = of.scene, {row["event"]: row for row in of.rows}
         return Pressures(
@@ -146,7 +146,7 @@ def pressure(of):
     raise InputError(f"of must be a Scene or a result of simulate, not {quote(of)}")
 
 
-def _of_rates(scene, constant, factors):
+def _combine_rates(scene, constant, factors):
     """Return a constant plus factors times exact rates, None if a rate is not known."""
     rates = {event: exact.rate(scene, event) for event in factors}
     if None in rates.values():
@@ -159,7 +159,7 @@ def _measured(result, rows, name, constant, factors):
     scene, counted = result.scene, [rows[event] for event in factors]
     power = "²³"[len(scene.axes) - 2]
     unit = "" if name.endswith("factor") else f"energy/length{power}"
-    due = _of_rates(scene, constant, factors)
+    due = _combine_rates(scene, constant, factors)
     count = min((row["count"] for row in counted), default=0)
     if not counted:
         return Measurement(name, constant, 0.0, due, None, count, "exact", unit)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Unpack, overload
 
-from twodiscs.measure.exact_values import scenes_of
+from twodiscs.measure.exact_values import fitting_scenes
 from twodiscs.measure.measurements import Measurements, rows_by_quantity, run_simulation
 from twodiscs.measure.result import Result
 from twodiscs.model.calls import checked_call
@@ -180,7 +180,7 @@ def scan(
     [True, True]
     """
     box = Box(width, height, **effects)
-    scenes, refused = scenes_of(box, radii)
+    scenes, refused = fitting_scenes(box, radii)
     if len({scene.radius for scene in scenes}) < len(scenes):
         raise InputError(
             "radii must differ, because one radius has the same random numbers each time, not "

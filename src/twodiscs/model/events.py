@@ -45,15 +45,15 @@ DECLARED = {
 EVENTS = tuple(DECLARED)
 
 
-def _of_kind(*kinds):
+def _select(*kinds):
     return tuple(event.name for event in DECLARED.values() if event.kind in kinds)
 
 
 #: The events at which the discs exchange sides, and the events of disc 1 at one wall.
-HOPS, WALLS = _of_kind("hop"), _of_kind("wall")
+HOPS, WALLS = _select("hop"), _select("wall")
 
 #: The events whose surface has a simple shell; the surface of all walls together has corners.
-SHELLS = _of_kind("hop", "collision", "wall")
+SHELLS = _select("hop", "collision", "wall")
 
 #: The events with an axis, {name: axis}.
 AXIS = {event.name: event.axis for event in DECLARED.values() if event.axis}

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.sampling.jit import compiled, inlined
-from twodiscs.sampling.streams import largest_of, next_bits, signed_uniform, uniform
+from twodiscs.sampling.streams import draw_largest, next_bits, signed_uniform, uniform
 
 
 class ConditionedSampler(NamedTuple):
@@ -85,7 +85,7 @@ def conditioned_sampler(scene, within=None):
 
 
 @inlined
-def second_largest_of(state, n):
+def draw_second_largest(state, n):
     """Return the second largest of ``n`` ≥ 2 uniform numbers: density ∝ sⁿ⁻² (1 − s) on [0, 1)."""
     largest, second = uniform(state), 0.0
     for _ in range(n - 1):
@@ -117,9 +117,9 @@ def propose_separation(state, sampler):
     pair = (part - 1) // 2
     power = 2 * pair if sampler.beyond_y > 0.0 else 2 + pair
     if part % 2 == 1:
-        s = sampler.span * largest_of(state, power + 1)
+        s = sampler.span * draw_largest(state, power + 1)
     else:
-        s = sampler.span * second_largest_of(state, power + 2)
+        s = sampler.span * draw_second_largest(state, power + 2)
     u = sampler.start + s
     z = sampler.span - s
     k = math.sqrt(sampler.least_k * sampler.least_k + z * (2.0 * sampler.stop - z))
@@ -209,7 +209,7 @@ def draw_crossing(state, half_x, half_y, beyond_x):
     bits = next_bits(state)
     x1, x2 = pair_at_distance(state, half_x, corner_x, 1 if bits & np.uint64(1 << 62) else -1)
     y = half_y * signed_uniform(state)
-    rest = largest_of(state, 3)
+    rest = draw_largest(state, 3)
     normal = math.sqrt((1.0 - rest) * (1.0 + rest))
     if bits & np.uint64(1 << 61):
         normal = -normal

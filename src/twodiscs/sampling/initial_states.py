@@ -27,8 +27,8 @@ from twodiscs.sampling.rejection import (
     draw_velocities,
     rejection_sampler,
 )
-from twodiscs.sampling.rounds import call_in_thread, draw_in_calls
 from twodiscs.sampling.streams import open_stream
+from twodiscs.sampling.threads import call_in_thread, draw_in_calls
 from twodiscs.theory import exact
 
 #: The most initial states in one call of a kernel: a tenth of a second without effects.
@@ -152,7 +152,7 @@ def draw_starts(state, sampler, sign_x, sign_y, initial_states):
 
 
 @optional(lambda surface: -1)
-def axis_of(surface):
+def hop_axis(surface):
     """Return the axis of the hops through a ``surface``, −1 for None."""
     return surface
 
@@ -183,7 +183,7 @@ def _draw_without_prism(stream, sampler, initial_states, prism):
 @optional(_draw_without_prism)
 def draw_with(stream, sampler, initial_states, prism):
     """Fill ``initial_states`` by a ``prism``, or by separations if it is None."""
-    direction, velocity, axis = np.empty(6), np.empty(8), axis_of(sampler.surface)
+    direction, velocity, axis = np.empty(6), np.empty(8), hop_axis(sampler.surface)
     for i in range(initial_states.shape[1]):
         x1, y1, z1, dx, dy, dz, fraction = draw_in_prism(stream, prism, axis)
         draw_velocities(stream, prism, math.sqrt(fraction), axis, direction, velocity)
@@ -234,7 +234,7 @@ def states(scene, number, seed, block=0, order=(0, 0), progress=None):
     return filled
 
 
-def as_records(scene, filled):
+def make_records(scene, filled):
     """Return ``states`` of a ``Scene`` as an array with a named field for each component."""
     names, number = components(scene), filled.shape[1]
     columns = np.empty(number, [(name, float) for name in names])

@@ -9,7 +9,7 @@ normal in configuration space; the surface is g = 0 with |∇g| = 1:
                                                               top wall        0 ≤ b − y1 ≤ ε
 
 A shell of finite thickness is biased; ``exact.shell_expectation`` is its exact expectation. If the
-discs overlap in almost all of the prism, draws are ``conditioned`` instead of ``in_prism``.
+discs overlap in almost all of the prism, draws are ``conditioned`` instead of ``prism_sampler``.
 ``MonteCarloRun`` chooses between them.
 
 A coordinate is one of 2³² equidistant values, the grains. Two coordinates come from one draw of 64
@@ -116,7 +116,7 @@ BOTH = 8 * (1 + SHELLS.index("right_wall")), 8 * (1 + SHELLS.index("top_wall"))
 
 
 @inlined
-def sets_of(squares, square, centre, ends):
+def pack_sets(squares, square, centre, ends):
     """Return the sets of a sample: an integer with a field of eight bits, 0 or 1, for each set."""
     sets = in_shells(1, squares, square, centre, ends)
     return sets + (((sets >> BOTH[0]) & (sets >> BOTH[1]) & 1) << (8 * (SETS - 1)))
@@ -178,7 +178,7 @@ def sample_blocks(seed, first, stop, range_x, range_y, sigma, ends, areas):
                     square = uu + vv
                     count = 1
                     if areas is not None:
-                        count = sets_of((uu, vv), square, (grain_x, grain_y), ends)
+                        count = pack_sets((uu, vv), square, (grain_x, grain_y), ends)
                     packed[i] += count if square >= inner else 0
             for i in range(GENERATORS):
                 for e in range(SETS):
@@ -230,7 +230,7 @@ def _weighted_thickness(scene, event):
     return math.sqrt(lightest) * (min(smallest, room) if room > 0 else smallest)
 
 
-def in_prism(scene, quantities, shell, seed):
+def prism_sampler(scene, quantities, shell, seed):
     """Return the ``Sampler`` of a plain scene by rejection from the prism.
 
     ``quantities`` is a list of ``"volume"`` and ``"<event>_area"``; ``shell`` sets the thickness of
@@ -315,7 +315,7 @@ def propose_blocks(seed, first, stop, sampler, ends):
             to_right += u if bits & np.uint64(1 << 62) else 0.0
             to_top = corner_y * uniform(state)
             to_top += v if bits & np.uint64(1 << 61) else 0.0
-            sets = sets_of((u * u, v * v), excess, (-to_right, -to_top), ends)
+            sets = pack_sets((u * u, v * v), excess, (-to_right, -to_top), ends)
             for e in range(SETS):
                 totals[e] += (sets >> (8 * e)) & 255
     return totals
@@ -327,9 +327,9 @@ def conditioned(scene, quantities, shell, seed):
     It is for radii at which the discs overlap in almost all of the prism. At any radius, up to the
     largest one, at least a quarter of the proposals is accepted. A proposal is a sample of a set
     whose volume, twice ``ConditionedSampler.mass``, is known. Points therefore have the same form
-    as ``in_prism``, for the same arguments, and the errors are binomial too. A sample takes some
-    forty times the time of a sample of the prism. If a few per cent of the prism are free, sampling
-    in the prism is therefore better.
+    as ``prism_sampler``, for the same arguments, and the errors are binomial too. A sample takes
+    some forty times the time of a sample of the prism. If a few per cent of the prism are free,
+    sampling in the prism is therefore better.
     """
     wanted, epsilon = _shells(scene, quantities, shell)
     separations, sigma = conditioned_sampler(scene), scene.contact_distance
@@ -368,7 +368,7 @@ def _weighted_wall(event):
     return lambda state, prism, centre, apart, end: prism.half_1[k] - side * centre[k] <= end
 
 
-def _at_random_wall(state, prism, centre, separation, end):
+def _hits_random_wall(state, prism, centre, separation, end):
     """Return whether a random disc is in the shell of a random wall."""
     thickness, walled = end
     pick = int(4 * len(walled) * uniform(state))
@@ -385,7 +385,7 @@ IN_WEIGHTED_SHELL = by_kind(
         "hop": _weighted_hop,
         "collision": _weighted_collision,
         "wall": _weighted_wall,
-        "walls": lambda event: _at_random_wall,
+        "walls": lambda event: _hits_random_wall,
     },
 )
 
@@ -475,7 +475,7 @@ def weighted_blocks(seed, first, stop, prism, ends):
 
 
 def weighted(scene, quantities, shell, seed):
-    """Return the ``Sampler`` of a scene with effects, for the arguments of ``in_prism``.
+    """Return the ``Sampler`` of a scene with effects, for the arguments of ``prism_sampler``.
 
     A sample without overlap counts with a probability: (1 − U/E)₊^(D/2 − 1) for the volume, and
     (1 − U/E)₊^((D − 1)/2) for each shell that it is in. All walls are a separate quantity. Each
@@ -505,11 +505,11 @@ def plan(scene, samples):
     if scene.discs > 2:
         from twodiscs.sampling.many import insertions
 
-        sampler, block = insertions.inserted, insertions.BLOCK
+        sampler, block = insertions.insertion_sampler, insertions.BLOCK
     elif scene.has_effects:
         sampler, block = weighted, BLOCK
     elif exact.free_fraction(scene) >= 1 / COST_RATIO:
-        sampler, block = in_prism, BLOCK
+        sampler, block = prism_sampler, BLOCK
     else:
         blocks = -(-samples // (COST_RATIO * PROPOSALS))
         return conditioned, blocks * PROPOSALS
@@ -520,13 +520,13 @@ def plan(scene, samples):
 class MonteCarloRun(Run):
     """An estimate of the volume and areas of a ``Scene`` by the best sampler for it, in blocks.
 
-    The sampler is ``weighted`` for effects, and ``in_prism`` if a sample of the prism has no
+    The sampler is ``weighted`` for effects, and ``prism_sampler`` if a sample of the prism has no
     overlap with a probability of at least 1/``COST_RATIO``. Otherwise it is ``conditioned``, with
     the number of samples that takes the same time. For more than two discs it is
-    ``many.insertions.inserted``, which has no shells.
+    ``many.insertions.insertion_sampler``, which has no shells.
 
-    ``quantities``, ``shell`` and ``seed`` are the arguments of ``in_prism``, ``samples`` those of
-    the prism.
+    ``quantities``, ``shell`` and ``seed`` are the arguments of ``prism_sampler``, ``samples`` those
+    of the prism.
     """
 
     scene: Scene

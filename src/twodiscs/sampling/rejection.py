@@ -14,7 +14,7 @@ import numpy as np
 from twodiscs.model.events import AXIS
 from twodiscs.sampling.conditioned import draw_in_disc
 from twodiscs.sampling.jit import compiled, optional
-from twodiscs.sampling.streams import largest_of, next_bits, signed_uniform, uniform
+from twodiscs.sampling.streams import draw_largest, next_bits, signed_uniform, uniform
 
 
 class Neck(NamedTuple):
@@ -52,7 +52,7 @@ class RejectionSampler(NamedTuple):
     neck: Neck | None = None  # the neck to which draws are restricted
 
 
-def neck_of(scene, hop, within):
+def find_neck(scene, hop, within):
     """Return the ``Neck`` of an open ``hop`` of a ``Scene``, ``within`` a distance < σ."""
     axis, within = AXIS[hop], Fraction(within)
     squares = {a: scene.reach(a) ** 2 for a in scene.axes if a != axis}
@@ -68,7 +68,7 @@ def neck_of(scene, hop, within):
 
 
 def rejection_sampler(scene, hop=None, within=None):
-    """Return the ``RejectionSampler`` of a ``Scene``, for a ``hop`` in its neck (``neck_of``)."""
+    """Return the ``RejectionSampler`` of a ``Scene``, for a ``hop`` in its neck (``find_neck``)."""
 
     def half(axis, radius):
         if axis not in scene.axes:
@@ -88,7 +88,7 @@ def rejection_sampler(scene, hop=None, within=None):
         weights=(2 * scene.field * m1, 2 * scene.field * m2) if scene.field else None,
         depth=None if scene.depth is None else True,
         inertia=inertia and (1 / math.sqrt(inertia * m1), 1 / math.sqrt(inertia * m2)),
-        neck=None if hop is None else neck_of(scene, hop, within),
+        neck=None if hop is None else find_neck(scene, hop, within),
     )
 
 
@@ -131,7 +131,7 @@ def kinetic_fraction(y1, y2, half1, half2, weights):
 
 
 @optional(lambda state, prism: 1.0)
-def kinetic_fraction_of(state, prism):
+def state_kinetic_fraction(state, prism):
     """Return the kinetic fraction of the energy in a ``state``; 1 without a ``prism``."""
     half_1, half_2 = prism.half_1[1], prism.half_2[1]
     return kinetic_fraction(state[1], state[3], half_1, half_2, prism.weights)
@@ -212,7 +212,7 @@ def propose_anywhere(state, prism, neck):
 
 
 @optional(lambda fraction, neck: fraction)
-def of_most(fraction, neck):
+def relative_fraction(fraction, neck):
     """Return the kinetic ``fraction`` over the largest one."""
     return fraction / neck.most
 
@@ -227,7 +227,7 @@ def fraction_if_accepted(state, prism, y1, dx, dy, dz, power):
     if dx * dx + dy * dy + dz * dz < prism.sigma * prism.sigma:
         return -1.0
     fraction = kinetic_fraction(y1, y1 - dy, prism.half_1[1], prism.half_2[1], prism.weights)
-    if prism.weights is None or power_chance(state, of_most(fraction, prism.neck), power):
+    if prism.weights is None or power_chance(state, relative_fraction(fraction, prism.neck), power):
         return fraction
     return -1.0
 
@@ -291,7 +291,7 @@ def draw_velocities(state, prism, speed, normal_axis, direction, velocity):
     n, rest, normal = prism.components, 1.0, 0.0
     if normal_axis >= 0:
         n -= 1
-        rest = largest_of(state, n)
+        rest = draw_largest(state, n)
         normal = math.sqrt((1.0 - rest) * (1.0 + rest))
         if next_bits(state) & np.uint64(1 << 61):
             normal = -normal

@@ -84,7 +84,7 @@ def exponential(state):
 
 
 @compiled
-def largest_of(state, n):
+def draw_largest(state, n):
     """Return the largest of ``n`` uniform numbers: its density is n sⁿ⁻¹ on [0, 1)."""
     largest = uniform(state)
     for _ in range(n - 1):

@@ -70,7 +70,7 @@ class Channel(NamedTuple):
     separation: np.ndarray  # |y − y'|
 
 
-def nodes_of(height, finest, widest, farthest):
+def graded_nodes(height, finest, widest, farthest):
     """Return (distances from the nearer wall, weights) on panels that double from the wall on.
 
     The first one is about ``finest``, none is wider than ``widest``, and none begins beyond
@@ -92,7 +92,7 @@ def nodes_of(height, finest, widest, farthest):
     return (low + (high - low) * x).ravel(), ((high - low) * w).ravel()
 
 
-def pairs_of(height, sigma, y):
+def node_pairs(height, sigma, y):
     """Return (d − d₀, d, |y − y'|, d₀) of pairs of ``y`` on the same side and on opposite ones."""
     both, same = y[:, None] + y, np.abs(y[:, None] - y)
     short = np.array([height - same, both])  # B − |y − y'|
@@ -110,7 +110,7 @@ def _room(scene):
     return float(a * a - n * n * square) / (float(a) + n * math.sqrt(square))
 
 
-def channel_of(scene, force=None, reach=None):
+def make_channel(scene, force=None, reach=None):
     """Return the ``Channel`` of a ``Scene``, for transforms at a real part ``force`` of p.
 
     Its nodes resolve exp(−p (d − d₀)) up to |p| = ``reach``, unless it is negligible.
@@ -118,17 +118,17 @@ def channel_of(scene, force=None, reach=None):
     room = _room(scene)
     # At the saddle p is between N/room and (2N + 1)/room.
     force = force or scene.discs / room
-    panels = panels_of(scene.range_y, scene.contact_distance, force, reach or 2 * force)
-    y, weights = nodes_of(*panels)
-    apart, distance, separation, least = pairs_of(scene.range_y, scene.contact_distance, y)
+    panels = panel_sizes(scene.range_y, scene.contact_distance, force, reach or 2 * force)
+    y, weights = graded_nodes(*panels)
+    apart, distance, separation, least = node_pairs(scene.range_y, scene.contact_distance, y)
     return Channel(
         scene.discs, scene.contact_distance, scene.range_y, least, room, weights, apart, distance,
         separation,
     )  # fmt: skip
 
 
-def panels_of(height, sigma, force, reach):
-    """Return the arguments of ``nodes_of`` for p of a real part ``force`` up to |p| = ``reach``."""
+def panel_sizes(height, sigma, force, reach):
+    """Return the arguments of ``graded_nodes`` for Re p = ``force``, up to |p| = ``reach``."""
     least = math.sqrt((sigma - height) * (sigma + height))
     # At a distance ℓ from a corner d − d₀ is at most ℓ B/d₀. A disc ``far`` from both walls has no
     # neighbour this close.
@@ -291,17 +291,17 @@ def derivatives(scene, hops=True):
     roundings over the free length. Two or three discs in a short channel have many terms; other
     modules have methods for them.
     """
-    channel = channel_of(scene)
+    channel = make_channel(scene)
     p, phi = saddle(channel)
     step = _step(channel, p, phi)
     terms, first, reach, check, last = [], None, 2 * p, FIRST_TERMS, None
-    channel = channel_of(scene, p, reach)
+    channel = make_channel(scene, p, reach)
     while True:
         z = complex(p, len(terms) * step)
         if abs(z) > reach:
             # Nodes that resolve the phase p (d − d₀) up to the next doubling.
             reach = 2 * abs(z)
-            channel = channel_of(scene, p, reach)
+            channel = make_channel(scene, p, reach)
         scale, values = _inverses(channel, z, hops)
         first = scale if first is None else first
         terms.append((values * np.exp((z - p) * channel.room + scale - first)).real)

@@ -7,7 +7,7 @@ from twodiscs.theory import plain
 from twodiscs.theory.flux import Derivatives
 
 
-def overlap_of_two(scene):
+def pair_overlap(scene):
     """Return q, the probability that two of the centres, drawn uniformly, overlap."""
     if scene.periodic:
         # On a ring the separation along x is uniform; along y it has the density 2 (B − v)/B².

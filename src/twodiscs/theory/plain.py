@@ -100,7 +100,7 @@ class VolumeAndAreas(NamedTuple):
     top_wall: float
 
 
-def of_arc(arc):
+def arc_integrals(arc):
     """Return the ``VolumeAndAreas`` of an arc."""
     volume, disc = arc.range_x**2 * arc.beyond_y**2, 0.0
     right, top = arc.range_x * arc.beyond_y**2, arc.range_y * arc.beyond_x**2
@@ -117,7 +117,7 @@ def of_arc(arc):
 def volume_and_areas(scene):
     """Return (volume, {event: area}) of a plain ``Scene``, in length⁴ and length³."""
     arc = Arc.of(scene)
-    volume, disc, right, top = of_arc(arc)
+    volume, disc, right, top = arc_integrals(arc)
     surfaces = {
         "hop": lambda event: hop_area(arc if event.axis == "y" else arc.turned()),
         "collision": lambda event: disc,
@@ -152,12 +152,12 @@ def _wall_shell(arc, epsilon):
     range_x, range_y, sigma = arc.exact
     thick = Fraction(epsilon)
     if thick >= range_x:
-        return of_arc(arc).volume / epsilon
+        return arc_integrals(arc).volume / epsilon
     flat, near = arc.beyond_x, min(max((range_x - thick) ** 2, arc.stop), arc.start)
     total = arc.range_y**2 * (flat**2 / (2 * epsilon) if flat < epsilon else flat - epsilon / 2)
     total += sum(w * y * y * sin * x / epsilon for w, x, y, _, sin in arc.nodes(arc.start, near))
     total += sum(w * y * y * sin for w, _, y, _, sin in arc.nodes(near, arc.stop))
-    return total + of_arc(Arc(thick, range_y, sigma)).volume / (2 * epsilon)
+    return total + arc_integrals(Arc(thick, range_y, sigma)).volume / (2 * epsilon)
 
 
 def _collision_shell(arc, epsilon):

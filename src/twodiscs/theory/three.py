@@ -182,15 +182,15 @@ def integrals(a, b, sigma):
     beyond_p, beyond_q, beyond_t = ~near_p, ~near_p & ~near_q, c == 0
     level = a * a * beyond_q + most**2 * (1.0 * beyond_p + beyond_t)
 
-    def over_gaps(integrand):
+    def integrate_gaps(integrand):
         return np.sum(inner * integrand, axis=(0, 1))
 
-    volume_at = over_gaps(volume)
+    volume_at = integrate_gaps(volume)
     weight = outer * (b - t)
     return (
         24 * float(weight @ volume_at),
-        24 * float(weight @ over_gaps(slope)),
+        24 * float(weight @ integrate_gaps(slope)),
         24 * float(outer @ volume_at),
-        24 * float(weight @ over_gaps(contact)),
-        12 * float(weight @ over_gaps(level)),
+        24 * float(weight @ integrate_gaps(contact)),
+        12 * float(weight @ integrate_gaps(level)),
     )

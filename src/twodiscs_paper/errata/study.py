@@ -1,6 +1,6 @@
 """Corrections to the source: printed formulas against quadrature to fifty digits."""
 
-from twodiscs.analysis.tables import LENGTH, NUMBER, TEXT, Table
+from twodiscs.analysis.columns import LENGTH, NUMBER, TEXT, Table
 from twodiscs_paper.study import Study
 
 

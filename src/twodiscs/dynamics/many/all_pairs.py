@@ -104,7 +104,8 @@ def new_lanes(states, remaining, law):
 
 def many_disc_law(scene):
     """Return the ``ManyLaw`` of a ``Scene``."""
-    half_x, ring, rough, spin = scene.range_x / 2, None, None, many_initial_states.spin_of(scene)
+    half_x, ring, rough = scene.range_x / 2, None, None
+    spin = many_initial_states.spin_factor(scene)
     if scene.periodic:
         half_x, half = None, scene.width / 2
         ring = scene.width, half, half / math.sqrt(2)

@@ -176,7 +176,7 @@ def find_contact(i, now, columns, rows, motion, grid, law):
     across, up = grid.x.size - 1, grid.y.size - 1
     first, last = grids.columns_within(columns[0], columns[1], across, law.ring)
     for column in range(first, last + 1):
-        start = grids.around_columns(column, across, law.ring) * up
+        start = grids.wrap_column(column, across, law.ring) * up
         for cell in range(start + max(rows[0], 0), start + min(rows[1], up - 1) + 1):
             k = motion.places.head[cell]
             while k >= 0:
@@ -326,7 +326,7 @@ def pass_seam(i, column, columns, motion, laps, ring):
     step = 1.0 if column == columns else (-1.0 if column < 0 else 0.0)
     motion.x[i] -= step * ring[0]
     laps[i] += step
-    return grids.around_columns(column, columns, ring)
+    return grids.wrap_column(column, columns, ring)
 
 
 @optional(lambda ahead, columns, ring: ahead < 0 or ahead == columns)
@@ -345,8 +345,8 @@ def start_from(states, replica, motion, grid, law):
         motion.x[i], motion.y[i] = states[i, replica], states[discs + i, replica]
         motion.u[i], motion.v[i] = states[2 * discs + i, replica], states[3 * discs + i, replica]
         motion.time[i] = 0.0
-        column = grids.interval_of(motion.x[i], grid.x)
-        grids.enter(i, column, grids.interval_of(motion.y[i], grid.y), motion.places, grid)
+        column = grids.find_interval(motion.x[i], grid.x)
+        grids.enter(i, column, grids.find_interval(motion.y[i], grid.y), motion.places, grid)
     all_pairs.copy_spins(spins_in(states, discs, law.rough), replica, 0, motion.s)
     look_for_all(motion, grid, law)
 

@@ -10,7 +10,7 @@ from twodiscs.dynamics.many import all_pairs, cell_list
 from twodiscs.dynamics.many.all_pairs import CLASSES, EVENT_CLASSES, N, many_disc_law, new_kicks
 from twodiscs.dynamics.many.many_rates import block_replicas, usual_epoch
 from twodiscs.model.events import HOPS
-from twodiscs.sampling.many.many_initial_states import initial_of, large_grid, states_of
+from twodiscs.sampling.many.many_initial_states import block_states, large_grid, make_initial
 
 
 def run_blocks(scene, events, seed, first, stop, duration, **shape):
@@ -30,10 +30,10 @@ def run_classes(scene, seed, first, stop, duration, *, replicas=None, lanes=None
     """
     replicas, lanes = replicas or block_replicas(scene), lanes or ensemble.LANES
     hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
-    law, grid, initial = many_disc_law(scene), large_grid(scene), initial_of(scene)
+    law, grid, initial = many_disc_law(scene), large_grid(scene), make_initial(scene)
     counts = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
     for block in range(first, stop):
-        states = states_of(initial, replicas, seed, block)
+        states = block_states(initial, replicas, seed, block)
         given = states, np.uint64(seed), block * replicas
         kicks = new_kicks(scene, lanes if grid is None else 1)
         if grid is None:

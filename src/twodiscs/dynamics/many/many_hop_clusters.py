@@ -50,7 +50,7 @@ class Pair(NamedTuple):
 def surface_pair(scene, hop):
     """Return the ``Pair`` of a ``Scene``, turned by a quarter if the ``hop`` is along y."""
     scene, hop = hopping_along(scene, hop, "x")
-    sampler = many_initial_states.initial_of(scene, "rejection")
+    sampler = many_initial_states.make_initial(scene, "rejection")
     return Pair(sampler, scene.clearance(hop), many_disc_law(scene))
 
 

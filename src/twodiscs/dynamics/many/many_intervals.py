@@ -11,7 +11,7 @@ from twodiscs.dynamics.many.many_paths import Followed
 from twodiscs.model.checks import InputError
 from twodiscs.model.many_geometry import LARGE
 from twodiscs.sampling.many import many_initial_states
-from twodiscs.sampling.many.many_initial_states import initial_of, large_grid, states_of
+from twodiscs.sampling.many.many_initial_states import block_states, large_grid, make_initial
 from twodiscs.sampling.streams import open_stream
 
 #: Numbers that are summed in each bin of intervals: Σ c, Σ c² and Σ c n.
@@ -66,13 +66,13 @@ def record_within(window, scene, hop, seed, first, stop, chains, bins, sums, goi
     if large_grid(scene) is None:
         hops_x, kicks = True if hop == "horizontal_hop" else None, new_kicks(scene, ensemble.LANES)
         given = window, many_disc_law(scene), hops_x, bins, sums, going, kicks
-        initial, totals = initial_of(scene), []
+        initial, totals = make_initial(scene), []
         for block in range(first, stop):
-            states = states_of(initial, chains, seed, block)
+            states = block_states(initial, chains, seed, block)
             seeds = np.uint64(seed), block * chains
             totals.append(all_pairs.record_intervals(states, *seeds, *given))
         return np.hstack(totals)
-    (width, wide), path, initial = bins, Followed(scene, (hop,)), initial_of(scene)
+    (width, wide), path, initial = bins, Followed(scene, (hop,)), make_initial(scene)
     totals, state = np.zeros((2, (stop - first) * chains)), np.zeros((initial.rows, 1))
     for chain in range(totals.shape[1]):
         if chain % chains == 0:

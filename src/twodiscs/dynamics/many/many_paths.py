@@ -8,7 +8,7 @@ from twodiscs.dynamics.many import all_pairs, cell_list
 from twodiscs.dynamics.many.all_pairs import BESIDE, COLLISIONS, N, many_disc_law, new_kicks
 from twodiscs.dynamics.many.many_rates import expected_event_rate, expected_rates, usual_epoch
 from twodiscs.model.events import HOPS
-from twodiscs.sampling.many.cell_grid import grid_of
+from twodiscs.sampling.many.cell_grid import make_grid
 from twodiscs.sampling.many.many_initial_states import large_grid
 
 #: Entries of a log before it is read.
@@ -36,7 +36,7 @@ class Followed:
     """
 
     def __init__(self, scene, counted):
-        self.scene, self.law, self.grid = scene, many_disc_law(scene), grid_of(scene)
+        self.scene, self.law, self.grid = scene, many_disc_law(scene), make_grid(scene)
         self.epoch, self.laps = usual_epoch(scene), np.zeros(scene.discs)
         self.motion = cell_list.new_motion(scene.discs, self.grid, self.law.rough)
         self.log = cell_list.new_log(scene.discs, ENTRIES, 4 if self.law.rough is None else 5)

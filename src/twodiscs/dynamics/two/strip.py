@@ -30,10 +30,10 @@ from twodiscs.model.seeds import key, stream_seed
 from twodiscs.points.estimates import PARTS, fractions_of_speeds, stratified_mean
 from twodiscs.sampling.initial_states import start_sampler
 from twodiscs.sampling.rejection import (
-    kinetic_fraction_of,
-    neck_of,
+    find_neck,
     proposed_measure,
     rejection_sampler,
+    state_kinetic_fraction,
 )
 from twodiscs.sampling.rounds import SequentialRun, round_up_blocks
 from twodiscs.theory import exact
@@ -88,7 +88,7 @@ def strip_around(scene, hop, time):
     within = scene.fastest * time
     if scene.field:
         # At this height less kinetic energy is left; the first, wider strip bounds it.
-        within *= math.sqrt(neck_of(scene, hop, within).most)
+        within *= math.sqrt(find_neck(scene, hop, within).most)
     return Strip(time, within, exact.fraction_near(scene, hop, within))
 
 
@@ -195,7 +195,7 @@ class HopsInStrip(NamedTuple):
     def begin(self, i, state):
         """Find the stratum of an initial state."""
         separation, speed = relative_motion(state, self.horizontal)
-        speed /= math.sqrt(kinetic_fraction_of(state, self.prism))
+        speed /= math.sqrt(state_kinetic_fraction(state, self.prism))
         self.stratum[0, i] = min(np.int64(abs(separation) / self.near), PARTS - 1)
         self.stratum[1, i] = min(np.int64(abs(speed) / self.slow), self.sums.shape[2] - 1)
         self.packed[i] = 0.0

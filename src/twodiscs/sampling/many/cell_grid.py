@@ -40,7 +40,7 @@ class Places(NamedTuple):
     head: np.ndarray
 
 
-def grid_of(scene):
+def make_grid(scene):
     """Return the ``CellGrid`` of a ``Scene``, which must be followable."""
     a, b = scene.range_x, scene.range_y
     side = max(LEAST_SIDE * scene.contact_distance, SPACING * math.sqrt(a * b / scene.discs))
@@ -66,7 +66,7 @@ def new_places(discs, grid):
 
 
 @inlined
-def interval_of(position, borders):
+def find_interval(position, borders):
     """Return the number of the interval between ``borders`` that holds a ``position``."""
     number = borders.size - 1
     k = np.int64((position - borders[0]) / (borders[number] - borders[0]) * number)
@@ -97,7 +97,7 @@ def leave(i, places, grid):
 
 
 @optional(lambda column, columns, ring: column)
-def around_columns(column, columns, ring):
+def wrap_column(column, columns, ring):
     """Return the number of a column on a ring; ``column`` may be one turn too low or high."""
     column -= columns if column >= columns else 0
     return column + (columns if column < 0 else 0)

@@ -15,8 +15,8 @@ import math
 import numpy as np
 
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.many.cell_grid import around_columns, enter, interval_of, leave, new_places
-from twodiscs.sampling.many.insertions import around
+from twodiscs.sampling.many.cell_grid import enter, find_interval, leave, new_places, wrap_column
+from twodiscs.sampling.many.insertions import ring_separation
 from twodiscs.sampling.streams import next_bits, uniform
 
 #: The approximate numbers of contacts of each disc, and of a chain.
@@ -50,13 +50,13 @@ def plan(scene):
 
 
 @optional(lambda column, columns, ring: column if 0 <= column < columns else -1)
-def column_of(column, columns, ring):
+def find_column(column, columns, ring):
     """Return the number of a column, −1 if there is none."""
-    return around_columns(column, columns, ring)
+    return wrap_column(column, columns, ring)
 
 
 @optional(lambda dx, sign, ring: dx)
-def ahead_of(dx, sign, ring):
+def image_ahead(dx, sign, ring):
     """Return the separation to the image ahead on a ring, given that to the nearest image."""
     return dx + sign * ring if sign * dx < 0.0 else dx
 
@@ -80,14 +80,14 @@ def first_contact(i, axis, sign, left, centres, places, grid, initial):
             break
         a = along + (step if sign > 0.0 else -step)
         for b in range(across - 1, across + 2):
-            column = column_of(a if axis == 0 else b, columns, ring)
+            column = find_column(a if axis == 0 else b, columns, ring)
             row = b if axis == 0 else a
             if column < 0 or row < 0 or row >= rows:
                 continue
             k = places.head[column * rows + row]
             while k >= 0:
-                dx, dy = around(centres[0, k] - at_x, ring), centres[1, k] - at_y
-                ahead, apart = (ahead_of(dx, sign, ring), dy) if axis == 0 else (dy, dx)
+                dx, dy = ring_separation(centres[0, k] - at_x, ring), centres[1, k] - at_y
+                ahead, apart = (image_ahead(dx, sign, ring), dy) if axis == 0 else (dy, dx)
                 square = (sigma - apart) * (sigma + apart)
                 if square > 0.0 and sign * ahead > 0.0:
                     gap = sign * ahead - math.sqrt(square)
@@ -104,7 +104,7 @@ def short_of_half(left, ring):
 
 
 @optional(lambda axis, position, sign, half, ring: half - sign * position)
-def to_wall(axis, position, sign, half, ring):
+def wall_distance(axis, position, sign, half, ring):
     """Return the distance to the wall ahead, infinite along a ring."""
     return math.inf if axis == 0 else half - sign * position
 
@@ -114,7 +114,7 @@ def run_chains(state, initial, centres, number, length, grid):
     """Move the discs of ``centres`` (2, N) by a ``number`` of chains of a mean ``length``."""
     discs, places = initial.discs, new_places(initial.discs, grid)
     for i in range(discs):
-        column, row = interval_of(centres[0, i], grid.x), interval_of(centres[1, i], grid.y)
+        column, row = find_interval(centres[0, i], grid.x), find_interval(centres[1, i], grid.y)
         enter(i, column, row, places, grid)
     for _ in range(number):
         axis = np.int64(next_bits(state) % np.uint64(2))
@@ -124,16 +124,16 @@ def run_chains(state, initial, centres, number, length, grid):
         left = 2 * length * uniform(state)
         while left > 0.0:
             position = centres[axis, i]
-            wall = to_wall(axis, position, sign, half, initial.ring)
+            wall = wall_distance(axis, position, sign, half, initial.ring)
             limit = short_of_half(min(left, wall), initial.ring)
             step, k = first_contact(i, axis, sign, limit, centres, places, grid, initial)
             left -= step
             bounces = k < 0 and limit == wall
             centres[axis, i] = position + sign * step
-            centres[0, i] = around(centres[0, i], initial.ring)
+            centres[0, i] = ring_separation(centres[0, i], initial.ring)
             if bounces:
                 centres[axis, i], sign = sign * half, -sign
-            column, row = interval_of(centres[0, i], grid.x), interval_of(centres[1, i], grid.y)
+            column, row = find_interval(centres[0, i], grid.x), find_interval(centres[1, i], grid.y)
             if column != places.column[i] or row != places.row[i]:
                 leave(i, places, grid)
                 enter(i, column, row, places, grid)

@@ -24,9 +24,10 @@ from twodiscs.model.events import SHELLS, by_kind
 from twodiscs.points.monte_carlo_point import InsertionPoint
 from twodiscs.sampling.conditioned import draw_in_disc
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.rounds import Sampler, call_in_thread
+from twodiscs.sampling.rounds import Sampler
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
-from twodiscs.theory.equation_of_state import overlap_of_two
+from twodiscs.sampling.threads import call_in_thread
+from twodiscs.theory.equation_of_state import pair_overlap
 from twodiscs.theory.flux import Derivatives
 
 #: Samples with one random stream.
@@ -69,7 +70,7 @@ class Bounds(NamedTuple):
 
 
 @optional(lambda dx, ring: dx)
-def around(dx, ring):
+def ring_separation(dx, ring):
     """Return the separation to the nearest image on a ring."""
     dx -= ring if dx > ring / 2 else 0.0
     dx += ring if dx < -ring / 2 else 0.0
@@ -137,7 +138,7 @@ def is_free(centres, k, x, y, box, but):
     if (abs(x) > box.half_x) | (abs(y) > box.half_y):
         return False
     for j in range(k):
-        dx, dy = around(x - centres[0, j], box.ring), y - centres[1, j]
+        dx, dy = ring_separation(x - centres[0, j], box.ring), y - centres[1, j]
         if j != but and dx * dx + dy * dy < box.sigma * box.sigma:
             return False
     return True
@@ -186,7 +187,7 @@ def sample_blocks(seed, first, stop, discs, box, walls):
                 j = np.int64(next_bits(state) % np.uint64(last))
                 p, q, square = draw_in_disc(state)
                 scale = box.sigma / math.sqrt(square)
-                at_x = around(centres[0, j] + p * scale, box.ring)
+                at_x = ring_separation(centres[0, j] + p * scale, box.ring)
                 touches = is_free(centres, last, at_x, centres[1, j] + q * scale, box, j)
                 weights[3] = 1.0 if touches else 0.0
                 weights[4] = 1.0 if is_free(centres, last, centres[0, j], y, box, -1) else 0.0
@@ -200,11 +201,11 @@ def sample_blocks(seed, first, stop, discs, box, walls):
     return sums, products
 
 
-def box_of(scene):
+def make_bounds(scene):
     """Return the ``Bounds`` of a ``Scene``."""
     pairs = scene.discs * (scene.discs - 1) / 2
     # Rounded to a power of two: the same on every machine.
-    typical = 2.0 ** round(pairs * math.log2(1 - overlap_of_two(scene)))
+    typical = 2.0 ** round(pairs * math.log2(1 - pair_overlap(scene)))
     ring = scene.width if scene.periodic else None
     return Bounds(scene.range_x / 2, scene.range_y / 2, scene.contact_distance, ring, typical)
 
@@ -212,13 +213,13 @@ def box_of(scene):
 def run_blocks(scene, seed, first, stop):
     """Return (sums, products) of the samples of a ``Scene``, integers that shards can add."""
     walls = None if scene.periodic else True
-    return sample_blocks(np.uint64(seed), first, stop, scene.discs, box_of(scene), walls)
+    return sample_blocks(np.uint64(seed), first, stop, scene.discs, make_bounds(scene), walls)
 
 
 def free_fraction(scene):
     """Return the estimate of V/(AB)^N from the first block of the stream 0, maybe 0."""
     sums, _ = call_in_thread(run_blocks, scene, 0, 0, 1)
-    return float(sums[0]) / UNITS / BLOCK * box_of(scene).typical
+    return float(sums[0]) / UNITS / BLOCK * make_bounds(scene).typical
 
 
 def estimate(scene, sums, products, samples):
@@ -244,7 +245,7 @@ def estimate(scene, sums, products, samples):
     ratios = mean[1:] / mean[0]
     spread = np.diag(covariance)[1:] - 2 * ratios * covariance[0, 1:] + ratios**2 * covariance[0, 0]
     errors = np.sqrt(np.maximum(spread, 0.0)) / mean[0]
-    log_volume = n * math.log(a * b) + math.log(box_of(scene).typical) + math.log(mean[0])
+    log_volume = n * math.log(a * b) + math.log(make_bounds(scene).typical) + math.log(mean[0])
     return (
         Derivatives(log_volume, *map(float, factors * ratios)),
         Derivatives(math.sqrt(max(covariance[0, 0], 0.0)) / mean[0], *map(float, factors * errors)),
@@ -260,10 +261,10 @@ def sample(scene, samples, seed):
 # The pipeline -------------------------------------------------------------------------------------
 
 
-def inserted(scene, quantities, shell, seed):
+def insertion_sampler(scene, quantities, shell, seed):
     """Return the ``Sampler`` of volume and areas of a ``Scene`` of more than two discs.
 
-    Arguments are as in ``montecarlo.in_prism``; no shell is needed. A point is an
+    Arguments are as in ``montecarlo.prism_sampler``; no shell is needed. A point is an
     ``InsertionPoint``. The area of all walls comes with those of the right and the top wall.
     """
     if scene.discs > MOST_WITH_VOLUME:
@@ -295,7 +296,7 @@ def _volume_and_areas(scene):
     Areas are those of ``theory.n_discs.surfaces``: of any pair, or of one disc at one wall.
     """
     a, b, n = scene.range_x, scene.range_y, scene.discs
-    volume, pairs = (a * b) ** n * box_of(scene).typical, n * (n - 1) / 2
+    volume, pairs = (a * b) ** n * make_bounds(scene).typical, n * (n - 1) / 2
     level = math.sqrt(2) * pairs
     touching = level * 2 * math.pi * scene.contact_distance / (a * b)
     factors = (1.0, 1 / a, 1 / b, touching, level / a, level / b)

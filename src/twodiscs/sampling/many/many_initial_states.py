@@ -28,10 +28,10 @@ from twodiscs.model.many_geometry import LARGE, arrangement, is_ordered
 from twodiscs.sampling.conditioned import draw_in_disc
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import chains, insertions
-from twodiscs.sampling.many.cell_grid import CellGrid, grid_of
-from twodiscs.sampling.many.insertions import around, is_free
-from twodiscs.sampling.rounds import call_in_thread, draw_in_calls
+from twodiscs.sampling.many.cell_grid import CellGrid, make_grid
+from twodiscs.sampling.many.insertions import is_free, ring_separation
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
+from twodiscs.sampling.threads import call_in_thread, draw_in_calls
 from twodiscs.theory import channel
 
 #: The least free fraction of (AB)^N for rejection, which then takes less time than a chain.
@@ -105,7 +105,7 @@ def method(scene):
     return "rejection" if insertions.free_fraction(scene) >= LEAST_FREE else "chain"
 
 
-def initial_of(scene, by=None):
+def make_initial(scene, by=None):
     """Return the ``Initial`` of a ``Scene``, by its ``method`` unless another one is named."""
     by = by or method(scene)
     return Initial(
@@ -113,11 +113,11 @@ def initial_of(scene, by=None):
         scene.width if scene.periodic else None,
         _cells(scene) if by == "channel" else None,
         _chain(scene) if by == "chain" or scene.discs > MOST_REJECTED else None,
-        (4 if scene.moment_of_inertia is None else 5) * scene.discs, spin_of(scene),
+        (4 if scene.moment_of_inertia is None else 5) * scene.discs, spin_factor(scene),
     )  # fmt: skip
 
 
-def spin_of(scene):
+def spin_factor(scene):
     """Return √(m r²/I) of the rough discs of a ``Scene``, None if they are smooth."""
     return None if scene.moment_of_inertia is None else 1 / math.sqrt(scene.moment_of_inertia)
 
@@ -135,7 +135,7 @@ def _chain(scene):
 
 def large_grid(scene):
     """Return the ``CellGrid`` of a ``Scene`` of at least ``LARGE`` discs; None for fewer."""
-    return grid_of(scene) if scene.discs >= LARGE else None
+    return make_grid(scene) if scene.discs >= LARGE else None
 
 
 def _rounded(value):
@@ -147,7 +147,7 @@ def _rounded(value):
 def _cells(scene):
     turned = not is_ordered(scene)
     scene = scene.turned() if turned else scene
-    known = channel.channel_of(scene)
+    known = channel.make_channel(scene)
     n, b, room = scene.discs, scene.range_y, known.room
     tilt = _rounded(channel.saddle(known)[0])
     # d − d₀ grows by B/d₀ for a length off a corner at most. Over all discs the weights of cells
@@ -308,7 +308,7 @@ def _one_by_one(state, initial, centres, chain, grid):
             scale = 1.0 / np.float64(1 << (next_bits(state) % np.uint64(chain.scales)))
             x = centres[0, i] + scale * width * signed_uniform(state)
             y = centres[1, i] + scale * height * signed_uniform(state)
-            x = around(x, initial.ring)
+            x = ring_separation(x, initial.ring)
             if is_free(centres, initial.discs, x, y, initial, i):
                 centres[0, i], centres[1, i] = x, y
 
@@ -320,7 +320,7 @@ def move_discs(state, initial, centres, chain, grid):
 
 
 @optional(_rejected)
-def by_chain(state, initial, centres, chain):
+def run_chain(state, initial, centres, chain):
     """Fill ``centres`` (2, N) by a chain of moves, or by rejection if there is no chain."""
     for i in range(initial.discs):
         centres[0, i], centres[1, i] = chain.centres[0, i], chain.centres[1, i]
@@ -379,7 +379,7 @@ def propose_heights(state, cells, sigma, heights, tilted=False):
     return uniform(state) < ratio
 
 
-@optional(lambda state, initial, centres, cells: by_chain(state, initial, centres, initial.chain))
+@optional(lambda state, initial, centres, cells: run_chain(state, initial, centres, initial.chain))
 def draw_centres(state, initial, centres, cells):
     """Fill ``centres`` (2, N) by the method of the channel if there is one, else by the others."""
     along, across = (1, 0) if cells.turned else (0, 1)
@@ -442,7 +442,7 @@ def labelled(scene, number, seed, block=0, progress=None):
     that the first states do not depend on their number. ``progress``, if given, is called
     repeatedly with the number of drawn states (None: as before), and ``number``.
     """
-    initial = initial_of(scene)
+    initial = make_initial(scene)
     filled = np.zeros((initial.rows, number))
     seeds = np.uint64(seed), ~np.uint64(seed)
     stream, labels = (call_in_thread(open_stream, each, block) for each in seeds)
@@ -474,10 +474,10 @@ def states(scene, number, seed, block=0, by=None):
 
     They are the first states of the stream of ``seed`` for ``block``.
     """
-    return states_of(initial_of(scene, by), number, seed, block)
+    return block_states(make_initial(scene, by), number, seed, block)
 
 
-def states_of(initial, number, seed, block):
+def block_states(initial, number, seed, block):
     """Return ``number`` states that an ``Initial`` draws from the stream of a ``block``."""
     states = np.zeros((initial.rows, number))
     draw_states(open_stream(np.uint64(seed), block), initial, states)

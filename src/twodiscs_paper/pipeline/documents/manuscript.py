@@ -4,7 +4,7 @@ import json
 import os
 from pathlib import Path
 
-from twodiscs.analysis.tables import NUMBER, TEXT, Table
+from twodiscs.analysis.columns import NUMBER, TEXT, Table
 from twodiscs.dynamics.runs import RETURNS
 from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.measure.transmission import QUIET

@@ -21,7 +21,7 @@ from twodiscs.analysis.tables import (
     CostTable,
     GridTable,
     MeanTimesTable,
-    quantity_of,
+    row_quantity,
 )
 from twodiscs.figures.scene_figures import ANIMATION, GEOMETRY
 from twodiscs.measure.measurements import measurement
@@ -114,7 +114,7 @@ def accuracies(folder, scene):
                 rows.append(
                     {
                         "radius": radius,
-                        "quantity": quantity_of(known[reached]),
+                        "quantity": row_quantity(known[reached]),
                         "asked": known[reached].get("target"),
                         "reached": reached,
                         "seconds": format_seconds(seconds),

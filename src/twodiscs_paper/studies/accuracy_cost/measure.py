@@ -149,7 +149,7 @@ def by_strip(scene, seed, blocks=8):
 
 def by_samples(scene, seed, quantity, fraction=None):
     """Return the ``Method`` of samples of the prism; an area has a shell of this ``fraction``."""
-    return _sampled("rejection", montecarlo.in_prism, scene, seed, quantity, fraction)
+    return _sampled("rejection", montecarlo.prism_sampler, scene, seed, quantity, fraction)
 
 
 def by_draws(scene, seed):

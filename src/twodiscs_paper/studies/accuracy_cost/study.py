@@ -1,6 +1,6 @@
 """The processor time that an accuracy costs, by each method."""
 
-from twodiscs.analysis.tables import (
+from twodiscs.analysis.columns import (
     COUNT,
     HEIGHT,
     NUMBER,

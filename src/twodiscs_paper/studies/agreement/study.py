@@ -1,6 +1,6 @@
 """Statistics over the comparisons of all scenes."""
 
-from twodiscs.analysis.tables import COUNT, NUMBER, RADIUS, TEXT, Table
+from twodiscs.analysis.columns import COUNT, NUMBER, RADIUS, TEXT, Table
 from twodiscs_paper.study import SEE_QUANTITY, Study
 
 

@@ -1,16 +1,6 @@
 """How intervals between hops are distributed."""
 
-from twodiscs.analysis.tables import (
-    COUNT,
-    HEIGHT,
-    NUMBER,
-    RADIUS,
-    SCENE,
-    TEXT,
-    TIME,
-    WIDTH,
-    Table,
-)
+from twodiscs.analysis.columns import COUNT, HEIGHT, NUMBER, RADIUS, SCENE, TEXT, TIME, WIDTH, Table
 from twodiscs.figures.scene_figures import DYNAMICS, Caption, Figure
 from twodiscs_paper.study import AS_ESTIMATE, SEE_QUANTITY, Study, scaled
 

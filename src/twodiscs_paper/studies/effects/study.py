@@ -1,6 +1,6 @@
 """How each effect changes the mean times, and its cost."""
 
-from twodiscs.analysis.tables import (
+from twodiscs.analysis.columns import (
     COUNT,
     HEIGHT,
     LENGTH,

@@ -1,6 +1,6 @@
 """More than two discs: mean times against exact values if these are known, and the virial sum."""
 
-from twodiscs.analysis.tables import COUNT, HEIGHT, NUMBER, RADIUS, TEXT, WIDTH, Column, Table
+from twodiscs.analysis.columns import COUNT, HEIGHT, NUMBER, RADIUS, TEXT, WIDTH, Column, Table
 from twodiscs.figures.scene_figures import DYNAMICS, Caption, Figure
 from twodiscs_paper.study import AS_EXACT, Study, scaled
 

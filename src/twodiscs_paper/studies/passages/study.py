@@ -1,6 +1,6 @@
 """Which hops are passages, and how fast discs diffuse by them."""
 
-from twodiscs.analysis.tables import (
+from twodiscs.analysis.columns import (
     COUNT,
     HEIGHT,
     NUMBER,

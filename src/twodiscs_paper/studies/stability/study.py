@@ -1,6 +1,6 @@
 """How accurate each method is in numerically hard cases."""
 
-from twodiscs.analysis.tables import COUNT, NUMBER, RADIUS, TEXT, TRUTH, Table, Z
+from twodiscs.analysis.columns import COUNT, NUMBER, RADIUS, TEXT, TRUTH, Table, Z
 from twodiscs.figures.scene_figures import Caption, Figure
 from twodiscs_paper.study import SEE_QUANTITY, Study, main_box, scaled
 

@@ -1,6 +1,6 @@
 """How probable long intervals are."""
 
-from twodiscs.analysis.tables import RADIUS, TEXT, TIME, Column, Table
+from twodiscs.analysis.columns import RADIUS, TEXT, TIME, Column, Table
 from twodiscs.figures.scene_figures import DYNAMICS, Caption, Figure
 from twodiscs_paper.study import AS_ESTIMATE, Study, main_box, scaled
 

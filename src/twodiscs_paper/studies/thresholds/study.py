@@ -1,15 +1,6 @@
 """The laws where a hop becomes blocked."""
 
-from twodiscs.analysis.tables import (
-    COUNT,
-    HEIGHT,
-    NUMBER,
-    SCENE,
-    TEXT,
-    WIDTH,
-    Column,
-    Table,
-)
+from twodiscs.analysis.columns import COUNT, HEIGHT, NUMBER, SCENE, TEXT, WIDTH, Column, Table
 from twodiscs.figures.scene_figures import DYNAMICS, Caption, Figure
 from twodiscs_paper.study import AS_ESTIMATE, Study
 

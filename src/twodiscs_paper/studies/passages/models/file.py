@@ -77,8 +77,8 @@ def limit(height, radius, force):
     √(2 kT/π) times ``per_height`` for walls. The channel has 2r < h ≤ (2 + √3) r.
     """
     sigma, b = 2 * radius, float(Fraction(height) - 2 * Fraction(radius))
-    y, weights = channel.nodes_of(*channel.panels_of(b, sigma, force, 2 * force))
-    apart, distance, separation, least = channel.pairs_of(b, sigma, y)
+    y, weights = channel.graded_nodes(*channel.panel_sizes(b, sigma, force, 2 * force))
+    apart, distance, separation, least = channel.node_pairs(b, sigma, y)
     root = np.sqrt(weights)
     kinds = np.exp(-force * apart)
     values, vectors = np.linalg.eigh(root[:, None] * (kinds[0] + kinds[1]) * root)

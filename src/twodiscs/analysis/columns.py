@@ -1,0 +1,153 @@
+"""Tables: CSV files whose columns and rows are declared once, as a class.
+
+    class TailsTable(Table):
+        '''One row per time t: how probable an interval T longer than t is.'''
+
+        columns = {"radius": RADIUS, "time": TIME("t")}
+
+declares tails.csv. A class has ``columns`` and a function ``rows`` that makes its rows. Floats are
+written with all their digits, integers as integers, truth values as ``true`` and ``false``; an
+empty cell is a value that does not exist.
+"""
+
+import re
+from dataclasses import dataclass
+from functools import partial
+from numbers import Integral, Real
+from typing import ClassVar
+
+from twodiscs.model.checks import InputError
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column: the type of its values, their unit ("" for none), and their meaning."""
+
+    type: type
+    unit: str
+    meaning: str
+
+
+TEXT, COUNT, TRUTH, NUMBER = (partial(Column, kind, "") for kind in (str, int, bool, float))
+LENGTH, TIME, RATE, SECONDS = (
+    partial(Column, float, unit) for unit in ("length", "time", "1/time", "s")
+)
+
+# Columns that several tables have.
+SEE_QUANTITY = partial(Column, float, "see quantity")
+SCENE = TEXT("the scene")
+WIDTH = LENGTH("side of the box along x")
+HEIGHT = LENGTH("side of the box along y")
+RADIUS = LENGTH("radius of the discs")
+Z = NUMBER("standard normal deviate of the comparison, positive when the estimate is high")
+TEST = TEXT(
+    "how z was found: normal (1000 or more events expected), exact-tail (binomial tail, doubled), "
+    "cluster-bound (Chernoff's bound with an allowance for clusters of events), certain (the "
+    "probability is 0 or 1), chi-square (sum of squared scores)"
+)
+ERGODIC_COMPONENTS = COUNT("disjoint parts of configuration space")
+
+#: The types of pandas that have an empty cell.
+PANDAS = {float: "float64", bool: "boolean", str: "string"}
+
+#: The values that a cell of each type takes.
+TAKEN = {float: Real, int: Integral, bool: bool, str: str}
+
+
+class Table:
+    """A table; a row is a mapping from the names of its columns to values, None for an empty cell.
+
+    ``columns`` is {name: ``Column``} in the order of the file.
+    """
+
+    columns: ClassVar[dict[str, Column]]
+
+    @classmethod
+    def name(cls):
+        """Return the name of the table, that of its file without the ending."""
+        return re.sub(r"(?<!^)(?=[A-Z])", "_", cls.__name__.removesuffix("Table")).lower()
+
+    @classmethod
+    def meaning(cls):
+        """Return the meaning of a row of the table."""
+        return " ".join(cls.__doc__.split())
+
+    @classmethod
+    def present_columns(cls, names):
+        """Return the columns of a file or a row with these ``names``."""
+        return cls.columns
+
+    @classmethod
+    def write(cls, path, rows):
+        """Write ``rows`` as the CSV file ``path``; a cell that a row does not name is empty.
+
+        Raises ``ValueError`` for an unknown column, a value of another type, and NaN, before
+        anything is written.
+        """
+        import pandas as pd  # which takes long to import, and the Snakefile reads this module
+
+        rows = list(rows)
+        columns = cls.present_columns(rows[0] if rows else ())
+        for row in rows:
+            if odd := sorted(row.keys() - columns.keys()):
+                names = ", ".join(odd)
+                raise ValueError(f"rows must have the columns of {cls.name()}.csv, but see {names}")
+        cells = {n: [_cell(n, column, row.get(n)) for row in rows] for n, column in columns.items()}
+        pd.DataFrame(cells, dtype=object).to_csv(path, index=False, lineterminator="\n")
+
+    @classmethod
+    def frame(cls, path):
+        """Return the CSV file at ``path`` as a ``DataFrame``.
+
+        The file may have columns that the table does not know, which are left out. Raises
+        ``InputError`` if it lacks a column, or a cell is not of its type.
+        """
+        import pandas as pd
+
+        try:
+            # The engine in Python does not fill up a line that is too short with empty cells.
+            as_text = {"dtype": str, "keep_default_na": False, "engine": "python"}
+            texts = pd.read_csv(path, index_col=False, **as_text)
+            columns = cls.present_columns(texts)
+            return pd.DataFrame({n: _values(texts[n], column) for n, column in columns.items()})
+        except KeyError as missing:
+            why = f"has no column {missing}"
+        except ValueError as error:
+            why = " ".join(str(error).split())
+        raise InputError(f"{path} must be a table {cls.name()}, but {why}")
+
+    @classmethod
+    def read(cls, path):
+        """Return the rows of the CSV file at ``path``, as ``frame`` does, as a list of dicts."""
+        frame = cls.frame(path)
+        return frame.astype(object).where(frame.notna(), None).to_dict("records")
+
+
+def _cell(name, column, value):
+    """Return a value of a row as its column has it, or raise ``ValueError``."""
+    if value is None:
+        return None
+    wrong = isinstance(value, bool) and column.type is not bool
+    if wrong or not isinstance(value, TAKEN[column.type]) or value != value or value == "":
+        raise ValueError(f"{name} must be a {column.type.__name__} or None, not {value!r}")
+    return str(value).lower() if column.type is bool else column.type(value)
+
+
+def _values(texts, column):
+    """Return the cells of a column as its type; raise ``ValueError`` if a cell is of another."""
+    import pandas as pd
+
+    empty = texts == ""
+    if column.type is int:
+        numbers = [int(text) if text else None for text in texts]
+        # N! parts of configuration space may be more than 64 bits hold.
+        wide = any(number is not None and number.bit_length() > 63 for number in numbers)
+        return pd.Series(numbers, dtype=object if wide else "Int64")
+    values = texts.mask(empty)
+    if column.type is bool:
+        values = values.map({"true": True, "false": False})
+    values = values.astype(PANDAS[column.type])
+    if (values.isna() != empty).any():
+        wrong = texts[values.isna() != empty].iloc[0]
+        raise ValueError(f"{texts.name} has {wrong!r}, which is no {column.type.__name__}")
+    return values
