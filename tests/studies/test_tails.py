@@ -165,6 +165,15 @@ def test_the_table_is_written(tmp_path, monkeypatch):
     assert {row["law"] is None for row in rows if row["radius"] == 0.3} == {True, False}
 
 
+def test_counts_without_a_longer_interval_have_the_error_of_one():
+    """Of ten replicas, with about 80 intervals, none lasts ten mean times."""
+    rows = tails.rows(BOX, 1, 10, 1)
+    empty = [row for row in rows if row["method"] == "counted" and not row["estimate"]]
+    assert len(empty) > 5
+    assert {row["stderr"] for row in empty} == {1 / 80}
+    assert "rate" not in {row["quantity"] for row in rows}
+
+
 START = {"event": "vertical_hop", "radius": 0.1, "exact_mean": 2.0, "quantity": "survival"}
 
 

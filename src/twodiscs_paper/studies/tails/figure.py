@@ -21,7 +21,7 @@ def draw(box, tables):
         own = [row for row in rows if (row["event"], row["radius"]) == case]
         if any(row["quantity"] == "rate" for row in own):
             _decay(exponential, own, *look)
-        else:
+        elif any(row["method"] == "weighted" for row in own):
             _tail(tails, ratio, own, *look)
     times = np.geomspace(0.9, 20)
     tails.plot(times, np.exp(-times), color=BLACK, ls=(0, (4, 2)), label=r"$e^{-t/\tau}$")

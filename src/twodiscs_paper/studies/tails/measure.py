@@ -216,6 +216,15 @@ def survivals(scene, event, times, replicas, seed):
     return counts[:, 1:] / 8
 
 
+def counted_survival(scene, event, times, replicas, seed):
+    """Return an ``Estimate`` of P(T > t) for each of ``times``: the mean of ``survivals``.
+
+    If no interval was longer, the error is that of one interval.
+    """
+    found = mean_of(survivals(scene, event, times, replicas, seed))
+    return [one if one.value else replace(one, stderr=1 / (8 * replicas)) for one in found]
+
+
 def decay(counted, first, last):
     """Return an ``Estimate`` of the rate at which P(T > t) falls from ``first`` to ``last``.
 
@@ -278,7 +287,7 @@ def rows(box, samples, replicas, seed):
         start, constant = start_of(scene, event), tail_constant(scene, event)
         mean = start["exact_mean"]
         times = [time * mean for time in COUNTED]
-        estimates = mean_of(survivals(scene, event, times, replicas, seed + 2 * i))
+        estimates = counted_survival(scene, event, times, replicas, seed + 2 * i)
         found += survival_rows("counted", start, times, estimates, constant)
         if constant:
             times = [time * mean for time in WEIGHTED]
@@ -286,7 +295,10 @@ def rows(box, samples, replicas, seed):
             found += survival_rows("weighted", start, times, estimates, constant)
         else:
             ends = [time * mean for time in WINDOW]
-            rate = decay(survivals(scene, event, ends, replicas, seed + 2 * i), *ends)
+            counted = survivals(scene, event, ends, replicas, seed + 2 * i)
+            if not counted[:, 1].any():
+                continue
+            rate = decay(counted, *ends)
             cells = {"quantity": "rate", "method": "counted", "time": ends[0], "until": ends[1]}
             found.append(row(start, rate, law=1 / mean, **cells))
     return [*found, *last_ratios(found), *constancy(found)]
@@ -310,7 +322,7 @@ def long_run(weighted, counted):
     start = start_of(scene, event)
     times = [time * start["exact_mean"] for time in counted["times"]]
     seeds = range(counted["seed"], counted["seed"] + counted["runs"])
-    of_runs = [mean_of(survivals(scene, event, times, counted["replicas"], seed)) for seed in seeds]
+    of_runs = [counted_survival(scene, event, times, counted["replicas"], s) for s in seeds]
     alone = survival_rows("counted", start, times, map(joined, zip(*of_runs, strict=True)), None)
     return [*falling, *map(approach, falling), *alone, *starmap(rate_between, pairwise(alone))]
 
@@ -391,7 +403,7 @@ def constancy(rows):
             if (one["event"], one["radius"]) == (rate["event"], rate["radius"])
             and (one["quantity"], one["method"]) == ("survival", "counted")
             and rate["time"] * (1 - 1e-9) <= one["time"] <= rate["until"] * (1 + 1e-9)
-            and one["stderr"] is not None
+            and one["estimate"]
         ]
         if len(within) < 3:
             continue
