@@ -4,6 +4,7 @@ Without it hops that return could count as passages, or an error be made up.
 """
 
 import math
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -94,9 +95,26 @@ def test_the_face_has_the_coefficient_and_the_curve():
     assert frame.index[-1] == pytest.approx(10 * scene.range_x, rel=1e-12)
     assert "fraction of horizontal hops that are passages 0." in str(found)
     assert sum(found.clusters.values()) == 2**14
+    left, _ = transmission.odd_clusters_per_passage(found.gap / passage.value)
+    assert found.uncorrected == pytest.approx(kappa.value * left)
+    assert f"{found.uncorrected:.6g}" in str(found)
     again = td.transmission(scene, "horizontal_hop", hops=2**14, seed=1)
     assert again.coefficient == kappa
     assert td.transmission(scene, "horizontal_hop", hops=2**14, seed=2).coefficient != kappa
+
+
+def test_a_pause_is_long_against_diffusion():
+    """Discs diffuse with ⟨u²⟩/γ, and ⟨u²⟩ is 1/4, of rough discs 1/6.
+
+    The mode cos(πx₁/A) cos(πx₂/A) of their separation lasts γA²/(2π²⟨u²⟩).
+    """
+    smooth = td.Scene(1.5, 1.0, 0.249, friction=640.0)
+    rough = replace(smooth, moment_of_inertia=0.5)
+    for scene, mode in ((smooth, 2 / math.pi**2), (rough, 3 / math.pi**2)):
+        gap = transmission.quiet_time(scene, "horizontal_hop")
+        assert 1 < gap / (mode * scene.friction * scene.range_x**2) < 1.3
+    slow = replace(smooth, friction=40.0)
+    assert transmission.quiet_time(slow, "horizontal_hop") == 48 * slow.range_x
 
 
 def test_calls_add_up_to_separate_blocks(monkeypatch):

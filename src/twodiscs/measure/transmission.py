@@ -51,9 +51,15 @@ def box_time(scene, hop):
     return length * math.sqrt(2 / scene.discs)
 
 
-def quiet_time(scene, hop):
-    """Return the time without a ``hop`` that ends a cluster of them."""
-    return QUIET * box_time(scene, hop)
+def quiet_time(scene, hop, times=QUIET):
+    """Return the time without a ``hop`` that ends a cluster of them.
+
+    It is a number of ``times`` the ``box_time`` t. With friction γ a separation diffuses, and is
+    forgotten after about γt²/5 in the plane; the time is then at least γt²/4. With spins, which
+    share the energy, both are longer.
+    """
+    time, own = box_time(scene, hop), scene.velocity_components / (2 * scene.discs)
+    return max(times * time, own * scene.friction * time**2 / 4)
 
 
 def cluster_coefficient(sizes):
@@ -162,7 +168,7 @@ class Transmission(Result):
         error is None unless at least 100 hops are passages and at least 100 are in clusters of two
         or more.
     gap : float
-        The time without a hop that ends a cluster.
+        The pause: the time without a hop that ends a cluster.
     clusters : dict
         {n: number of hops in clusters of n}, empty if hops are too frequent for clusters.
     exact_mean : float or None
@@ -216,6 +222,12 @@ class Transmission(Result):
         error = None if kappa.stderr is None else mean * kappa.stderr / kappa.value**2
         return Estimate(mean / kappa.value, error, kappa.n)
 
+    @property
+    def uncorrected(self) -> float | None:
+        """Odd clusters over hops, None without clusters; κ corrects it for merged passages."""
+        odd = sum(hops / n for n, hops in self.clusters.items() if n % 2)
+        return odd / sum(self.clusters.values()) if self.clusters else None
+
     def frame(self) -> pd.DataFrame:
         """Return κ(t) as a table.
 
@@ -245,7 +257,10 @@ class Transmission(Result):
             why = f"too frequent, with a mean time of {self.neighbour_mean:.4g}; .frame() has κ(t)"
             lines = [(f"{name}s", why)]
         else:
-            lines = [(f"fraction of {name}s that are passages", _text_of(self.coefficient))]
+            lines = [
+                (f"fraction of {name}s that are passages", _text_of(self.coefficient)),
+                (f"if passages within {self.gap:.4g} are merged", f"{self.uncorrected:.6g}"),
+            ]
         if self.passage_time is not None:
             lines += [
                 ("mean time between hops, exact", f"{self.exact_mean:.6g}"),
@@ -295,9 +310,12 @@ def transmission(
     """Measure the fraction of hops of one kind that are passages, that is, not soon undone.
 
     Let t be the time that a disc of speed 1 takes along the box. There is a coefficient κ if hops
-    are rare, at most one in 200 to 500 t. Hops count as independent after a pause of 48 t. This
-    makes κ too large by about 1e-3 for hops of this frequency, and by less for rarer hops; the
-    error does not include it.
+    are rare, at most one in 200 to 500 t. Hops count as independent after a pause of 48 t, with
+    friction γ of γt²/4 or more: the time in which discs that diffuse forget their order (half as
+    long again for rough discs). κ is corrected for passages that are merged, because they follow
+    each other within a pause. It misses that a hop is undone after a longer pause. This makes κ
+    too large by about 1e-3 for hops of this frequency, and by less for rarer hops; the error does
+    not include it.
 
     With N > 2 discs a hop is undone by the next hop of the same pair. t is then the time that a
     disc of the mean speed takes across the room of two discs, t √(2/N) of the box, and hops are

@@ -69,9 +69,9 @@ KICKED = {
     640.0: (8, 12),
 }  # fmt: skip
 
-#: With kicks, the time without a hop that ends a cluster, in ``box_time``: a pause four times as
-#: long gives the same κ. Then the work of an estimate over that of others, the price of a kick in
-#: events, the fewest hops, and the blocks of initial states for the rate of hops.
+#: With kicks, the least time without a hop that ends a cluster, in ``box_time``. Then the work of
+#: an estimate over that of others, the price of a kick in events, the fewest hops, and the blocks
+#: of initial states for the rate of hops.
 PAUSE, WORK, KICK, FEWEST_KICKED, STRIPS = 12, 4, 4, 2**9, 16
 
 #: Necks are long from this x on: a pair forgets its velocity several times within it.
@@ -226,12 +226,14 @@ class NearThreshold:
 
     def of_sizes(self, sizes, events, gap):
         """Return (κ or None, the rows of it) from what ``cluster_sizes`` returns for a ``gap``."""
-        kappa = plateau(cluster_coefficient(sizes), gap, self.mean, odd_clusters_per_passage)
+        found = cluster_coefficient(sizes)
+        kappa = plateau(found, gap, self.mean, odd_clusters_per_passage)
         if kappa is None:
             return None, []
         time = Estimate(self.mean / kappa.value, self.mean * kappa.stderr / kappa.value**2, kappa.n)
+        coefficient = self.row("coefficient", "clusters", kappa, gap, events=events)
         return kappa, [
-            self.row("coefficient", "clusters", kappa, gap, events=events),
+            coefficient | {"uncorrected": found.value},
             self.row("passage_time", "clusters", time, gap),
         ]
 
@@ -361,8 +363,8 @@ def one_friction(name, box, friction, halvings, events, seed):
 
 
 def pause_of(scene, hop):
-    """Return the time without a hop that ends a cluster: with friction it is shorter."""
-    return PAUSE * box_time(scene, hop) if scene.friction else quiet_time(scene, hop)
+    """Return the time without a hop that ends a cluster: with little friction it is shorter."""
+    return quiet_time(scene, hop, PAUSE) if scene.friction else quiet_time(scene, hop)
 
 
 def scaled_friction(scene, hop):
@@ -636,7 +638,7 @@ def file_rows(one, run, counts):
         )
         if kappa:
             cells = {"method": "clusters", "time": pause * unit, "replicas": kappa.n}
-            yield row(start, kappa, quantity="coefficient", **cells)
+            yield row(start, kappa, quantity="coefficient", uncorrected=found.value, **cells)
 
 
 def long_files(files, **run):

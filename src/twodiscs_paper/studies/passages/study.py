@@ -73,6 +73,10 @@ class PassagesTable(Table):
         "time": TIME("t; for clusters, the time without a hop that ends a cluster"),
         "estimate": Column(float, "time, 1/time or none", "estimate"),
         "stderr": AS_ESTIMATE("its standard error"),
+        "uncorrected": NUMBER(
+            "of a coefficient by clusters: odd clusters over hops; κ is larger, because passages "
+            "within one pause are merged"
+        ),
         "reference": AS_ESTIMATE(
             "expected value: exact, or by the other method; for more than two discs by Monte "
             "Carlo; of κ x the limit for large x, 3/4 less the factor A − |u| of the density of u"
