@@ -341,10 +341,11 @@ def test_tables_come_back_with_units_and_provenance(simulated, sampled, tmp_path
 NOTES = """
 td.sample(SCENE, 10) → 10 samples asked for, 1048576 done: whole blocks
 td.sample(SCENE, 2**20) →
+td.sample(td.Scene(1.5, 1, 0.38), 1e7) → 10000000 samples asked for, 196608 done: conditioned ones
 td.intervals(SCENE, "vertical_hop", 10) → 10 intervals asked for, 65536 done
 td.observe(SCENE, lambda a, b: b["x1"], [1], 10) → 10 replicas asked for, 4096
-td.simulate(SCENE, 0.5) → error 0.5 asked for, 0.0028 reached: the minimum is 7.7e+06
-td.simulate(SCENE, 0.5, budget=1) → budget 1 asked for: the minimum, one block, is 2.4e+05
+td.simulate(SCENE, 0.5) → error 0.5 asked for, 0.0028 reached: the first round is 7.8e6 wall hits
+td.simulate(SCENE, 0.5, budget=1) → budget 1 asked for: the minimum, one block, is 250000
 td.simulate(SCENE, duration=100) → duration 100 asked for, 65536 simulated: 1024
 td.transmission(td.Scene(1.5, 1, 0.249), "horizontal_hop", 10) → 10 hops asked for, 64 done
 """
@@ -358,10 +359,26 @@ def test_a_result_says_what_was_done_instead(line):
     assert bool(found.note) == bool(said) == str(found).endswith(found.note or "no note")
 
 
-def test_a_budget_that_ends_a_run_is_a_warning():
-    with pytest.warns(td.AccuracyWarning, match="0.001 asked for; the budget of 1e7 events ended"):
-        found = td.simulate(SCENE, 1e-3, budget=1e7)
+@pytest.mark.parametrize(
+    ("scene", "error", "budget"),
+    [
+        (SCENE, 1e-3, 1e7), (SCENE.with_radius(0.1), 2e-3, 1e6), (td.Scene(2, 1, 0.22), 1e-3, 1e7),
+        (td.Scene(2, 1, 0.22), 2e-3, 2e6), (td.Scene(1.5, 1, 0.2, field=0.5), 2e-3, 2e7),
+    ],
+    ids=str,
+)  # fmt: skip
+def test_a_budget_that_ends_a_run_is_a_warning_and_the_budget_that_it_names_is_enough(
+    scene, error, budget, recwarn
+):
+    sentence = f"{error:g} asked for; the budget of .* events ended it at .* a budget of (.*) is en"
+    with pytest.warns(td.AccuracyWarning, match=sentence):
+        found = td.simulate(scene, error, budget=budget)
     assert str(found).endswith(found.note)
+    enough = float(re.match(sentence, found.note)[1])
+    assert enough < 20 * budget
+    recwarn.clear()
+    assert td.simulate(scene, error, budget=enough).note is None
+    assert not recwarn.list
 
 
 def test_a_time_is_simulated_whatever_the_errors_are():

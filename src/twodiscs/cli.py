@@ -227,7 +227,7 @@ def _parser():
     _add_shared(add, "--seed", "--name", "--cores")
     text = "volume and areas by Monte Carlo, beside the exact ones"
     add = of_scene("sample", _sample, text)
-    add("--samples", type=value, default=10**7, help="at least this number (1e7)")
+    add("--samples", type=value, default=10**7, help="to draw, rounded up to whole blocks (1e7)")
     known = ChoicesCompleter(("volume", *(f"{event}_area" for event in EVENTS)))
     text = "volume, <event>_area"
     add("--quantities", nargs="+", metavar="QUANTITY", help=text, completer=known)

@@ -164,7 +164,7 @@ def row(event, error, status="budget", target=1e-5):
         (
             [row("any_wall", 2e-5), row("top_wall", 9e-5), row("right_wall", 1e-6, "reached")],
             "1e-5 asked for; the budget of 2e9 events ended it at 9e-5 (top_wall_time); "
-            "without a budget 2e11 events, 27 min",
+            "a budget of 2e11 is enough, 27 min",
         ),
         (
             [row("any_wall", 9e-5), row("top_wall", None, "too-few", 0.01)],
@@ -182,7 +182,7 @@ def test_a_sentence_says_what_was_not_reached(rows, said):
     """And if a component had too small a share of the budget, or no budget was given."""
     assert shortfall(rows, 2 * 10**9, 2e9, 20.0) == said
     found = shortfall([row("any_wall", 2e-5)], 10**9, 1e8)
-    assert found.endswith("ended it at 2e-5 (any_wall_time); a budget of 4e9 is enough")
+    assert found.endswith("ended it at 2e-5 (any_wall_time); a budget of 4.8e9 is enough")
     found = shortfall([row("any_wall", 2e-5)], None)
     assert found == "1e-5 asked for; the limit of a day ended it at 2e-5 (any_wall_time)"
 

@@ -130,7 +130,7 @@ def test_a_dry_run_says_which_accuracies_are_not_reached(blocks, monkeypatch):
     lines = job_cost.shortfalls([short, *others])
     assert [line.partition(":")[0] for line in lines] == ["a, radius 0.2", "a, radius 0.3"]
     assert all("1e-5 asked for; the budget of 2e9 events ends it at" in line for line in lines)
-    assert "(horizontal_hop_time); without a budget" in lines[0]
+    assert "(horizontal_hop_time); a budget of" in lines[0]
     monkeypatch.setattr(job_cost, "SENTENCES", 1)
     lines = job_cost.shortfalls([short, *others])
     assert lines[1:] == ["1 more radii may stop early: see the target forecast"]
@@ -180,4 +180,4 @@ def test_a_build_says_which_accuracies_it_did_not_reach(tmp_path):
     ]
     CostTable.write(folder / "cost.csv", jobs)
     (line,) = job_cost.missed(tmp_path, DESCRIBED)
-    assert line.endswith("at 3e-5 (top_wall_time); without a budget 2e10 events, 3 min")
+    assert line.endswith("at 3e-5 (top_wall_time); a budget of 2.2e10 is enough, 3 min")

@@ -22,7 +22,7 @@ from twodiscs.analysis.columns import (
     Z,
 )
 from twodiscs.model.events import EVENTS
-from twodiscs.model.formats import format_number, format_seconds
+from twodiscs.model.formats import format_number, format_seconds, round_up
 from twodiscs.points.estimates import MIN_EVENTS, has_error_bar
 from twodiscs.theory import exact as theory
 
@@ -393,13 +393,12 @@ def shortfall(rows, budget, events=None, seconds=None, ends="ended"):
         return f"{text}before there are enough events {event} for an error"
     reached = format_number(worst["relative_stderr"], ".2g")
     text = f"{text}at {reached} ({event}_time)"
-    if events and budget and events * more < budget:  # a part of the run has not used its share
-        return f"{text}; a budget of {format_number(1.1 * budget * more, '.1g')} is enough"
-    if events:
-        text += f"; without a budget {format_number(events * more, '.1g')} events"
-    if events and seconds:
-        text += f", {format_seconds(seconds * more)}"
-    return text
+    if not events:
+        return text
+    # Other components may not use their shares of a budget. An error has an error: a fifth more.
+    enough = 1.2 * max(events, budget or 0) * more
+    text += f"; a budget of {round_up(enough)} is enough"
+    return f"{text}, {format_seconds(seconds * more)}" if seconds else text
 
 
 class HopHistogramTable(Table):

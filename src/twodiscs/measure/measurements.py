@@ -34,7 +34,7 @@ from twodiscs.model.checks import (
     check_integer,
     check_length,
 )
-from twodiscs.model.formats import did_you_mean, quote
+from twodiscs.model.formats import did_you_mean, quote, round_up
 from twodiscs.model.scene import Scene, check_scene, why_absent
 from twodiscs.points.estimates import Estimate
 from twodiscs.points.monte_carlo_point import WALL_AREAS, wall_weights
@@ -516,7 +516,7 @@ def run_simulation(
 
 def _note_of_error(rows, target, budget, events):
     """Return the note of a run whose minimum work is far more than was asked for, else None."""
-    minimum = f"{events:.2g} wall hits and collisions"
+    minimum = f"{round_up(events)} wall hits and collisions"
     if budget and events > 2 * budget:
         return f"budget {budget:g} asked for: the minimum, one block, is {minimum}"
     possible = [row for row in rows if row["status"] != "impossible"]
@@ -526,7 +526,8 @@ def _note_of_error(rows, target, budget, events):
     ):
         reached = max(row["relative_stderr"] for row in possible)
         asked = min(target[row["event"]] for row in possible)
-        return f"error {asked:g} asked for, {reached:.2g} reached: the minimum is {minimum}"
+        done = f"error {asked:g} asked for, {reached:.2g} reached"
+        return f"{done}: the first round is {minimum}; a smaller budget shortens it"
     return None
 
 
@@ -552,7 +553,8 @@ def sample(
         The box, the discs and their effects.
     samples : float, default 1e7
         Configurations to draw, an integer from 1 on. It is rounded up to whole blocks, of 2²⁰ for
-        two plain discs; ``note`` of the result has the number that was drawn.
+        two plain discs. If these hardly fit, conditioned samples take their place, each for 64.
+        ``note`` of the result has the number that was drawn.
     quantities : str or iterable of str, optional
         Some of "volume" and "<event>_area"; all if left out.
     shell : float, default 0.02
@@ -592,7 +594,7 @@ def run_sampling(
     settings |= {"quantities": quantities, "name": name}
     settings["shell"] = check_fraction("shell", shell, THINNEST)
     from twodiscs.sampling.initial_states import require_free_fraction
-    from twodiscs.sampling.montecarlo import MonteCarloRun
+    from twodiscs.sampling.montecarlo import COST_RATIO, MonteCarloRun
 
     require_free_fraction(scene)
     run = MonteCarloRun.of(scene, settings)
@@ -601,7 +603,8 @@ def run_sampling(
     rows = VolumeTable.rows([point]) + AreasTable.rows([point])
     # Insertions always have the volume.
     rows = [row for row in rows if row["quantity"] in quantities]
-    note = note_of_number("samples", samples, point.samples)
+    fewer = f"conditioned ones, each as much work as {COST_RATIO} of the prism"
+    note = note_of_number("samples", samples, point.samples, fewer)
     return Measurements("sample", scene, rows, settings, point, note)
 
 

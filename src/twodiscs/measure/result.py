@@ -170,9 +170,10 @@ class Result(Printed):
         write_json(path, self.to_dict())
 
 
-def note_of_number(what, asked, done):
-    """Return the note that a number was rounded up to whole blocks, None if it was not."""
-    return None if done == asked else f"{asked} {what} asked for, {done} done: whole blocks"
+def note_of_number(what, asked, done, fewer="within the budget"):
+    """Return the note that a number was rounded up, or why ``fewer`` were done; None if neither."""
+    why = "whole blocks" if done > asked else fewer
+    return None if done == asked else f"{asked} {what} asked for, {done} done: {why}"
 
 
 #: Settings that can grow when a result goes on; the first one of a kind is its amount.

@@ -39,6 +39,12 @@ def format_number(value, form=""):
     return re.sub(r"e\+?(-?)0*(\d)", r"e\1\2", format(value, form))
 
 
+def round_up(events):
+    """Return the text of the next number of ``events`` with two digits, for a user to type."""
+    step = 10.0 ** (math.floor(math.log10(events)) - 1)
+    return format_number(step * math.ceil(events / step), "g")
+
+
 #: (seconds, the unit that they are) from the longest unit down.
 _UNITS = (
     (365.25 * 86400, "years"), (86400.0, "d"), (3600.0, "h"), (60.0, "min"), (1.0, "s"),
