@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from marks import slow
 
+from twodiscs.dynamics import paths
 from twodiscs.dynamics.many import all_pairs as many
 from twodiscs.dynamics.many import cell_list as many_cells
 from twodiscs.dynamics.many import many_intervals, many_paths, many_rates
@@ -111,9 +112,9 @@ def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
     # The rate that is guessed for short rings is far too high.
     duration = many_rates.expected_duration(scene, (10 if scene in SHORT else 5) * scene.discs)
     monkeypatch.setattr(many_paths, "ENTRIES", 50)
-    found = [*many_paths.path_events(scene, state, duration)]
+    found = [*paths.path_events(scene, state, duration)]
     monkeypatch.setattr(many_paths, "large_grid", lambda scene: None)
-    other = [*many_paths.path_events(scene, state, duration)]
+    other = [*paths.path_events(scene, state, duration)]
     assert len(found) > (2 if scene in SHORT else 5) * scene.discs
     assert [row[1:4] for row in found] == [row[1:4] for row in other]
     for (time, *_, now), (same, *_, then) in zip(found, other, strict=True):

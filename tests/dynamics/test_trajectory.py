@@ -19,6 +19,11 @@ from twodiscs.theory.exact import event_rate, mean_times
 PAPER = Scene(1.5, 1.0, 0.2)
 
 
+def follow(*given, **named):
+    """Return the rows of a trajectory as a list."""
+    return [*paths.follow_trajectory(*given, **named).events()]
+
+
 @pytest.mark.parametrize("radius", [0.2, 0.3, 0.3749, 0.38])
 def test_a_trajectory_shows_some_hops_and_is_not_too_long(radius):
     """Eight mean times of the rarest hop that is open, or 6000 events, to a factor of √2."""
@@ -36,7 +41,7 @@ def test_a_trajectory_shows_some_hops_and_is_not_too_long(radius):
 
 def test_centres_go_on_beyond_the_box_along_a_periodic_axis():
     scene = Scene(1.5, 1.0, 0.1, periodic="x")
-    x1 = np.array([row[4][0] for row in paths.follow_trajectory(scene, 3, duration=40.0)])
+    x1 = np.array([row[4][0] for row in follow(scene, 3, duration=40.0)])
     assert len({*np.round(x1 / scene.width)}) > 1
 
 
@@ -55,10 +60,10 @@ def test_a_trajectory_goes_on_from_its_end(scene):
 
     Between images of the discs only roundings differ; they grow by far less than 1e6 in 1.
     """
-    path = paths.follow_trajectory(scene, 5, None, 40.0)
+    path = follow(scene, 5, None, 40.0)
     start = tuple(map(float, path[-1][4]))
-    whole = paths.follow_trajectory(scene, 5, path[0][4], 41.0)
-    rows = paths.follow_trajectory(scene, 5, start, 1.0)
+    whole = follow(scene, 5, path[0][4], 41.0)
+    rows = follow(scene, 5, start, 1.0)
     assert tuple(map(float, rows[0][4])) == start
     np.testing.assert_allclose(rows[-1][4], whole[-1][4], rtol=0, atol=1e-9)
 
@@ -66,11 +71,11 @@ def test_a_trajectory_goes_on_from_its_end(scene):
 @pytest.mark.parametrize("scene", [GIVEN["ring"], GIVEN["torus"], GIVEN["combination"]], ids=repr)
 def test_an_image_of_disc_2_moves_as_disc_2_does(scene):
     """Three periods away along each periodic axis, all rows are three periods away."""
-    start = paths.follow_trajectory(scene, 7, None, 1.0)[0][4]
+    start = follow(scene, 7, None, 1.0)[0][4]
     moved, column = list(start), dict(zip(components(scene), range(12), strict=False))
     for axis in scene.periodic:
         moved[column[f"{axis}2"]] += 3 * scene.side(axis)
-    near, far = (paths.follow_trajectory(scene, 7, one, 2.0) for one in (start, moved))
+    near, far = (follow(scene, 7, one, 2.0) for one in (start, moved))
     assert [row[1:4] for row in near] == [row[1:4] for row in far]
     shift = np.array(moved) - start
     assert np.abs(shift).max() >= 3.0

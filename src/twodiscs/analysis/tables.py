@@ -500,8 +500,8 @@ class TrajectoryTable(Table):
 
         scene, rows = box.scene(radius), []
         parts, columns = components(scene), trajectory_columns(scene.discs)
-        for time, event, first, second, state in follow_trajectory(scene, seed):
-            known = dict(zip(parts, map(float, state), strict=True))
+        for time, event, first, second, state in follow_trajectory(scene, seed).events():
+            known = dict(zip(parts, state, strict=True))
             known |= {"time": time, "event": event, "first": first, "second": second}
             rows.append({name: known.get(name) for name in columns})
         return rows

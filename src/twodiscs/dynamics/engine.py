@@ -37,7 +37,7 @@ class Engine(NamedTuple):
     record_intervals: Callable  # (hop, seed, first, stop, chains, bins, sums, going): times
 
     # Paths: one event by event, or all columns of an array of states at a time.
-    path_events: Callable  # (state, duration, seed): see ``paths.path_events``
+    path_rows: Callable  # (state, duration, seed): an iterator of ``Rows``
     trajectory_rate: Callable  # the rows of a trajectory, in 1/time
     usual_duration: Callable  # the time of a trajectory, a power of two
     new_kicks: Callable  # (number): ``Kicks`` of friction that no state has begun, or None
@@ -66,7 +66,7 @@ TWO_DISCS = Engine(
     intervals_of_chain=lambda scene, hop: RETURNS,
     events_per_interval=exact.events_per_interval,
     record_intervals=returns.record_intervals,
-    path_events=path.path_events,
+    path_rows=path.path_rows,
     trajectory_rate=path.trajectory_rate,
     usual_duration=path.usual_duration,
     new_kicks=follow.new_kicks,
@@ -105,7 +105,7 @@ def _many_discs():
         intervals_of_chain=many_intervals.intervals_of_chain,
         events_per_interval=many_intervals.events_per_interval,
         record_intervals=many_intervals.record_intervals,
-        path_events=many_paths.path_events,
+        path_rows=many_paths.path_rows,
         trajectory_rate=many_paths.trajectory_rate,
         usual_duration=many_paths.usual_duration,
         new_kicks=all_pairs.new_kicks,

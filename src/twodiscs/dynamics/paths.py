@@ -1,10 +1,11 @@
 """One trajectory, event by event, of two discs or more."""
 
-from itertools import islice, repeat
+from itertools import repeat
 
 import numpy as np
 
 from twodiscs.dynamics.engine import find_engine
+from twodiscs.dynamics.rows import Rows
 from twodiscs.model.checks import InputError, check_length
 from twodiscs.model.formats import format_number
 from twodiscs.model.two_geometry import ENERGY
@@ -15,9 +16,6 @@ from twodiscs.sampling.threads import map_in_threads
 #: ``MOST_NUMBERS``.
 MOST_EVENTS = 1e7
 
-#: Rows that are made at a time: some hundredths of a second.
-ROWS = 1000
-
 
 def path_events(scene, state, duration, seed=0):
     """Yield (time, event, first, second, state) of each event within ``duration``.
@@ -27,7 +25,8 @@ def path_events(scene, state, duration, seed=0):
     friction "kick" is an event, because a path turns there; kicks come from the streams of
     ``seed``.
     """
-    return find_engine(scene).path_events(scene, state, duration, seed)
+    for rows in find_engine(scene).path_rows(scene, state, duration, seed):
+        yield from rows.events()
 
 
 def check_start(scene, start):
@@ -74,7 +73,7 @@ def check_start(scene, start):
 
 
 def follow_trajectory(scene, seed, start=None, duration=None, progress=None):
-    """Return one trajectory of a ``Scene``, as a list of what ``path_events`` yields.
+    """Return the ``Rows`` of one trajectory of a ``Scene``.
 
     It starts from the invariant measure, with the random stream of ``seed``, unless a ``start`` is
     given (see ``check_start``). Without a ``duration`` it has the ``usual_duration``. Raises
@@ -83,24 +82,34 @@ def follow_trajectory(scene, seed, start=None, duration=None, progress=None):
     ``MOST_EVENTS``. ``progress``, if given, is called now and then with the time that it has
     reached, and the ``duration``.
     """
-    engine = find_engine(scene)
+    engine, most = find_engine(scene), most_rows(scene)
     rate = engine.trajectory_rate(scene)
-    most = min(MOST_EVENTS, MOST_NUMBERS / len(components(scene)))
     if duration is None:
         duration = engine.usual_duration(scene)
     elif check_length("duration", duration) * rate > most:
         raise InputError(
             f"duration must be below {format_number(most / rate, '.3g')}, where "
-            f"{format_number(most, '.3g')} events are due, not {duration!r}"
+            f"{format_number(most, '.3g')} events are due and fill "
+            f"{format_number(most * row_bytes(scene) / 1e9, '.2g')} GB, not {duration!r}"
         )
     if start is None:
         start = tuple(map(float, states(scene, 1, seed)[: len(components(scene)), 0]))
     else:
         start = check_start(scene, start)
-    rows, events = [], path_events(scene, start, float(duration), seed)
-    for some in map_in_threads(lambda: [*islice(events, ROWS)], repeat(())):
-        rows += some
+    found, rows = [], engine.path_rows(scene, start, float(duration), seed)
+    for some in map_in_threads(lambda: next(rows, None), repeat(())):
+        if some is None:
+            return Rows.joined(found)
+        found.append(some)
         if progress is not None:
-            progress(rows[-1][0], float(duration))
-        if len(some) < ROWS:
-            return rows
+            progress(float(some.times[-1]), float(duration))
+
+
+def most_rows(scene):
+    """Return the most rows of a trajectory of a ``Scene``."""
+    return min(MOST_EVENTS, MOST_NUMBERS / len(components(scene)))
+
+
+def row_bytes(scene):
+    """Return the memory of a row of a trajectory as a table: for N discs 32 N + 34 or more."""
+    return 8 * len(components(scene)) + 34

@@ -36,6 +36,9 @@ ERRORS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 #: Processor seconds of a pilot of dynamics, about, and of a pilot that measures the speed only.
 PILOT, OF_SPEED = 0.3, 0.1
 
+#: Rows of a trajectory with a price, and rows of a pilot of it.
+ROWS, PILOT_ROWS = 1e6, 1000
+
 #: The fewest initial states of a pilot.
 FEWEST_REPLICAS = 128
 
@@ -293,6 +296,26 @@ def _price_of_exact(scene):
     yield Price("all of these", "exact", floor**2 * seconds, seconds, floor)
 
 
+def _price_of_trajectory(scene):
+    """Return the price of a trajectory of ``ROWS`` rows, fewer for many discs, without an error."""
+    from twodiscs.dynamics.engine import find_engine
+    from twodiscs.dynamics.paths import most_rows
+    from twodiscs.dynamics.rows import Rows
+    from twodiscs.measure.trajectory import trajectory_table
+    from twodiscs.sampling.initial_states import components, states
+
+    engine, start = find_engine(scene), states(scene, 1, 0)[: len(components(scene)), 0]
+    duration = PILOT_ROWS / engine.trajectory_rate(scene)
+
+    def work(first, stop):
+        rows = engine.path_rows(scene, start, duration * (stop - first), 0)
+        return len(trajectory_table(scene, Rows.joined(rows)))
+
+    made, blocks, each = timed(work, OF_SPEED)
+    rows = min(ROWS, most_rows(scene))
+    return Price("trajectory", f"{rows:.2g} rows", 0.0, each * blocks / made * rows)
+
+
 class Cost(Printed):
     """The prices of the quantities of a scene by each method; ``cost`` returns one.
 
@@ -399,7 +422,7 @@ class Cost(Printed):
 
         rows = [["all mean times", "simulate", *times(self.seconds), "", ""]]
         for price in self.prices:
-            least = format_number(price.least_error, ".1e") if price.least_error < 1 else "–"
+            least = format_number(price.least_error, ".1e") if 0 < price.least_error < 1 else "–"
             floor = format_number(price.floor, ".1e") if price.floor else ""
             rows.append([price.quantity, price.method, *times(price.seconds), least, floor])
         names = [format_number(error, "g") for error in self.errors]
@@ -408,9 +431,12 @@ class Cost(Printed):
     @property
     def note(self) -> str:
         """The meaning of the columns of the printed table, and the machine that measured it."""
+        from twodiscs.dynamics.paths import row_bytes
+
         return (
             f"Processor time of a relative error, on one core of {self.machine}. Least is the "
-            "error of the smallest run; no work removes the floor."
+            "error of the smallest run; no work removes the floor. A trajectory has no error, and "
+            f"takes {row_bytes(self.scene)} bytes a row."
         )
 
 
@@ -423,7 +449,8 @@ def cost(
     Mean times have dynamics, and rare hops strips of initial states next to their surface. Volume
     and areas have samples of the prism, conditioned samples where the discs hardly fit, or
     insertions of more than two discs; areas have thin shells. All have the exact value, if it is
-    known. Speeds and the variance of counts are measured by pilots, together about a second.
+    known. A trajectory, which has no error, has the time of 10⁶ rows, or of the most that fit.
+    Speeds and the variance of counts are measured by pilots, together about a second.
 
     Parameters
     ----------
@@ -460,5 +487,5 @@ def cost(
     run = DynamicsRun(check_scene(scene), dict.fromkeys(scene.events, 1.0), 10**15, 0)
     measured = pilots(run)
     prices = [*_prices_of_times(scene, measured), *_prices_of_samples(scene, shell)]
-    prices += _price_of_exact(scene)
+    prices += [*_price_of_exact(scene), _price_of_trajectory(scene)]
     return Cost(scene, errors, prices, measured)

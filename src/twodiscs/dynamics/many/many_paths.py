@@ -3,11 +3,14 @@
 import numpy as np
 
 from twodiscs.dynamics import ensemble
-from twodiscs.dynamics.law import END_OF_TIME, crosses, crossing_time
+from twodiscs.dynamics import rows as kinds
+from twodiscs.dynamics.law import crosses, crossing_time
 from twodiscs.dynamics.many import all_pairs, cell_list
-from twodiscs.dynamics.many.all_pairs import BESIDE, COLLISIONS, N, many_disc_law, new_kicks
+from twodiscs.dynamics.many.all_pairs import N, many_disc_law, new_kicks
 from twodiscs.dynamics.many.many_rates import expected_event_rate, expected_rates, usual_epoch
+from twodiscs.dynamics.rows import new_rows, put_event, start_row
 from twodiscs.model.events import HOPS
+from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many.cell_grid import make_grid
 from twodiscs.sampling.many.many_initial_states import large_grid
 
@@ -79,87 +82,191 @@ def usual_duration(scene):
     return ensemble.nearest_power_of_two(min(times))
 
 
-def path_events(scene, state, duration, seed=0):
-    """Yield (time, event, first, second, state) of more than two discs.
+def path_rows(scene, state, duration, seed=0):
+    """Yield the ``Rows`` of a trajectory of more than two discs, see ``paths.path_events``."""
+    follow = _follow_few if large_grid(scene) is None else _follow_large
+    yield from follow(scene, np.array(state), float(duration), seed)
 
-    ``state`` is a column of ``initial_states.states``; see ``paths.path_events``.
+
+@compiled
+def put_states(states, n, at, lags):
+    """Set column ``n`` of ``states`` to discs that were ``at`` (4 or 5, N) their ``lags`` ago."""
+    discs = lags.size
+    for i in range(discs):
+        states[i, n] = at[0, i] + at[2, i] * lags[i]
+        states[discs + i, n] = at[1, i] + at[3, i] * lags[i]
+        for part in range(2, at.shape[0]):
+            states[part * discs + i, n] = at[part, i]
+
+
+# Few discs ----------------------------------------------------------------------------------------
+
+
+@optional(lambda beyond, i, then, x, ring: None)
+def count_turns(beyond, i, then, x, ring):
+    """Set how far ``beyond`` its cell, where it is at ``x``, disc ``i`` has come, to ``then``."""
+    beyond[i] = ring[0] * np.floor((then - x) / ring[0] + 0.5)
+
+
+@optional(lambda at, spins: None)
+def keep_spins(at, spins):
+    """Set the last row of ``at`` to the ``spins`` (N, 1)."""
+    for i in range(spins.shape[0]):
+        at[4, i] = spins[i, 0]
+
+
+@inlined
+def keep_discs(at, lanes, beyond):
+    """Set ``at`` (4 or 5, N) to the discs of the only lane, which are ``beyond`` their cells."""
+    for i in range(beyond.size):
+        at[0, i], at[1, i] = lanes.x[i, 0] + beyond[i], lanes.y[i, 0]
+        at[2, i], at[3, i] = lanes.u[i, 0], lanes.v[i, 0]
+    keep_spins(at, lanes.spins)
+
+
+@compiled
+def sort_hops(before, after, velocities, kind, times, hops, count):
+    """Add the hops of a flight along one axis to the ``count`` there are; return their number.
+
+    ``times`` are in order, ``hops`` are (kind, disc, disc).
     """
-    if large_grid(scene) is not None:
-        yield from _logged(scene, np.array(state), duration, seed)
-        return
-    n, law, time = scene.discs, many_disc_law(scene), 0.0
-    kicks = ensemble.open_block_kicks(new_kicks(scene, 1), seed)
-    lanes = all_pairs.new_lanes(np.array(state)[:, None], np.full(1, float(duration)), law)
-    x, y, u, v, *s = (part for part in lanes[:5] if part is not None)
-    ring = law.ring[0] if law.ring else None
-    # The distance of centres beyond the cell in which the kernel keeps them.
-    beyond = ring * np.round(x / ring) if ring else np.zeros_like(x)
-    x -= beyond
-    pairs = [(j, i) for i in range(n) for j in range(i)]
-    along = ((n, "vertical_hop"), (0, "horizontal_hop"))
-    along = [(start, hop) for start, hop in along if hop in scene.events]
-    yield time, "start", None, None, np.ravel([x + beyond, y, u, v, *s])
-    while True:
-        before, speed = np.ravel([x + beyond, y]), np.ravel([u, v, *s])
-        is_kick = ensemble.kick_limit(lanes.remaining[0], 0, kicks) < lanes.remaining[0]
+    for i in range(before.size):
+        for j in range(i + 1, before.size):
+            apart = before[i] - before[j]
+            if crosses(apart, after[i] - after[j]):
+                until, k = crossing_time(apart, velocities[i] - velocities[j]), count
+                while k > 0 and times[k - 1] > until:
+                    times[k] = times[k - 1]
+                    for part in range(3):
+                        hops[k, part] = hops[k - 1, part]
+                    k -= 1
+                times[k], hops[k, 0], hops[k, 1], hops[k, 2] = until, kind, i + 1, j + 1
+                count += 1
+    return count
+
+
+@compiled
+def record_rows(lanes, beyond, clock, duration, law, kicks, hops_x, rows):
+    """Fill ``rows`` with the next events of the only lane, whose time is ``clock[0]``.
+
+    Discs are ``beyond`` (N,) their cells. ``hops_x`` says whether horizontal hops are rows. Returns
+    the number of rows; the last one is the end if the ``duration`` is over.
+    """
+    discs, n = beyond.size, 0
+    most, parts = discs * (discs - 1), rows.states.shape[0] // discs
+    old, new, lags = np.empty((parts, discs)), np.empty((parts, discs)), np.empty(discs)
+    times, hops = np.empty(most), np.empty((most, 3), np.int64)
+    while n + most < rows.times.size and (n == 0 or rows.kinds[n - 1] != kinds.END):
+        keep_discs(old, lanes, beyond)
+        kicked = ensemble.kick_limit(lanes.remaining[0], 0, kicks) < lanes.remaining[0]
         all_pairs.find_events(lanes, law, kicks)
-        flight, code = float(lanes.times[0]), int(lanes.codes[0])
+        flight, code = lanes.times[0], np.int64(lanes.codes[0])
         all_pairs.advance(lanes, law, True)
         all_pairs.kick_lanes(lanes, law, kicks)
-        if ring:
-            beyond = ring * np.round(((before + flight * speed[: 2 * n])[:n, None] - x) / ring)
-        after, hops = np.ravel([x + beyond, y]), []
-        for start, name in along:
-            for i, j in pairs:
-                a, b = start + i, start + j
-                apart = before[a] - before[b]
-                if crosses(apart, after[a] - after[b]):
-                    hops.append((crossing_time(apart, speed[a] - speed[b]), name, i, j))
-        for until, name, i, j in sorted(hops):
-            then = before + until * speed[: 2 * n]
-            yield time + until, name, i + 1, j + 1, np.concatenate([then, speed])
-        time, now = time + flight, np.ravel([x + beyond, y, u, v, *s])
-        if code == int(END_OF_TIME) and is_kick:
-            yield time, "kick", None, None, now
-        elif code == int(END_OF_TIME):
-            yield float(duration), "end", None, None, now
-            return
-        if code > 2 * n:
-            i, j = pairs[code - 2 * n - 1]
-            yield time, "disc_collision", i + 1, j + 1, now
-        elif code > 0:
-            disc = (code - 1) // 2 + 1
-            yield time, f"wall_{'xy'[(code - 1) % 2]}{disc}", disc, None, now
+        for i in range(discs):
+            count_turns(beyond, i, old[0, i] + flight * old[2, i], lanes.x[i, 0], law.ring)
+        keep_discs(new, lanes, beyond)
+        count = 0
+        if hops_x:
+            count = sort_hops(old[0], new[0], old[2], kinds.HORIZONTAL_HOP, times, hops, count)
+        count = sort_hops(old[1], new[1], old[3], kinds.VERTICAL_HOP, times, hops, count)
+        for k in range(count):
+            put_event(rows, n, clock[0] + times[k], hops[k, 0], hops[k, 1], hops[k, 2])
+            lags[:] = times[k]
+            put_states(rows.states, n, old, lags)
+            n += 1
+        clock[0] += flight
+        if code >= 0:
+            kind, first, second = kinds.KICK if kicked else kinds.END, 0, 0
+            if code > 2 * discs:
+                kind, first, second = kinds.COLLISION, code - 2 * discs, 2
+                while first >= second:
+                    first, second = first - second + 1, second + 1
+            elif code > 0:
+                first = (code - 1) // 2 + 1
+                kind = kinds.WALL + 3 * (first - 1) + (code - 1) % 2
+            put_event(rows, n, duration if kind == kinds.END else clock[0], kind, first, second)
+            lags[:] = 0.0
+            put_states(rows.states, n, new, lags)
+            n += 1
+    return n
 
 
-def _logged(scene, state, duration, seed):
-    """Yield ``path_events`` from the log of a path; a state is put together from all discs."""
+def _follow_few(scene, state, duration, seed):
+    law, clock = many_disc_law(scene), np.zeros(1)
+    kicks = ensemble.open_block_kicks(new_kicks(scene, 1), seed)
+    # The distance of centres beyond the cell in which the kernel keeps them.
+    beyond = np.zeros(scene.discs)
+    if scene.periodic:
+        beyond = scene.width * np.round(state[: scene.discs] / scene.width)
+    inside = state.copy()
+    inside[: scene.discs] -= beyond
+    state[: scene.discs] = inside[: scene.discs] + beyond
+    yield start_row(state)
+    lanes = all_pairs.new_lanes(inside[:, None], np.full(1, duration), law)
+    hops_x, rows = "horizontal_hop" in scene.events, None
+    while rows is None or rows.kinds[-1] != kinds.END:
+        rows = new_rows(state.size, scene.discs**2)
+        number = record_rows(lanes, beyond, clock, duration, law, kicks, hops_x, rows)
+        rows = rows.first(number)
+        yield rows
+
+
+# Large numbers of discs ---------------------------------------------------------------------------
+
+
+@compiled
+def read_log(log, order, entry, at, since, rows):
+    """Fill ``rows`` with the entries of a log from the number ``entry`` of their ``order`` on.
+
+    The discs were last known ``at`` (4 or 5, N) places at the times ``since``. Returns the number
+    of the next entry and of rows.
+    """
+    discs, n, lags = since.size, 0, np.empty(since.size)
+    while entry < order.size and n < rows.times.size:
+        e = order[entry]
+        time, event, i, j = log.times[e], log.classes[e], log.discs[e, 0], log.discs[e, 1]
+        entry += 1
+        hop = (event == all_pairs.VERTICAL) | (event == all_pairs.HORIZONTAL)
+        if not hop:
+            for part in range(at.shape[0]):
+                at[part, i], at[part, j] = log.states[e, 0, part], log.states[e, 1, part]
+            since[i] = since[j] = time
+        first, second = min(i, j) + 1, max(i, j) + 1
+        if hop:
+            kind = kinds.VERTICAL_HOP if event == all_pairs.VERTICAL else kinds.HORIZONTAL_HOP
+        elif event == all_pairs.COLLISIONS:
+            kind = kinds.COLLISION
+        elif event == cell_list.KICKS:
+            if i < discs - 1:
+                continue
+            kind, first, second = kinds.KICK, 0, 0
+        else:
+            kind, second = kinds.WALL + 3 * (first - 1) + (0 if event == all_pairs.BESIDE else 1), 0
+        put_event(rows, n, time, kind, first, second)
+        for k in range(discs):
+            lags[k] = time - since[k]
+        put_states(rows.states, n, at, lags)
+        n += 1
+    return entry, n
+
+
+def _follow_large(scene, state, duration, seed):
+    yield start_row(state)
     path = Followed(scene, scene.events)
     rounds = np.round(state[: scene.discs] / scene.width) if scene.periodic else 0.0
     inside = state.copy()
     inside[: scene.discs] -= rounds * scene.width
     path.start(inside[:, None], seed)
     path.laps[:] = rounds
-    # The last known place of each disc, and its time.
     at, since = np.reshape(state, (-1, scene.discs)).copy(), np.zeros(scene.discs)
-    names = {all_pairs.VERTICAL: "vertical_hop", all_pairs.HORIZONTAL: "horizontal_hop"}
-    names |= {COLLISIONS: "disc_collision", cell_list.KICKS: "kick"}
-    yield 0.0, "start", None, None, state
     for log, order in path.go_on(duration):
-        for k in order:
-            time, kind, (i, j) = float(log.times[k]), int(log.classes[k]), log.discs[k].tolist()
-            if kind not in (all_pairs.VERTICAL, all_pairs.HORIZONTAL):
-                at[:, i], at[:, j] = log.states[k]
-                since[[i, j]] = time
-            if kind == cell_list.KICKS and i < scene.discs - 1:
-                continue
-            first, second = min(i, j) + 1, max(i, j) + 1 if i != j else None
-            name = names.get(kind) or f"wall_{'x' if kind == BESIDE else 'y'}{first}"
-            first = None if kind == cell_list.KICKS else first
-            yield time, name, first, second, _then(at, time - since)
-    yield float(duration), "end", None, None, _then(at, duration - since)
-
-
-def _then(at, lag):
-    """Return the state of discs that were ``at`` (4 or 5, N) places ``lag`` (N,) ago."""
-    return np.concatenate([np.ravel(at[:2] + at[2:4] * lag), *at[2:]])
+        entry = 0
+        while entry < order.size:
+            rows = new_rows(state.size)
+            entry, number = read_log(log, order, entry, at, since, rows)
+            yield rows.first(number)
+    rows = new_rows(state.size)
+    put_states(rows.states, 0, at, duration - since)
+    put_event(rows, 0, duration, kinds.END, 0, 0)
+    yield rows.first(1)

@@ -6,33 +6,23 @@ from dataclasses import replace
 import numpy as np
 
 from twodiscs.dynamics import law as codes
+from twodiscs.dynamics import rows as kinds
 from twodiscs.dynamics.ensemble import kick_limit, nearest_power_of_two, open_block_kicks
 from twodiscs.dynamics.law import after_event, crosses, crossing_time, next_event, two_disc_law
+from twodiscs.dynamics.rows import new_rows, put_event, start_row
 from twodiscs.dynamics.two.follow import kicked, new_kicks, put_state, relative_motion, state_at
 from twodiscs.model.events import HOPS
-from twodiscs.sampling.initial_states import components
-from twodiscs.sampling.jit import compiled, optional
+from twodiscs.sampling.initial_states import COMPONENTS, components
+from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.theory import exact
 
 #: Wall and disc events that a trajectory lasts at most, on average.
 LONGEST_TRAJECTORY = 6000
 
-#: The name of the event that ends a flight, by code, and the discs that it is of.
-_NAMES = {
-    codes.END_OF_TIME: ("end", None, None),
-    codes.WALL_X1: ("wall_x1", 1, None),
-    codes.WALL_Y1: ("wall_y1", 1, None),
-    codes.WALL_X2: ("wall_x2", 2, None),
-    codes.WALL_Y2: ("wall_y2", 2, None),
-    codes.DISC: ("disc_collision", 1, 2),
-    codes.WALL_Z1: ("wall_z1", 1, None),
-    codes.WALL_Z2: ("wall_z2", 2, None),
-    codes.KICK: ("kick", None, None),
-}
-
-#: The axis of the periodic separation that jumps at the end of a flight, and the places of both
-#: centres in a state, by code.
-_JUMPS = {codes.WRAP_X: (0, 0, 2), codes.WRAP_Y: (1, 1, 3), codes.WRAP_Z: (2, 8, 9)}
+#: What a row is, by the code of the end of a flight from 0 on, and the discs of its event.
+KINDS = np.array([0, 0, 1, 3, 4, 0, 2, 5]) + kinds.WALL
+KINDS[int(codes.END_OF_TIME)], KINDS[int(codes.DISC)] = kinds.END, kinds.COLLISION
+FIRST, SECOND = np.array([0, 1, 1, 2, 2, 1, 1, 2]), np.array([0, 0, 0, 0, 0, 2, 0, 0])
 
 
 @optional(lambda state, present: 0.0)
@@ -45,6 +35,17 @@ def deep_separation(state, present):
 def is_left(left, kicks):
     """Say whether time is left after a flight that ended without an event."""
     return left > 0.0
+
+
+@inlined
+def count_jump(wraps, i, state, code, law):
+    """Add a jump of the periodic separation in ``state`` to ``wraps`` (3, n), if there is one."""
+    if code == codes.WRAP_X:
+        wraps[0, i] -= math.copysign(1.0, state[0] - state[2])
+    elif code == codes.WRAP_Y:
+        wraps[1, i] -= math.copysign(1.0, state[1] - state[3])
+    elif code == codes.WRAP_Z:
+        wraps[2, i] -= math.copysign(1.0, deep_separation(state, law.depth))
 
 
 @compiled
@@ -61,12 +62,7 @@ def advance_states(states, wraps, time, law, kicks):
             state = after_event(state, flight, code, law)
             state = kicked(state, i, flight, law, kicks)
             left -= flight
-            if code == codes.WRAP_X:
-                wraps[0, i] -= math.copysign(1.0, state[0] - state[2])
-            elif code == codes.WRAP_Y:
-                wraps[1, i] -= math.copysign(1.0, state[1] - state[3])
-            elif code == codes.WRAP_Z:
-                wraps[2, i] -= math.copysign(1.0, deep_separation(state, law.depth))
+            count_jump(wraps, i, state, code, law)
         put_state(states, i, state, law)
 
 
@@ -97,48 +93,78 @@ def nearest_image(scene, state):
     return tuple(columns.values()), periods
 
 
-def unfold(scene, state, wraps, periods):
-    """Return ``state`` with centres that go on beyond the cell, from those of the start."""
-    columns = dict(zip(components(scene), state, strict=True))
-    unwrap(scene, columns, wraps[:, 0])
-    for axis, number in periods.items():
-        columns[f"{axis}2"] -= number * scene.side(axis)
-    return tuple(columns.values())
+@inlined
+def put_row(rows, jumps, n, time, kind, discs, state, wraps, law):
+    """Set row ``n``, and column ``n`` of ``jumps`` (3, n) to the ``wraps`` so far."""
+    put_event(rows, n, time, kind, discs[0], discs[1])
+    put_state(rows.states, n, state, law)
+    for axis in range(3):
+        jumps[axis, n] = wraps[axis, 0]
 
 
-def path_events(scene, state, duration, seed=0):
-    """Yield (time, event, first, second, state) of each event within ``duration``.
+@compiled
+def record_rows(now, clock, duration, law, kicks, hops, wraps, jumps, rows):
+    """Fill ``rows`` with the next events of the state ``now`` (``COMPONENTS``, 1) at its time.
 
-    ``state`` of the ``Scene`` is as in ``law``. Hops are events here, at their times within a
-    flight. Kicks are events, too, and come from the streams of ``seed``. Walls are named by axis
-    and disc. ``first`` and ``second`` are the discs of the event, or None. The first row is the
-    start, the last one the end. Along periodic axes centres go on beyond the cell.
+    ``clock`` (1,) has this time. ``hops`` say whether vertical and horizontal ones are rows.
+    Returns the number of rows; the last one is the end if the ``duration`` is over.
     """
-    law, time, kicks = two_disc_law(scene), 0.0, open_block_kicks(new_kicks(scene, 1), seed)
-    yield time, "start", None, None, state
-    wraps, (state, periods) = np.zeros((3, 1)), nearest_image(scene, state)
-    while True:
+    state, time, n = state_at(now, 0, law), clock[0], 0
+    # A flight may have two hops before its end.
+    while n + 3 <= rows.times.size and (n == 0 or rows.kinds[n - 1] != kinds.END):
         left = duration - time
-        until_kick = kick_limit(left, 0, kicks)
-        flight, code = next_event(state, until_kick, law)
+        limit = kick_limit(left, 0, kicks)
+        flight, code = next_event(state, limit, law)
         after = after_event(state, flight, code, law)
-        hops = []
-        for name, horizontal in (("vertical_hop", None), ("horizontal_hop", True)):
-            before, rising = relative_motion(state, horizontal)
-            if name in scene.events and crosses(before, relative_motion(after, horizontal)[0]):
-                hops.append((crossing_time(before, rising), name))
-        for until, name in sorted(hops):
-            at_hop = after_event(state, until, codes.END_OF_TIME, law)
-            yield time + until, name, 1, 2, unfold(scene, at_hop, wraps, periods)
+        first_hop = second_hop = kinds.VERTICAL_HOP
+        until = later = codes.NEVER
+        apart, rising = relative_motion(state, None)
+        if hops[0] and crosses(apart, relative_motion(after, None)[0]):
+            until = crossing_time(apart, rising)
+        apart, rising = relative_motion(state, True)
+        if hops[1] and crosses(apart, relative_motion(after, True)[0]):
+            later, second_hop = crossing_time(apart, rising), kinds.HORIZONTAL_HOP
+        if later <= until:
+            until, later, first_hop, second_hop = later, until, second_hop, first_hop
+        for time_to, hop in ((until, first_hop), (later, second_hop)):
+            if time_to < codes.NEVER:
+                at_hop = after_event(state, time_to, codes.END_OF_TIME, law)
+                put_row(rows, jumps, n, time + time_to, hop, (1, 2), at_hop, wraps, law)
+                n += 1
         time, state = time + flight, kicked(after, 0, flight, law, kicks)
-        code = codes.KICK if code == codes.END_OF_TIME and until_kick < left else code
-        if code in _JUMPS:
-            axis, first, second = _JUMPS[code]
-            wraps[axis] -= math.copysign(1.0, state[first] - state[second])
-        if code in _NAMES:
-            yield time, *_NAMES[code], unfold(scene, state, wraps, periods)
-        if code == codes.END_OF_TIME:
-            return
+        count_jump(wraps, 0, state, code, law)
+        if code >= codes.END_OF_TIME:
+            k = np.int64(code)
+            kind = KINDS[k] if k > 0 or limit >= left else kinds.KICK
+            put_row(rows, jumps, n, time, kind, (FIRST[k], SECOND[k]), state, wraps, law)
+            n += 1
+    put_state(now, 0, state, law)
+    clock[0] = time
+    return n
+
+
+def path_rows(scene, state, duration, seed=0):
+    """Yield the ``Rows`` of a trajectory, see ``paths.path_events``.
+
+    Hops are at their times within a flight. Along periodic axes centres go on beyond the cell.
+    """
+    yield start_row(state)
+    names, law = components(scene), two_disc_law(scene)
+    kicks = open_block_kicks(new_kicks(scene, 1), seed)
+    now, clock, wraps = np.zeros((COMPONENTS, 1)), np.zeros(1), np.zeros((3, 1))
+    image, periods = nearest_image(scene, state)
+    now[: len(names), 0] = image
+    hops, rows = tuple(hop in scene.events for hop in HOPS), None
+    while rows is None or rows.kinds[-1] != kinds.END:
+        rows = new_rows(len(names))
+        jumps = np.empty((3, rows.times.size))
+        number = record_rows(now, clock, duration, law, kicks, hops, wraps, jumps, rows)
+        columns = dict(zip(names, rows.states[:, :number], strict=True))
+        unwrap(scene, columns, jumps[:, :number])
+        for axis, period in periods.items():
+            columns[f"{axis}2"] -= period * scene.side(axis)
+        rows = rows.first(number)
+        yield rows
 
 
 def trajectory_rate(scene):
