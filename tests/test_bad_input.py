@@ -131,6 +131,7 @@ td.scan(1.5, 1, [0.2, 0.2]) → radii must differ, because one radius has the sa
 td.sample(PAPER, 1).more(budget=1e7) → to go on, give samples=
 td.simulate(PAPER, 0.5, budget=1).more(duration=10) → duration must be left out for a result of …
 td.trajectory(RING, start=ROUND_THE_RING) → must have the discs apart
+td.trajectory(PAPER, 1e9) → must be below 2.71e6, where 1e7 events are due and fill 0.98 GB
 td.intervals(Scene(1.5, 1, 0.3), 'horizontal_hop') → has no intervals: it is blocked at radius 0.3
 td.intervals(Scene(1.6, 0.6, 0.18, discs=4), 'horizontal_hop') → is blocked
 td.intervals(Scene(1.5, 1, 0.13, discs=16), 'vertical_hop') → is so large for 16 discs that the time

@@ -11,7 +11,7 @@ from effect_scenes import ALL, SCENES
 from marks import slow
 
 from twodiscs.analysis.tables import TrajectoryTable
-from twodiscs.dynamics import paths
+from twodiscs.dynamics import paths, rows
 from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling.initial_states import components
 from twodiscs.theory.exact import event_rate, mean_times
@@ -81,3 +81,20 @@ def test_an_image_of_disc_2_moves_as_disc_2_does(scene):
     assert np.abs(shift).max() >= 3.0
     for one, other in zip(near, far, strict=True):
         np.testing.assert_allclose(np.array(other[4]) - one[4], shift, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        Scene(1.5, 1.0, 0.2, periodic="x", friction=1.0),
+        GIVEN["many"],
+        slow(Scene(6.0, 4.0, 0.2, discs=20, friction=0.1)),
+    ],
+    ids=repr,
+)
+def test_rows_do_not_depend_on_how_many_are_made_at_a_time(scene, monkeypatch):
+    whole = paths.follow_trajectory(scene, 5, None, 200.0)
+    monkeypatch.setattr(rows, "NUMBERS", 1)
+    for one, other in zip(whole, paths.follow_trajectory(scene, 5, None, 200.0), strict=True):
+        assert one.tobytes() == other.tobytes()
+    assert whole.times.size > 4 * (64 + rows.PADDING)

@@ -62,6 +62,12 @@ def test_a_rare_hop_has_a_price_from_ordinary_states_too(blocks):
     assert ordinary.c == pytest.approx(cost.CLUSTER / block * 1e-3)
 
 
+def test_a_trajectory_has_a_price_for_its_rows(blocks):
+    price = td.cost(NEAR)["trajectory", "1e6 rows"]
+    # The 32 blocks of the pilot have about a thousand rows each.
+    assert price.seconds(0.1) == price.seconds(1e-9) == pytest.approx(1.0, rel=0.7)
+
+
 def test_a_time_is_c_over_the_square_of_the_error_between_the_smallest_run_and_the_floor():
     price = td.Price("any_wall_area", "shells", c=4e-6, least_seconds=0.01, floor=1e-3)
     assert price.least_error == pytest.approx(0.02)

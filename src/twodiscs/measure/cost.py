@@ -313,7 +313,8 @@ def _price_of_trajectory(scene):
 
     made, blocks, each = timed(work, OF_SPEED)
     rows = min(ROWS, most_rows(scene))
-    return Price("trajectory", f"{rows:.2g} rows", 0.0, each * blocks / made * rows)
+    name = f"{format_number(rows, '.2g')} rows"
+    return Price("trajectory", name, 0.0, each * blocks / made * rows)
 
 
 class Cost(Printed):
