@@ -56,19 +56,19 @@ class PassagesTable(Table):
             "scaled_coefficient: κ x, x = γ√(εσ); rate: hops per time, of both of two discs, or of "
             "each of more discs; diffusion: D/(ν ℓ²) with ν hops of a disc per time in either "
             "direction, each by ℓ; "
-            "single_file: F of the mean square displacement F √t, over ℓ² in files of discs; "
-            "density: S, the relative variance of the number of discs in a long piece of a file; "
-            "in long files, over ℓ²: displacement, the mean square displacement of a tagged disc "
-            "in the time t; file, that of a place in the order of the discs; order: the mean "
-            "square of the number of places by which a disc has moved in the order; amplitude: c "
-            "of 1 − κ = c σ^(2/3) ε^(1/3)/A, ε the width of the neck and A the range along the "
-            "hop"
+            "single_file: F of the mean square displacement F √t, over ℓ² in single files; "
+            "density: S, the relative variance of the number of discs in a long piece of a single "
+            "file; in long single files, over ℓ²: displacement, the mean square displacement of a "
+            "tagged disc in the time t; file, that of a place in the order of the discs; order: "
+            "the mean square of the number of places by which a disc has moved in the order; "
+            "amplitude: c of 1 − κ = c σ^(2/3) ε^(1/3)/A, ε the width of the neck and A the range "
+            "along the hop"
         ),
         "method": TEXT(
             "clusters: odd clusters over hops; hops: initial states on the surface of the hop; "
             "states: initial states of the invariant measure; order: by the order of the discs in "
-            "a file, with ν of the same motion; fit: to other rows; limit: the motion in the limit "
-            "ε → 0"
+            "a single file, with ν of the same motion; fit: to other rows; limit: the motion in "
+            "the limit ε → 0"
         ),
         "time": TIME("t; for clusters, the time without a hop that ends a cluster"),
         "estimate": Column(float, "time, 1/time or none", "estimate"),
@@ -180,7 +180,7 @@ class BrownianTable(Table):
 #: all others.
 INERTIAS, OTHERS = [0.1, 0.25, 0.5, 1.0], [0.5]
 
-#: The radii over the height of the box at which discs of a long file cannot pass.
+#: The radii over the height of the box at which discs of a long single file cannot pass.
 BLOCKED = (0.28, 0.27, 0.3)
 
 
@@ -301,11 +301,12 @@ STUDY = Study(
                 Coefficient D of diffusion on a ring, divided by its value for a random walk with ν
                 hops of a disc per time in either direction, each by ℓ (dashed), at distances δ =
                 (r_c − r)/r_c from the radius r_c at which hops become blocked. (a) Two discs, by
-                correlations of hops (open symbols) and by displacements (full symbols). (b) Files
-                in long runs, by the order of the discs: of four and eight discs (full symbols), and
-                long ones (open symbols). With friction, all velocities are drawn anew at random
-                times. (c) Residuals z in standard errors, from the exact rate, between two
-                estimators, or of F in ⟨x²⟩ = F√t from theory. Error bars are one standard error.
+                correlations of hops (open symbols) and by displacements (full symbols). (b) Single
+                files in long runs, by the order of the discs: of four and eight discs (full
+                symbols), and long ones (open symbols). With friction, all velocities are drawn anew
+                at random times. (c) Residuals z in standard errors, from the exact rate, between
+                two estimators, or of F in ⟨x²⟩ = F√t from theory. Error bars are one standard
+                error.
                 """
             ),
             tables=("passages",),
@@ -318,17 +319,17 @@ STUDY = Study(
             DYNAMICS,
             Caption(
                 """
-                Mean square displacement of a tagged disc in a long single file on a ring. (a) Files
-                that are blocked (r = 0.28 h, full symbols) and open (δ = 1/8, open symbols), in
-                units of ℓ², the height h and the thermal speed. Black lines are the theory of
-                blocked files at long times, without a free parameter: sound in the file of smooth
-                discs, damped sound with friction. The line of smooth discs ends when sound has gone
-                around half of the ring, because from then on it brings the discs back. Rough discs
-                (I = 1/2) lose their momentum to the walls, and have no such line. Dashes are
-                measured too: the motion of the places plus the steps of the discs from place to
-                place. (b) Open files with friction: displacements in units of F√t×, at times over
-                t× = (F/2D)², where single file and hops contribute equally. Error bars are one
-                standard error.
+                Mean square displacement of a tagged disc in a long single file on a ring. (a)
+                Single files that are blocked (r = 0.28 h, full symbols) and open (δ = 1/8, open
+                symbols), in units of ℓ², the height h and the thermal speed. Black lines are the
+                theory of blocked ones at long times, without a free parameter: sound in that of
+                smooth discs, damped sound with friction. The line of smooth discs ends when sound
+                has gone around half of the ring, because from then on it brings the discs back.
+                Rough discs (I = 1/2) lose their momentum to the walls, and have no such line.
+                Dashes are measured too: the motion of the places plus the steps of the discs from
+                place to place. (b) Open single files with friction: displacements in units of F√t×,
+                at times over t× = (F/2D)², where single file and hops contribute equally. Error
+                bars are one standard error.
                 """
             ),
             long_runs={"displacements": "paper/long_run/displacements/passages.csv"},
