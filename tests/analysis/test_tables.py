@@ -124,10 +124,13 @@ def test_a_wrong_cell_writes_nothing(tmp_path, change, message):
     ("text", "message"),
     [
         ("\xff", "can't decode byte"),
-        ("", "No columns to parse"),
+        ("", "has no column 'radius'"),
         ("radius,quantity\n", "has no column 'exact'"),
-        ("radius,quantity,exact\n0.1,volume,1.0\n0.1,volume\n", "exact has nan, which is no float"),
-        ("radius,quantity,exact\n0.1,volume,1.0\n0.1,volume,1,2\n", "Expected 3 fields in line 3"),
+        ("radius,quantity,exact\n0.1,volume,1.0\n0.1,volume\n", "has 2 cells for 3 columns"),
+        (
+            "radius,quantity,exact\n0.1,volume,1.0\n0.1,volume,1,2\n",
+            "has 4 cells for 3 columns",
+        ),
         ("radius,quantity,exact\nr,volume,1.0\n", "could not convert string to float: 'r'"),
         ("radius,quantity,exact\n0.1,volume,nan\n", "exact has 'nan', which is no float"),
     ],

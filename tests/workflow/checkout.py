@@ -56,7 +56,7 @@ elif table.name() in {EXPECTED}:
             for row in table.read(kept)]
 else:
     rows = work(**given)
-table.write(snakemake.output.table, rows)
+table.write_and_log(snakemake.output.table, rows)
 """
 
 STUDIES = "src/twodiscs_paper/studies"
@@ -65,7 +65,11 @@ STUDIES = "src/twodiscs_paper/studies"
 #: One part of a table is made. Repetitions do not follow from the budget of a scene. The cost of
 #: effects is measured without kernels that nothing else compiles.
 QUICKER = (
-    ("workflow/scripts/study.py", "table.write(snakemake.output.table, work(**given))", KEPT),
+    (
+        "workflow/scripts/study.py",
+        "table.write_and_log(snakemake.output.table, work(**given))",
+        KEPT,
+    ),
     (
         "workflow/scripts/figure.py",
         "style.save(figure, path",
@@ -120,6 +124,18 @@ def snakemake(arguments, folder, sources, files):
         del sys.modules[name]
     sys.path.insert(0, sources)
     cli.main([*arguments])
+
+
+def run_twodiscs(place, *words):
+    """Return the completed process of ``twodiscs run`` with some words in a ``Checkout``."""
+    return subprocess.run(
+        [sys.executable, "-P", "-m", "twodiscs", "run", *words],
+        cwd=place.path,
+        env=os.environ | {"PYTHONPATH": first(str(place.home.path / "src"))},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
 
 
 class Checkout:

@@ -7,7 +7,7 @@ import json
 import subprocess
 
 import pytest
-from checkout import fresh
+from checkout import fresh, run_twodiscs
 
 import twodiscs as td
 from twodiscs.analysis.tables import TrajectoryTable
@@ -37,6 +37,7 @@ def test_everything_that_is_called_for_is_built(complete):
     assert walls == {f"walls/{n}.csv" for n in ("grid", "theory", "mean_times", "check", "cost")}
     assert {"check.passed", "tails.csv", "report.html", "configuration.json"} <= set(results)
     assert [n for n, text in results.items() if not text and not n.startswith("logs/")] == []
+    assert not any((complete.path / "results" / name).stat().st_mode & 0o111 for name in results)
     path = TrajectoryTable.read(complete.path / "results/full/trajectory.csv")
     states = td.trajectory(td.Scene(1.5, 1.0, 0.24), duration=9, seed=7, name="full")
     assert [row["x1"] for row in path[:20]] == [*states["x1"][:20]]
@@ -56,6 +57,16 @@ def test_the_manifest_is_one_of_sha256sum(complete):
     assert {"errata.csv", "full/areas.csv", "walls/check.csv", "full/figures/volume.pdf"} < {*names}
     assert not {"full/cost.csv", "effects_cost.csv", "figures/effects.pdf"} & {*names}
     assert sorted(names) == names
+
+
+def test_a_table_that_was_cut_is_in_no_manifest_and_not_loaded(built):
+    path = built.path / "results/full/grid.csv"
+    path.write_bytes(b"".join(path.read_bytes().splitlines(keepends=True)[:-1]))
+    run = built.snakemake("--cores", "1", "manifest", passes=False)
+    said = "results/full/grid.csv is not what its job wrote; delete it, and it is made again"
+    assert said in run.stdout + run.stderr
+    with pytest.raises(td.InputError, match=said):
+        td.load(path.parent)
 
 
 @pytest.mark.slow
@@ -78,12 +89,11 @@ def test_a_formula_off_by_one_percent_fails_the_check_and_is_named(built):
         f"scene, exact = point.scene, {wrong}",
     )
     # Points do not change: tables are made again, and all comparisons with them.
-    again = "--rerun-triggers", "mtime", "--forcerun", "table"
-    run = built.snakemake("--cores", "2", *again, "--", "check", passes=False)
+    run = run_twodiscs(built, "config/config.yaml", "check", "--cores", "2")
     assert run.returncode != 0
-    said, failed = run.stdout + run.stderr, "comparison mean_time, quantity disc_collision_time"
-    assert f"full: {failed}, method dynamics, radius 0.2 has z" in said
-    assert "Traceback" not in said
+    failed = "error: full: comparison mean_time, quantity disc_collision_time"
+    assert f"{failed}, method dynamics, radius 0.2 has z" in run.stderr
+    assert "Traceback" not in run.stderr
     assert not (built.path / "results" / "check.passed").exists()
 
 

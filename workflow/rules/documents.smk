@@ -89,6 +89,7 @@ rule manifest:
     """The SHA-256 of everything that holds no run times; `sha256sum --check` compares."""
     input:
         files=[path for path in rules.report.input.results if is_reproducible(path)],
+        code=code("manifest", "physics"),
     output:
         manifest=f"{RESULTS}/manifest.sha256",
     log:

@@ -34,7 +34,7 @@ use rule study_table as study_part with:
     output:
         table=f"{RESULTS}/parts/{{table}}/{{part}}.csv",
     log:
-        f"{RESULTS}/logs/parts/{{table}}-{{part}}.log",
+        f"{RESULTS}/logs/parts/{{table}}/{{part}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/parts/{{table}}-{{part}}.tsv"
     wildcard_constraints:

@@ -5,4 +5,4 @@ from twodiscs_paper.pipeline.job import start
 from twodiscs_paper.studies.effects.study import Benchmark
 
 start(snakemake.log[0])
-Benchmark.write(snakemake.output.table, benchmarks(snakemake.params.scenes))
+Benchmark.write_and_log(snakemake.output.table, benchmarks(snakemake.params.scenes))

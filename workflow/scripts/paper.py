@@ -2,11 +2,14 @@
 
 from pathlib import Path
 
+from twodiscs.points.base import require_logged
 from twodiscs_paper.pipeline.documents.manuscript import PaperNumbersTable, typeset
 from twodiscs_paper.pipeline.job import start
 
 start(snakemake.log[0])
 params = snakemake.params
+for path in snakemake.input.results:
+    require_logged(path)  # Typst reads the tables
 numbers = typeset(
     snakemake.input.template,
     snakemake.output.pdf,
@@ -15,4 +18,4 @@ numbers = typeset(
     params.seed,
     params.configuration,
 )
-PaperNumbersTable.write(snakemake.output.numbers, numbers)
+PaperNumbersTable.write_and_log(snakemake.output.numbers, numbers)

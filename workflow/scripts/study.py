@@ -17,4 +17,4 @@ if "box" in given:
 if "tables" in taken:
     paths = zip(snakemake.params.names, snakemake.input.get("tables", []), strict=True)
     given["tables"] = {name: read_table(path) for name, path in paths}
-table.write(snakemake.output.table, work(**given))
+table.write_and_log(snakemake.output.table, work(**given))

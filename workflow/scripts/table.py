@@ -20,4 +20,4 @@ for stage, settings in snakemake.params.get("work", {}).items():
         given["seconds"][stage, scene.radius] = read_seconds(path)
 taken = inspect.signature(table.rows).parameters
 rows = table.rows(**{name: value for name, value in given.items() if name in taken})
-table.write(snakemake.output.table, rows)
+table.write_and_log(snakemake.output.table, rows)

@@ -10,6 +10,7 @@ written with all their digits, integers as integers, truth values as ``true`` an
 empty cell is a value that does not exist.
 """
 
+import csv
 import re
 from dataclasses import dataclass
 from functools import partial
@@ -70,7 +71,7 @@ class Table:
     @classmethod
     def meaning(cls):
         """Return the meaning of a row of the table."""
-        return " ".join(cls.__doc__.split())
+        return " ".join((cls.__doc__ or "").split())  # none with python -OO
 
     @classmethod
     def present_columns(cls, names):
@@ -96,18 +97,35 @@ class Table:
         pd.DataFrame(cells, dtype=object).to_csv(path, index=False, lineterminator="\n")
 
     @classmethod
+    def write_and_log(cls, path, rows):
+        """Write ``rows`` as ``write`` does, and print the digest, which is then in a job's log."""
+        from twodiscs.points.base import digest_line
+
+        cls.write(path, rows)
+        print(digest_line(path))
+
+    @classmethod
     def frame(cls, path):
         """Return the CSV file at ``path`` as a ``DataFrame``.
 
         The file may have columns that the table does not know, which are left out. Raises
-        ``InputError`` if it lacks a column, or a cell is not of its type.
+        ``InputError`` if it lacks a column, a cell is not of its type, or the job that wrote it
+        logged another digest.
         """
         import pandas as pd
 
+        from twodiscs.points.base import require_logged
+
+        require_logged(path)
         try:
-            # The engine in Python does not fill up a line that is too short with empty cells.
-            as_text = {"dtype": str, "keep_default_na": False, "engine": "python"}
-            texts = pd.read_csv(path, index_col=False, **as_text)
+            # pandas cuts a line that is too long, and fills up one that is too short.
+            with open(path, encoding="utf-8-sig", newline="") as file:
+                lines = [line for line in csv.reader(file) if line]
+            header = lines[0] if lines else []
+            for line in lines:
+                if len(line) != len(header):
+                    raise ValueError(f"a line has {len(line)} cells for {len(header)} columns")
+            texts = pd.DataFrame(lines[1:], columns=header, dtype=str)
             columns = cls.present_columns(texts)
             return pd.DataFrame({n: _values(texts[n], column) for n, column in columns.items()})
         except KeyError as missing:

@@ -39,6 +39,28 @@ def digest(*paths):
     return sha256(b"".join(Path(path).read_bytes() for path in paths)).hexdigest()
 
 
+def digest_line(path):
+    """Return the line of ``sha256sum`` about a file; a job writes that of its table to its log."""
+    return f"{digest(path)}  {Path(path).name}"
+
+
+def require_logged(path):
+    """Raise ``InputError`` if the log of the job that wrote a file has another digest of it.
+
+    The log of results/a/b.csv is results/logs/a/b.log. Without one, the file may be any.
+    """
+    path = Path(path)
+    for folder in path.parents:
+        log = folder / "logs" / path.relative_to(folder).with_suffix(".log")
+        if log.is_file():
+            text = log.read_text(encoding="utf-8", errors="replace")
+            lines = [line for line in text.splitlines() if line.endswith(f"  {path.name}")]
+            if lines and lines[-1] != digest_line(path):
+                raise InputError(
+                    f"{path} is not what its job wrote; delete it, and it is made again"
+                )
+
+
 def write_json(path, content, seconds=None):
     """Write the dict ``content`` with its digest, keys sorted; floats keep all their digits.
 

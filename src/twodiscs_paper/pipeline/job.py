@@ -20,7 +20,7 @@ def start(log):
     Snakemake ends its jobs, but not if it is killed itself. Ctrl-C ends the process without delay,
     because Python's handler does not interrupt a running kernel.
     """
-    file = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+    file = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o666)
     os.dup2(file, 1)
     os.dup2(file, 2)
     signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from twodiscs.points.base import KEY, SECONDS
+from twodiscs.points.base import KEY, SECONDS, require_logged
 
 #: The largest difference of floats, relative to their size.
 RELATIVE = 1e-12
@@ -151,6 +151,7 @@ def renew(results, expected, tables, points):
         by_stage.setdefault(path.parent.relative_to(results), []).append(line)
     texts = {f"{stage}.json": "{\n" + ",\n".join(p) + "\n}\n" for stage, p in by_stage.items()}
     for path in map(Path, tables):
+        require_logged(path)
         header, *lines = path.read_text("utf-8").splitlines(keepends=True)
         rows = [lines[i] for i in compared_rows(path.stem, read(path)).index]
         texts[path.relative_to(results)] = "".join((header, *rows))
