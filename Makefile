@@ -46,6 +46,10 @@ archive: all
 
 # The exact packages of requirements.lock, then this one; again whenever either list changes. uv puts them
 # there: the one that is installed, or that of the lock, which pip brings. Where uv cannot, pip does it all.
+# A copy of another folder has the environment of that one, which runs the code there.
+ifneq ($(shell cat .venv/ready 2> /dev/null),$(CURDIR))
+.PHONY: .venv/ready
+endif
 .venv/ready: requirements.lock pyproject.toml
 	@echo "Setting up .venv"
 	@if [ -n "$(PYTHON)" ] && ! "$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2> /dev/null; then \
@@ -69,4 +73,4 @@ archive: all
 	  uv pip install --quiet --no-deps --no-build-isolation --editable . 2>> .venv/uv.log' || { \
 	  $(PIP) --require-hashes --requirement requirements.lock && \
 	  $(PIP) --no-deps --no-build-isolation --editable .; }
-	@touch $@
+	@echo "$(CURDIR)" > $@

@@ -190,6 +190,8 @@ td.animate(td.trajectory(PAPER, 0.01), 'a.gif') → trajectory must last two fra
 SHELL = """
 exact - --radius x → radius must be a positive number, not 'x'
 exact - --radius 0,2 → not '0,2'; decimals follow a point, 0.2
+exact - --radius ٠.٢ → radius must be a positive number, not '٠.٢'
+simulate --seed 1_000 → seed must be an integer of at least 0, not '1_000'
 exact - → the following arguments are required: --radius
 exact - --radious 1 → unrecognized arguments: --radious; did you mean --radius?
 exact --rad 2 → unrecognized arguments: --rad 2
@@ -229,6 +231,7 @@ scene: [] → the configuration has an unknown key 'scene'; did you mean 'scenes
 SCENE⏎zz: 1 → the configuration has an unknown key 'zz'; its keys are TOP_KEYS
 SCENE⏎accuracy: 1 → the configuration has an unknown key 'accuracy'; it belongs in a scene
 SCENE⏎seed: '010' → seed must be an integer …, not '010'
+SCENE⏎seed: '١' → seed must be an integer …, not '١'
 SCENE⏎results: ../elsewhere → results must be a path, …, not '../elsewhere'
 SCENE⏎results: src → results must be … outside the folders of the sources, not 'src'
 SCENE⏎shared: [paper, paper] → shared must be a list of different …, not ['paper', 'paper']
@@ -239,6 +242,8 @@ SCENE⏎shared: [papers] → shared[0] must be one of …, not 'papers'; did you
 IN_SCENE = """
 name: a/b → .name must be a name of small letters…, not 'a/b'
 name: figures → .name must be … none of all, benchmarks, …, not 'figures'
+name: tails → .name must be … none of …, tails, …, not 'tails'
+radii: [٠.٢] → .radii[0] must be a positive length …, not '٠.٢'
 width: 1 →  has an unknown key 'width'; it belongs in 'box'
 box: {discs: 3} → .box has an unknown key 'discs'; it belongs in a scene
 box: {width: 1,5, height: 1} → .box has an unknown key 5; decimals have a point
@@ -572,6 +577,8 @@ def test_numbers_of_one_meaning_and_merged_blocks_are_taken(tmp_path):
     text = "deep: [&b {<<: &a {count: 1}, count: 2}]\nc: {<<: *b, smallest: 3}\n"
     path.write_text(text, encoding="utf-8")
     assert read(path) == yaml.safe_load(text)
+    path.write_text('{\n\t"a":\t{"count": 1}\n}', encoding="utf-8")  # JSON, which has tabs
+    assert read(path) == {"a": {"count": 1}}
     with pytest.raises(ConfigError, match=r"none\.yaml: No such file or directory"):
         read(tmp_path / "none.yaml")
 
@@ -579,17 +586,23 @@ def test_numbers_of_one_meaning_and_merged_blocks_are_taken(tmp_path):
 # The process --------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("wrong", ["optimized", "another file of the name"])
-def test_what_the_workflow_cannot_run_with_is_one_sentence(tmp_path, wrong):
-    sources = str(Path(checks.__file__).parents[2])
-    environment = os.environ | {"PYTHONPATH": sources, "PYTHONOPTIMIZE": "2"}
-    said = "PYTHONOPTIMIZE=2 must not be set: it removes docstrings, which the pages show\n"
-    if wrong != "optimized":
-        mine = tmp_path / "twodiscs.py"
-        mine.write_text("raise SystemExit('imported by mistake')\n")
-        environment = os.environ | {"PYTHONPATH": os.pathsep.join((str(tmp_path), sources))}
-        said = f"{mine} hides the package twodiscs: give this file another name\n"
+def test_what_the_workflow_cannot_run_with_is_one_sentence(tmp_path):
+    sources = Path(checks.__file__).parents[2]
+    environment = os.environ | {"PYTHONPATH": str(sources), "PYTHONOPTIMIZE": "2"}
+    optimized = {"env": environment, "cwd": tmp_path}
+    run = python("-P", "-m", "twodiscs", "run", "my.yaml", **optimized)
+    said = "PYTHONOPTIMIZE=2 must not be set: it removes docstrings, which the pages show"
+    assert (run.returncode, run.stderr) == (2, f"error: {said}\n")
+    # The library needs no docstrings.
+    (tmp_path / "theory.csv").write_text("radius,quantity,exact\n0.1,volume,1.0\n")
+    run = python("-c", "import twodiscs as td; print(*td.load('.'))", **optimized)
+    assert (run.stdout, run.stderr) == ("theory\n", "")
+
+    mine = tmp_path / "twodiscs.py"
+    mine.write_text("raise SystemExit('imported by mistake')\n")
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join((str(tmp_path), str(sources)))}
     run = python("-c", "import twodiscs_paper.pipeline.job_cost", env=environment, cwd=tmp_path)
+    said = f"{mine} hides the package twodiscs: give this file another name\n"
     assert (run.returncode, run.stdout, run.stderr) == (1, "", said)
 
 

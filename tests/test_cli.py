@@ -259,11 +259,12 @@ def test_a_target_that_shows_nothing_is_refused(tmp_path, monkeypatch, capsys):
 
 def test_targets_may_stand_behind_options(monkeypatch, capsys):
     given = []
-    monkeypatch.setattr(build, "build", lambda *words: given.append(words))
+    monkeypatch.setattr(build, "build", lambda path, **words: given.append((path, words)))
     assert not command(
         monkeypatch, cli, "run", "my.yaml", "volume", "-n", "pressure", "--cores", "2"
     )
-    assert given == [("my.yaml", ["volume", "pressure"], 2, True)]
+    options = {"targets": ["volume", "pressure"], "cores": 2, "dry_run": True, "unlock": False}
+    assert given == [("my.yaml", options)]
 
 
 def _dag(targets, made):

@@ -57,13 +57,15 @@ def installed(tmp_path_factory):
     target = folder / "target"
     python(*pip, "install", *offline, "--target", target, built, check=True)
     absent = {{"pyyaml": "yaml"}.get(name, name) for name in EXTRAS}
-    (target / "sitecustomize.py").write_text(BLOCKED.format(absent=absent), encoding="utf-8")
+    (folder / "blocked").mkdir()
+    (folder / "blocked/sitecustomize.py").write_text(BLOCKED.format(absent=absent))
     return target
 
 
 def outside(installed, *words):
     """Run Python outside of the repository, with the wheel and without the extras."""
-    run = python(*words, cwd=installed, env=os.environ | {"PYTHONPATH": str(installed)})
+    path = os.pathsep.join([str(installed), str(installed.with_name("blocked"))])
+    run = python(*words, cwd=installed, env=os.environ | {"PYTHONPATH": path})
     assert run.returncode == 0, run.stderr
     return run.stdout
 
@@ -88,6 +90,15 @@ def test_the_wheel_carries_the_workflow(installed):
         if path.is_file() and left.isdisjoint(path.parts) and path.name not in NO_RULE_READS
     }
     assert asked | {"Snakefile", "workflow/Snakefile", "CITATION.cff"} <= carried
+
+
+def test_twodiscs_run_finds_the_workflow_of_a_wheel(installed, tmp_path):
+    """Also where pip had a --target, with records of files that are elsewhere."""
+    options = {"cwd": tmp_path, "env": os.environ | {"PYTHONPATH": str(installed)}, "check": True}
+    python("-m", "twodiscs", "new", "my.yaml", **options)
+    run = python("-m", "twodiscs", "run", "my.yaml", "--dry-run", **options)
+    assert f"--snakefile {installed}/share/twodiscs/Snakefile" in run.stdout
+    assert "dynamics" in run.stdout
 
 
 @pytest.mark.slow

@@ -59,6 +59,8 @@ def unrecognized(words, names):
 
 def value(text):
     """Return ``text`` as a number, or unchanged, for ``type=`` of an argument; the face checks."""
+    if not text.isascii() or "_" in text:  # Python has numbers in all digits, and 1_000
+        return text
     try:
         return parse_number(text)
     except ValueError:
@@ -247,16 +249,18 @@ def _parser():
             epilog = f"Targets: {', '.join(_targets())}."
         except InputError as missing:  # the workflow is not installed
             epilog = f"{missing}."
-    text = "build a configuration with Snakemake, or some of it"
+    text = "build a configuration with Snakemake in the current folder, or some of it"
     add = command("run", _run, text, epilog=epilog).add
     yaml = argcomplete.FilesCompleter(("yaml", "yml"))
     add("configuration", help="a YAML file; twodiscs new writes one", completer=yaml)
     text = "a name or a file of results (report)"
     add("targets", nargs="*", default=[], metavar="TARGET", help=text, completer=_targets)
     text = "to work on (all, or those of SNAKEMAKE_PROFILE)"
-    add("--cores", type=int, help=text)
+    add("--cores", type=value, help=text)
     text = "print a table of the jobs, but run nothing"
     add("-n", "--dry-run", action="store_true", help=text)
+    text = "run nothing, but remove the lock that a killed run left in this folder"
+    add("--unlock", action="store_true", help=text)
     new = command("new", _new, "write a commented configuration")
     new.add("configuration", help="a new file")
     return parser
@@ -274,7 +278,8 @@ def _targets(**_):
 
 
 def _run(options):
-    return _build().build(options.configuration, options.targets, options.cores, options.dry_run)
+    given = _arguments(options, ("targets", "cores", "dry_run", "unlock"))
+    return _build().build(options.configuration, **given)
 
 
 def _new(options):

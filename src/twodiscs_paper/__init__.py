@@ -6,6 +6,3 @@ from importlib.util import find_spec
 # Snakemake looks for modules beside the Snakefile first.
 if (_library := find_spec("twodiscs")) and not _library.submodule_search_locations:
     sys.exit(f"{_library.origin} hides the package twodiscs: give this file another name")
-
-if sys.flags.optimize > 1:
-    sys.exit("PYTHONOPTIMIZE=2 must not be set: it removes docstrings, which the pages show")

@@ -44,7 +44,7 @@ def test_other_figures_stand_in_for_those_that_are_not_there():
 @pytest.mark.parametrize("z", [2.41, 0.03456, 12.345])
 def test_the_largest_deviation_has_the_digits_of_the_verdict(z):
     row = {"bound": 99, "independent": True, "status": "sampled", "z": -z}
-    said = page("largest |z| {{ largest | three_digits }};", {"largest": z})
+    said = page("largest |z| {{ largest | three_digits }}\n", {"largest": z})
     assert said in verdict([("small", [row])])[1]
     assert (short(999), short(43_870_000_000)) == ("999", "4.4 × 10<sup>10</sup>")
 

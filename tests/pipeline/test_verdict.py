@@ -62,9 +62,3 @@ def test_an_empty_set_is_no_pass():
         failures, summary = verdict([("paper", PAPER), ("other", rows)])
         assert failures == ["other: nothing is compared"]
         assert not any(line.startswith("other") for line in summary.splitlines())
-
-
-def test_tables_of_one_name_are_all_compared():
-    """A scene may have the name of a study."""
-    failures, _ = verdict([("passages", changed(99.0)), ("passages", PAPER)])
-    assert len(failures) == 1

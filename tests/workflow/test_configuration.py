@@ -3,8 +3,10 @@
 Without these tests a mistake in the configuration could be a traceback, or begin to build.
 """
 
+import shutil
+
 import pytest
-from checkout import folder
+from checkout import Checkout, folder, run_twodiscs
 
 #: One mistake for each place that can find one; other tests check the sentences.
 MISTAKES = {
@@ -48,6 +50,29 @@ def test_a_file_that_cannot_be_read_and_a_mistake_on_the_command_line(unbuilt, t
 
 
 def test_a_misspelt_target_gets_the_name_that_is_closest(unbuilt):
-    run = unbuilt.snakemake("--dry-run", "mean_hop_times", passes=False)
+    words = "--dry-run", "mean_hop_times", "--report", "report.zip"
+    run = unbuilt.snakemake(*words, passes=False)
     assert run.returncode != 0
     assert "'mean_hop_times' is no target; did you mean 'mean_hop_time'?" in run.stdout
+    assert run.stdout.count("is no target") == 1
+
+
+def test_the_code_beside_the_workflow_is_the_code_that_runs(unbuilt, tmp_path):
+    """In a second checkout, with the environment of the first, nothing runs."""
+    for part in ("workflow", "config", "src/twodiscs"):
+        shutil.copytree(unbuilt.path / part, tmp_path / part)
+    code = f"the code in {tmp_path}/src/twodiscs would not run, because {unbuilt.path}/src/twodiscs"
+    snakefile = "--snakefile", str(tmp_path / "workflow/Snakefile")
+    for run in (
+        Checkout(tmp_path, unbuilt).snakemake(*snakefile, "--dry-run", "all", passes=False),
+        run_twodiscs(Checkout(tmp_path, unbuilt), "config/config.yaml"),
+    ):
+        assert run.returncode != 0
+        assert run.stderr.splitlines()[-1].removeprefix("error: ").startswith(code)
+
+
+def test_the_cache_of_snakemake_is_refused(unbuilt):
+    """It would take the grid of a scene for its exact values: wildcards are no parameters."""
+    run = unbuilt.snakemake("--dry-run", "--cache", "exact", "--", "all", passes=False)
+    assert run.returncode != 0
+    assert run.stderr.splitlines()[-1].startswith("--cache must not be given")

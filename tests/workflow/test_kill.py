@@ -11,7 +11,7 @@ import time
 
 import psutil
 import pytest
-from checkout import folder, fresh
+from checkout import folder, fresh, run_twodiscs
 from marks import slow
 
 JOB = "results/one/points/monte_carlo/0.2.json"
@@ -48,7 +48,7 @@ def begun(checkout, *words):
         cwd=checkout.path,
         env=os.environ | {"PYTHONPATH": str(checkout.path / "src")},
         stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
+        stderr=(checkout.path / "said").open("w"),
         start_new_session=True,
     )
     wait_until(lambda: any(job["num_threads"] > 1 for job in jobs(checkout.path)))
@@ -59,11 +59,11 @@ def begun(checkout, *words):
 @pytest.mark.parametrize(
     ("command", "name"),
     [
-        ("snakemake", "SIGKILL"),
+        slow("snakemake", "SIGKILL"),
         slow("snakemake", "SIGINT"),
         slow("snakemake", "SIGTERM"),
         ("twodiscs run config/config.yaml", "SIGINT"),
-        slow("twodiscs run config/config.yaml", "SIGKILL"),
+        ("twodiscs run config/config.yaml", "SIGKILL"),
     ],
 )
 def test_a_killed_run_leaves_no_job_and_the_next_one_resumes(tmp_path, command, name):
@@ -78,9 +78,13 @@ def test_a_killed_run_leaves_no_job_and_the_next_one_resumes(tmp_path, command, 
     if command != "snakemake" and name == "SIGINT":
         assert status not in (0, -signal.SIGINT)  # Snakemake has cleaned up
         assert not jobs(checkout.path)
+        said = (checkout.path / "said").read_text()
+        assert said.splitlines()[-1].startswith("Stopped; the same command goes on")
     wait_until(lambda: not jobs(checkout.path))
 
     if name == "SIGKILL":
         (checkout.path / JOB).write_text("{")  # as far as the job had come
-        checkout.snakemake("--unlock")
+        locked = run_twodiscs(checkout, "config/config.yaml", JOB)
+        assert "run the command once with --unlock" in locked.stderr.splitlines()[-1]
+        assert run_twodiscs(checkout, "config/config.yaml", "--unlock").returncode == 0
     assert ("monte_carlo", ("scene=one", "stage=monte_carlo", "radius=0.2")) in checkout.jobs(JOB)

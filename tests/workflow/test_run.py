@@ -4,15 +4,15 @@ Without these tests ``twodiscs run`` could read files of others, or print anothe
 """
 
 import json
-import os
 import shutil
 import subprocess
 import sys
 
 import pytest
 import yaml
-from checkout import Checkout, first
+from checkout import Checkout, folder, fresh, run_twodiscs
 
+from twodiscs.points.base import digest_line
 from twodiscs_paper.configuration.new import new
 from twodiscs_paper.configuration.yaml_files import read
 
@@ -27,14 +27,16 @@ def place(unbuilt, tmp_path, monkeypatch):
 
 def run(place, *words, passes=True):
     """Return the completed process of ``twodiscs run my.yaml`` and more ``words``."""
-    return subprocess.run(
-        [sys.executable, "-P", "-m", "twodiscs", "run", "my.yaml", *words],
-        cwd=place.path,
-        env=os.environ | {"PYTHONPATH": first(str(place.home.path / "src"))},
-        capture_output=True,
-        text=True,
-        check=passes,
-    )
+    done = run_twodiscs(place, "my.yaml", *words)
+    assert (done.returncode == 0) == passes, done.stderr
+    return done
+
+
+def last_lines(done):
+    """Return the reason and the path of the log in the last lines of a run that failed."""
+    *_, reason, log, advice = done.stderr.splitlines()
+    assert advice.startswith("Remove the cause; the same command goes on")
+    return reason.removeprefix("error: "), log.removeprefix("The log is ")
 
 
 def test_a_new_configuration_is_the_report_on_mean_times(place):
@@ -117,10 +119,7 @@ def test_a_point_of_other_work_that_was_copied_in_place_is_refused(place):
     ):
         before = place.results("mine")
         shutil.copy(place.path / f"{source}.json", points / f"{target}.json")
-        assert build(1, "mine", passes=False).returncode != 0
-        logs = [path.read_text() for path in (place.path / "mine/logs/small").glob("*.log")]
-        (said,) = (text for text in logs if text)
-        sentence = said.splitlines()[-1]
+        sentence, _ = last_lines(build(1, "mine", passes=False))
         assert f"{target}.json has {wrong}" in sentence
         assert sentence.endswith("; delete it, and it is made again")
         now = place.results("mine")
@@ -130,3 +129,56 @@ def test_a_point_of_other_work_that_was_copied_in_place_is_refused(place):
         build(1, "mine")
         for name in ("mean_times", "volume"):
             assert place.results("mine")[f"small/{name}.csv"] == first[f"small/{name}.csv"]
+
+
+def test_a_run_that_fails_ends_with_the_reason_its_log_and_what_to_do(place):
+    """A table that was cut, a score that is too high, and a point that was edited."""
+    (place.path / "my.yaml").write_text(yaml.safe_dump(SMALL))
+    built = run(place, "check").stdout
+    assert built.startswith(f"Results: {place.path}/results\n")
+    scene, edited = place.path / "results/small", "is not what its job wrote; delete it, and it is"
+    table, point = scene / "check.csv", scene / "points/dynamics/0.2.json"
+
+    header, row, *rows = table.read_text().splitlines(keepends=True)
+    table.write_text("".join([header, row]))
+    of_check = "results/logs/check.log"
+    expected = f"results/small/check.csv {edited} made again", of_check
+    assert last_lines(run(place, "check", passes=False)) == expected
+    cells = dict(zip(header.split(","), row.split(","), strict=True)) | {"z": "77"}
+    table.write_text("".join([header, ",".join(cells.values()), *rows]))
+    (place.path / "results/logs/small/check.log").write_text(digest_line(table))
+    reason, log = last_lines(run(place, "check", passes=False))
+    assert reason.startswith(
+        "small: comparison volume, quantity volume, method monte_carlo, radius"
+    )
+    assert log == of_check
+    table.unlink()
+    point.write_text(point.read_text().replace("1", "2", 1))
+    expected = f"results/small/points/dynamics/0.2.json {edited} made again"
+    assert last_lines(run(place, "check", passes=False))[0] == expected
+    point.unlink()
+    assert "small: 8 comparisons passed" in run(place, "check").stdout
+
+
+def test_results_are_where_the_run_is_and_a_build_beside_the_file_is_named(place):
+    (place.path / "elsewhere").mkdir()
+    run(place, "results/configuration.json")
+    words = "../my.yaml", "--dry-run", "check"
+    lines = run_twodiscs(Checkout(place.path / "elsewhere", place.home), *words).stdout.splitlines()
+    assert lines[0] == f"Results: {place.path}/elsewhere/results"
+    assert lines[1].startswith("../results has a build of this configuration")
+
+
+def test_an_environment_in_a_folder_with_a_blank_is_no_obstacle(tmp_path):
+    """Its Python is a word of each job's command."""
+    checkout = fresh(tmp_path / "my paper")
+    folder(checkout.path, None, SMALL)
+    venv = checkout.path / ".venv"
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", venv], check=True)
+    (packages,) = venv.glob("lib/python*/site-packages")
+    (packages / "all.pth").write_text(
+        f"{checkout.path}/src\nimport sys; sys.path += {sys.path[1:]!r}\n"
+    )
+    words = "-m", "twodiscs", "run", "config/config.yaml", "results/small/grid.csv", "--cores", "1"
+    run = subprocess.run([venv / "bin/python", *words], cwd=checkout.path, check=False)
+    assert run.returncode == 0

@@ -95,12 +95,8 @@ rule manifest:
     log:
         f"{RESULTS}/logs/manifest.log",
     localrule: True
-    params:
-        names=lambda w, input, output: sorted(
-            os.path.relpath(path, os.path.dirname(output.manifest)) for path in input.files
-        ),
-    shell:
-        '(cd "$(dirname {output.manifest:q})" && sha256sum {params.names:q}) > {output.manifest:q} 2> {log:q}'
+    script:
+        "../scripts/manifest.py"
 
 
 rule provenance:
@@ -114,7 +110,7 @@ rule provenance:
         f"{RESULTS}/logs/provenance.log",
     localrule: True
     params:
-        sources=os.path.dirname(source("CITATION.cff")) or ".",
+        sources=os.path.relpath(PACKAGES),
     script:
         "../scripts/provenance.py"
 

@@ -23,8 +23,8 @@ from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.formats import format_number
 from twodiscs_paper.catalogue import STUDIES
 
-#: A decimal number. YAML 1.1 has others: it reads 010 as 8 and 1:30 as 90.
-DECIMAL = re.compile(r"[-+]?(0|[1-9]\d*|\d*\.\d+|\d+\.\d*)(e[-+]?\d+)?", re.IGNORECASE)
+#: A decimal number. YAML 1.1 has others: it reads 010 as 8 and 1:30 as 90. Python has more digits.
+DECIMAL = re.compile(r"(?ai)[-+]?(0|[1-9]\d*|\d*\.\d+|\d+\.\d*)(e[-+]?\d+)?")
 
 ABOUT_PLAIN = (*(name for name, study in STUDIES.items() if study.about_plain), "paper")
 BUILT_ONCE = (*STUDIES, "paper", "report")
@@ -134,7 +134,7 @@ Folder = text(
 )
 #: Names of folders and targets that a scene must not have.
 TAKEN = (
-    "all", "benchmarks", "code", "draft", "effects", "figures", "logs", "parts", "points", "scenes",
+    "all", "benchmarks", "code", "draft", "figures", "logs", "parts", "points", "scenes", *STUDIES,
 )  # fmt: skip
 Name = text(
     "a name of small letters, digits, - and _, 100 at most, that starts with a letter or a digit, "

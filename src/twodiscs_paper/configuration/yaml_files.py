@@ -1,5 +1,6 @@
 """From a configuration file to a ``Configuration``, or to a sentence for each mistake."""
 
+import json
 import re
 import sys
 from pathlib import Path
@@ -35,8 +36,8 @@ def read(path):
     if the text is no YAML, if a key is given twice, and if a number is not decimal.
     """
     try:
-        with open(path, encoding="utf-8") as file:
-            mapping = yaml.load(file, _Loader)
+        text = Path(path).read_text(encoding="utf-8")
+        mapping = yaml.load(text.replace("\t", " ") if _is_json(text) else text, _Loader)
     except OSError as error:
         raise ConfigError(f"{path}: {error.strerror}") from None
     except yaml.MarkedYAMLError as error:
@@ -51,6 +52,15 @@ def read(path):
     if not isinstance(mapping, dict):
         raise ConfigError(f"{path}: must hold {keys()['allowed']}, not {describe(mapping)}")
     return mapping
+
+
+def _is_json(text):
+    """Return whether a text is JSON, in which YAML forbids the tabs."""
+    try:
+        json.loads(text)
+    except (ValueError, RecursionError):
+        return False
+    return True
 
 
 class _Loader(yaml.SafeLoader):
@@ -156,5 +166,6 @@ def or_exit(function, *arguments):
     """Return ``function(*arguments)``, or end the program with the sentence of a mistake."""
     try:
         return function(*arguments)
-    except ConfigError as error:
-        sys.exit("\n".join(f"Configuration: {sentence}" for sentence in str(error).split("\n")))
+    except InputError as error:
+        about = "Configuration: " if isinstance(error, ConfigError) else ""
+        sys.exit("\n".join(f"{about}{sentence}" for sentence in str(error).split("\n")))

@@ -3,8 +3,10 @@
 The Snakefile imports this, so it must be quick.
 """
 
+import json
 import os
 import shlex
+import shutil
 import signal
 import sys
 import tempfile
@@ -27,8 +29,15 @@ TARGETS = (
     "forecast", "explorer", "benchmark", *FIGURES, *STUDIES,
 )  # fmt: skip
 
-#: The path of the workflow of a wheel, below the folder of the installation.
+#: The path of the workflow of a wheel, below the folder of the installation. If pip has a --target,
+#: this is the folder of the packages, and the paths in the wheel's records are wrong.
 SHARED = "share/twodiscs/Snakefile"
+
+#: The exit status of a command that Ctrl-C ended.
+INTERRUPTED = 128 + signal.SIGINT
+
+#: A disk with fewer free bytes is full.
+FULL = 2**20
 
 #: The target of a command without one: check, tables, figures and the report on them.
 DEFAULT = "report"
@@ -43,18 +52,37 @@ def snakefile():
         files = metadata.files("twodiscs") or ()
     except metadata.PackageNotFoundError:
         files = ()
-    for file in files:
-        if file.as_posix().endswith(SHARED):
-            return Path(file.locate()).resolve()
+    installed = [Path(file.locate()) for file in files if file.as_posix().endswith(SHARED)]
+    for path in (Path(twodiscs.__file__).parents[1] / SHARED, *installed):
+        if path.is_file():
+            return path.resolve()
     raise InputError("the workflow is not installed: twodiscs comes without its Snakefile here")
 
 
-def command(path, targets, snakefile, cores=None, dry_run=False):
+def check_code(folder):
+    """Raise ``InputError`` if the sources in ``folder`` are not those that are imported.
+
+    Texts of pages come from docstrings, so Python must not leave these out either.
+    """
+    here, imported = Path(folder, "src/twodiscs"), Path(twodiscs.__file__).parent
+    if here.is_dir() and not here.samefile(imported):
+        raise InputError(
+            f"the code in {here.resolve()} would not run, because {imported} is installed; `make` "
+            "there sets up an environment that runs it"
+        )
+    if sys.flags.optimize > 1:
+        raise InputError(
+            "PYTHONOPTIMIZE=2 must not be set: it removes docstrings, which the pages show"
+        )
+
+
+def command(path, targets, snakefile, cores=None, dry_run=False, unlock=False):
     """Return the words of the command that builds ``targets`` of the configuration at ``path``.
 
     It prints the progress, but not each job. Without ``targets`` it builds the report. It uses
     ``cores`` cores. If they are None, the user's profile of Snakemake chooses; without a profile it
-    uses all. With ``dry_run`` it prints and does nothing.
+    uses all. With ``dry_run`` it prints and does nothing, with ``unlock`` it removes the lock that
+    a killed run left.
 
     Raises ``InputError`` for a target that is neither a name nor a path, and for ``cores`` that are
     no integer ≥ 1.
@@ -79,7 +107,7 @@ def command(path, targets, snakefile, cores=None, dry_run=False):
     words = ["snakemake", *found, *(["--cores", str(cores)] if cores is not None else [])]
     words += ["--no-hooks", "--quiet", "rules", "host"]
     words += ["progress", "reason"] if dry_run else []  # ``planned`` prints them by scene
-    words += [*(["--dry-run"] if dry_run else []), "--configfile", str(path)]
+    words += ["--dry-run"] * dry_run + ["--unlock"] * unlock + ["--configfile", str(path)]
     return [*words, "--", *(targets or [DEFAULT])]
 
 
@@ -100,8 +128,9 @@ def check_targets(path, targets, configuration):
             )
 
 
-def build(path, targets, cores=None, dry_run=False):
+def build(path, targets, cores=None, dry_run=False, unlock=False):
     """Run ``command`` with these arguments in Snakemake; return its exit status."""
+    check_code(".")
     from snakemake import cli, workflow
 
     try:
@@ -113,8 +142,8 @@ def build(path, targets, cores=None, dry_run=False):
     check_results(configuration.results, ".")
     check_targets(path, targets, configuration)
     # The Snakefile prints the verdict only if it had something to do; here it is always printed.
-    words = command(path, targets, snakefile(), cores, dry_run)
-    print(shlex.join(words), flush=True)
+    words = command(path, targets, snakefile(), cores, dry_run, unlock)
+    print(*places(path, configuration.results), shlex.join(words), sep="\n", flush=True)
     # Snakemake runs in this process. Its profile reads sys.argv, and it cleans up after Ctrl-C.
     sys.argv = words
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -123,13 +152,74 @@ def build(path, targets, cores=None, dry_run=False):
         cli.main()
     except SystemExit as end:
         status = end.code
-    if status == 0:
-        # Snakemake keeps the last workflow of a process among the names of a Snakefile.
+    except KeyboardInterrupt:
+        status = INTERRUPTED
+    # Snakemake keeps the last workflow of a process among the names of a Snakefile.
+    if status:
+        run = getattr(workflow, "workflow", None)
+        print(failure(run, status, configuration.results), end="", file=sys.stderr)
+    elif not unlock:
         dag, scenes = workflow.workflow.dag, configuration.described()
         print(
             planned(dag) if dry_run else closing(configuration.results, dag, [path], scenes), end=""
         )
     return status
+
+
+def places(path, results):
+    """Return sentences on where the files of a build are, for its first lines.
+
+    ``results`` are below the folder of the run, which may not be that of the configuration at
+    ``path``. If that one has results of the same configuration, a sentence names them.
+    """
+    lines, beside = [f"Results: {Path(results).resolve()}"], Path(path).parent / results
+    try:
+        built = json.loads((beside / "configuration.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return lines
+    if built == read(path) and not (Path(results).exists() and beside.samefile(results)):
+        lines += [f"{beside} has a build of this configuration: to go on with it, run there"]
+    return lines
+
+
+def failure(workflow, status, results):
+    """Return the last lines of a run of a ``Workflow`` of Snakemake that ended with a ``status``.
+
+    They are the reasons in the words of each failed job, the path of its log, and what to do. If
+    the disk of the ``results`` is full, this is a reason, too.
+    """
+    again = "the same command goes on, and keeps the files that are finished"
+    scheduler = workflow and workflow.scheduler
+    folder = Path(results if Path(results).exists() else ".").resolve()
+    is_full = shutil.disk_usage(folder).free < FULL
+    if scheduler is None and status != INTERRUPTED and not is_full:
+        if workflow and workflow.persistence and workflow.persistence.locked:
+            return (
+                "Another run works in this folder, or one was killed there. If none works, run the "
+                f"command once with --unlock; then {again}.\n"
+            )
+        return ""  # Snakemake ended with the reason
+    failed = scheduler.failed if scheduler else ()
+    lines = [f"error: no space is left on the disk of {folder}"] * is_full
+    for job in sorted((job for one in failed for job in getattr(one, "jobs", [one])), key=str):
+        for log in job.log:
+            lines += [f"error: {sentence}" for sentence in reasons(log)] + [f"The log is {log}"]
+    lines.append(f"{'Remove the cause' if lines else 'Stopped'}; {again}.")
+    return "".join(f"{line}\n" for line in lines)
+
+
+def reasons(log):
+    """Return the sentences with which a job ended: the last lines of its ``log``."""
+    try:
+        lines = Path(log).read_text(encoding="utf-8", errors="replace").split("\n")
+    except OSError:
+        lines = []
+    lines = [line.strip() for line in lines if line.strip()]
+    if not lines:
+        return ["the job ended without a word: it was killed, or no memory was left"]
+    is_traceback = any(line.startswith("Traceback ") for line in lines)
+    last = lines[-1:] if is_traceback else lines[-5:]
+    return [line.removeprefix(f"{InputError.__module__}.InputError: ") for line in last]
 
 
 def planned(dag):

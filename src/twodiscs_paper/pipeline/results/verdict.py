@@ -45,7 +45,10 @@ def _summary(rows, tested):
         return f"{len(tested)} comparisons passed, {largest}"
     tests = sum(bool(row["independent"]) for row in tested)
     few = sum(row["status"] in ("too-few", "none-seen") for row in tested)
-    return (
-        f"{len(tested)} comparisons passed, {tests} of them tests, {largest}; {few} had too few "
-        f"events for an error, {len(rows) - len(tested)} more could not be compared"
-    )
+    less = {
+        "had too few events for an error": few,
+        "more could not be compared": len(rows) - len(tested),
+    }
+    notes = [f"{number} {text}" for text, number in less.items() if number]
+    passed = f"{len(tested)} comparisons passed, {tests} of them tests, {largest}"
+    return "; ".join([passed, *notes])
