@@ -20,7 +20,12 @@ BOX = Box(1.5, 1.0)
 SCENE = "paper"
 
 #: Pictures that are whole figures.
-WHOLE = {"model": "model", "cost": "accuracy_cost", "price": "accuracy_cost_by_radius"}
+WHOLE = {
+    "model": "model",
+    "cost": "accuracy_cost",
+    "price": "accuracy_cost_by_radius",
+    "calibration": "calibration",
+}
 
 #: {picture: (figure, number of the panel, abscissa if it is written beneath another panel)}
 PANELS = {

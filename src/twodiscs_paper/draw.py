@@ -12,6 +12,7 @@ from twodiscs_paper.studies.passages import figure_files as files
 from twodiscs_paper.studies.passages import figure_friction as friction
 from twodiscs_paper.studies.passages import figure_transmission as transmission
 from twodiscs_paper.studies.stability import figure as stability
+from twodiscs_paper.studies.stability import figure_calibration as calibration
 from twodiscs_paper.studies.stability import figure_runs as stability_of_runs
 from twodiscs_paper.studies.tails import figure as tails
 from twodiscs_paper.studies.thresholds import figure as thresholds
@@ -30,6 +31,7 @@ DRAW = {
     "friction": friction.draw,
     "transmission": transmission.draw,
     "stability": stability.draw,
+    "calibration": calibration.draw,
     "stability_of_runs": stability_of_runs.draw,
     "tails": tails.draw,
     "thresholds": thresholds.draw,

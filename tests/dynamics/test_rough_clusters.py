@@ -46,38 +46,3 @@ def test_a_run_waits_for_crowds_that_its_budget_can_show():
     assert few["disc_collision_time"].status == "too-few"
     assert enough["disc_collision_time"].status == "reached"
     assert abs(enough["disc_collision_time"].z) < 5
-
-
-def scenes():
-    """Return 20 scenes within 3 % of a threshold, ten on a ring and ten between walls."""
-    rng = np.random.default_rng(36)
-
-    def draw(low, high):
-        return math.exp(rng.uniform(math.log(low), math.log(high)))
-
-    for number in range(20):
-        radius = 0.25 / (1 + draw(1e-4, 3e-2))
-        inertia = draw(3e-3, 0.6)
-        if number < 10:
-            yield td.Scene(1.0, draw(0.6, 6.0), radius, moment_of_inertia=inertia, periodic="x")
-        else:
-            yield td.Scene(draw(1.1, 3.0), 1.0, radius, moment_of_inertia=inertia)
-
-
-@pytest.mark.slow
-def test_errors_of_rough_discs_are_what_they_say():
-    """40 seeds of 20 scenes; some 2400 scores, of which those of a run are correlated."""
-    normal = []
-    for scene in scenes():
-        for seed in range(40):
-            rows = td.simulate(scene, error=1e-2, budget=3e6, seed=seed).rows
-            # The hits of all walls are those of either axis, or their sum.
-            normal += [
-                row["z"] for row in rows if row["test"] == "normal" and row["event"] != "any_wall"
-            ]
-    z = np.array(normal)
-    square, covered, largest = np.mean(z * z), np.mean(np.abs(z) < 1.96), np.abs(z).max()
-    print(f"{z.size} scores, mean square {square:.2f}, {covered:.1%} within 1.96, {largest:.1f}")
-    assert z.size > 1000
-    assert 0.8 < square < 1.3
-    assert largest < 5

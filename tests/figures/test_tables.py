@@ -103,13 +103,6 @@ def cases():
                 symbol(r["radius"], r, 1 / r["plain"]) for r in own if r["stderr"] and r["plain"]
             ]
             yield "effects", panel, effects._look(k), due
-    rows = select(table("stability"), part="coverage")
-    radii = sorted({row["radius"] for row in rows})
-    for i, (event, look) in enumerate(LOOKS.items()):
-        beside = 0.12 * (i - (len(LOOKS) - 1) / 2)
-        own = [row for row in select(rows, quantity=event) if row["value"] is not None]
-        due = [(radii.index(row["radius"]) + beside, row["value"], row["stderr"]) for row in own]
-        yield "stability_of_runs", "d", look, due
     # Open and full symbols of one look are of crossings and of first passages.
     (path,) = STUDY_FIGURES["brownian"].long_runs.values()
     rows = [row for row in read_table(EXPECTED.parents[1] / path) if row["stderr"] is not None]

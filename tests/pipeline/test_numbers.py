@@ -230,6 +230,8 @@ def expected(results):
     kept = PAPER / "long_run"
     for name in ("files", "displacements"):
         tables[name] = TABLES["passages"].read(kept / name / "passages.csv")
+    path = kept / "calibration" / "calibration.csv"
+    tables["calibration"] = TABLES["calibration"].read(path)
     return tables | {"long_run": MeanTimesTable.read(kept / "far" / "mean_times.csv")}
 
 
@@ -296,9 +298,9 @@ BY_HAND = {
     ),
     "longest_run": lambda t: max(r["count"] for r in of(t["stability"], part="dynamics")),
     "overlap": lambda t: -min(r["value"] for r in of(t["stability"], quantity="smallest_gap")),
-    "coverage_least": lambda t: 100 * min(
-        r["value"] for r in of(t["stability"], part="coverage") if r["value"] is not None
-    ),
+    "calibrated_square": lambda t: np.mean([
+        r["mean_square"] for r in of(t["calibration"], size="usual", test="normal")
+    ]),
     "long_run_events": lambda t: sum(
         r["count"] for r in t["long_run"] if r["event"] in ("any_wall", "disc_collision")
     ),

@@ -13,7 +13,9 @@ import pytest
 from factory import conditioned_point, sample_point, written
 from marks import slow
 from mpmath import mpf
+from scipy.stats import chi2, norm
 
+import twodiscs as td
 from twodiscs.dynamics.law import Law, two_disc_law
 from twodiscs.figures import style
 from twodiscs.model.checks import InputError
@@ -23,7 +25,7 @@ from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.initial_states import states
 from twodiscs.theory import exact
-from twodiscs_paper.studies.stability import figure, figure_runs
+from twodiscs_paper.studies.stability import calibration, figure, figure_runs
 from twodiscs_paper.studies.stability import measure as stability
 from twodiscs_paper.studies.stability.study import StabilityTable
 
@@ -220,7 +222,7 @@ def test_a_bound_that_says_something_is_judged(monkeypatch):
     assert (other["quantity"], other["z"], other["passed"]) == ("b_time", None, None)
 
 
-# Long runs, paths back and coverage ---------------------------------------------------------------
+# Long runs and paths back ------------------------------------------------------------------------
 
 SCENE = Scene(1.5, 1.0, 0.2)
 
@@ -295,16 +297,44 @@ def test_growth_is_that_of_the_tangent_space_and_ends_where_the_events_differ():
     assert math.isnan(stability.growth(state, 0, 10, 1e-9, Law(0.55, 0.3, 0.4))[0])
 
 
-def test_intervals_cover_the_exact_time_in_95_of_100(monkeypatch):
-    """Just below h/4 one block has hardly any horizontal hop: there is no interval to speak of."""
-    monkeypatch.setattr(stability, "ordinary_radii", lambda box: [0.2499])
-    rows = list(stability.coverage_rows(PAPER, seed=7, repetitions=100))
+# Calibration --------------------------------------------------------------------------------------
+
+
+def test_scores_of_values_with_errors_that_are_right_and_wrong():
+    """Normal values: mean squares of 1, of 4 with half of the error, and about their own mean."""
+    values = np.random.default_rng(1).standard_normal(4000) + 3
+    five = 5 * math.sqrt(2 / 4000)
+    for error, known, due in ((1.0, 3.0, 1.0), (0.5, 3.0, 4.0), (1.0, None, 1.0)):
+        z, withheld = calibration.scored([(v, error, known) for v in values])
+        assert abs(np.mean(z * z) / due - 1) < five
+        assert withheld == 0
+    z, withheld = calibration.scored([(4.0, 1.0, 3.0), (4.0, None, 3.0), (None, None, 3.0)])
+    assert (z.tolist(), withheld) == ([1.0], 2)
+
+
+def test_a_row_of_calibration_counts_what_the_face_prints():
+    """One seed of few bodies: scores of simulate are the deviations over the printed errors."""
+    rows = [*calibration.rows(2, 5, ("r = 0.2",), ("simulate",))]
+    found = {row["quantity"]: row for row in rows if row["size"] == "least"}
+    z = []
+    for seed in (5, 6):
+        one = td.simulate(td.Scene(1.5, 1.0, 0.2), budget=1, seed=seed)["disc_collision_time"]
+        z.append((one.value - one.exact) / one.stderr)
+    row = found["disc_collision_time"]
+    assert (row["scores"], row["withheld"]) == (2, 0)
+    assert row["mean"] == pytest.approx(np.mean(z))
+    assert row["mean_square"] == pytest.approx(np.mean(np.square(z)))
+
+
+@pytest.mark.slow
+def test_errors_of_all_calls_and_scenes_are_what_they_say():
+    """16 fresh seeds: no mean square is beyond five sigma of chance, at Bonferroni's bound."""
+    rows = [row for row in calibration.rows(16, 990_000) if row["scores"] >= 8]
+    assert len(rows) > 300
+    alarm = 2 * norm.sf(5) / len(rows)
     for row in rows:
-        if row["quantity"] == "horizontal_hop":
-            assert (row["status"], row["value"], row["passed"]) == ("too-few", None, None)
-        else:
-            assert (row["status"], row["count"], row["passed"]) == ("counted", 100, True)
-            assert abs(row["value"] - 0.95) < 5 * math.sqrt(0.95 * 0.05 / 100), row["quantity"]
+        n = row["scores"]
+        assert chi2.sf(row["mean_square"] * n, n) > alarm, row
 
 
 # The jobs and the figure --------------------------------------------------------------------------
@@ -318,8 +348,7 @@ def quick(monkeypatch):
         "REVERSED": 200, "WINDOW": 64,
     }.items():  # fmt: skip
         monkeypatch.setattr(stability, name, value)
-    rows, extremes = stability.coverage_rows, stability.extreme_rows
-    monkeypatch.setattr(stability, "coverage_rows", lambda box, seed: rows(box, seed, 3))
+    extremes = stability.extreme_rows
     one = {"ordinary": stability.PAPER}
     monkeypatch.setattr(stability, "extreme_rows", lambda seed: extremes(seed, one))
 
@@ -329,7 +358,7 @@ def test_table_and_figure_of_any_box(quick, tmp_path):
     rows = written(tmp_path, StabilityTable, box=box, seed=1, ordinary=2000, hard=1000)
     parts = {row["part"] for row in rows}
     assert parts == {
-        "theory", "sampling", "estimates", "times", "dynamics", "extremes", "reversal", "coverage"
+        "theory", "sampling", "estimates", "times", "dynamics", "extremes", "reversal"
     }  # fmt: skip
     with style.context():
         for module in (figure, figure_runs):

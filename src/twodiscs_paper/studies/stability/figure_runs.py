@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocator
+from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
 
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import (
@@ -38,13 +38,12 @@ def draw(box, tables):
     rows = tables["stability"]
     figure = new_figure(2 * HEIGHT + LOWEST, WIDTH, layout="constrained")
     upper, middle, lower = figure.subfigures(3, height_ratios=(HEIGHT, HEIGHT, LOWEST))
-    axes = iter((*upper.subplots(1, 2), *middle.subplots(1, 2), lower.subplots()))
+    axes = iter((*upper.subplots(1, 2), middle.subplots(), lower.subplots()))
     for letter, part, draw_part in (
         ("a", "dynamics", _runs),
         ("b", "times", _times),
         ("c", "reversal", _reversal),
-        ("d", "coverage", _coverage),
-        ("e", "extremes", _extremes),
+        ("d", "extremes", _extremes),
     ):
         one = next(axes)
         one.set_label(letter)
@@ -168,7 +167,7 @@ def _extremes(axes, rows):
     axes.legend(ncols=7, **ABOVE)
 
 
-# Reversal and coverage ----------------------------------------------------------------------------
+# Reversal -----------------------------------------------------------------------------------------
 
 
 def _reversal(axes, rows):
@@ -196,28 +195,3 @@ def _reversal(axes, rows):
     axes.set_ylabel("error of return")
     if radii:
         axes.legend(loc="lower right", **{"handletextpad": 0.1})
-
-
-def _coverage(axes, rows):
-    """Draw the coverage of the intervals, radius by radius and event by event."""
-    radii = sorted({row["radius"] for row in rows})
-    for i, (event, look) in enumerate(LOOKS.items()):
-        beside = (i - (len(LOOKS) - 1) / 2) * 0.12
-        placed = [(radii.index(r["radius"]) + beside, r) for r in select(rows, quantity=event)]
-        points = [(x, r["value"], r["stderr"]) for x, r in placed if r["value"] is not None]
-        x, y, error = zip(*points, strict=True) if points else ([], [], [])
-        symbol = panels.open_symbol(*look)
-        axes.errorbar(x, y, error, ls="", elinewidth=0.6, label=event_name(event), **symbol)
-        few = [x for x, row in placed if row["value"] is None]
-        axes.plot(few, [0.905] * len(few), "x", color=look[0])
-    for row in [row for row in rows if row["low"] is not None][:1]:
-        axes.axhline(row["low"], **BOUND)
-        axes.axhline(row["high"], **BOUND)
-    axes.axhline(0.95, color=GREY, lw=0.5, zorder=0)
-    axes.set(
-        xlim=(-0.5, max(len(radii), 1) - 0.5), ylim=(0.9, 1.0), ylabel="coverage of 95 % intervals"
-    )
-    axes.xaxis.set_major_locator(FixedLocator(range(len(radii))))
-    axes.set_xticklabels([f"$r={panels.mathtext(radius)}$" for radius in radii])
-    axes.tick_params(axis="x", length=0)
-    axes.legend(loc="upper center", ncols=3, columnspacing=1.0)

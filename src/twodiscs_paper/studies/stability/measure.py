@@ -18,22 +18,19 @@ from twodiscs.analysis import scores
 from twodiscs.analysis.check import comparisons
 from twodiscs.analysis.tables import AreasTable, MeanTimesTable, VolumeTable
 from twodiscs.dynamics import runs
-from twodiscs.dynamics.engine import find_engine
-from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import after_event, contact_quotient, two_disc_law, wall_quotient
 from twodiscs.dynamics.two.follow import find_events, new_rows, put_state, state_at
 from twodiscs.model.checks import LARGEST_INTEGER
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.formats import shortest_decimal
 from twodiscs.model.scene import Box, Scene
-from twodiscs.points import estimates
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.conditioned import conditioned_sampler
 from twodiscs.sampling.initial_states import states
 from twodiscs.sampling.jit import compiled
 from twodiscs.theory import exact
 from twodiscs_paper.reference import DIGITS, exact_numbers
-from twodiscs_paper.studies.estimates import LinearFit, covers, mean_of
+from twodiscs_paper.studies.estimates import LinearFit, mean_of
 from twodiscs_paper.studies.single import advance
 from twodiscs_paper.studies.stability.closed_form import closed_form
 from twodiscs_paper.study import row
@@ -48,9 +45,6 @@ THEORY_BOUND, ACCEPTED_BOUND, TIME_BOUND = 1e-13, 0.2, 8.0
 #: Bounds for a pass: |E − 1/2|; gap between the discs and excess beyond a centre's range, in units
 #: of the rounding of the box (``box_units``).
 ENERGY_BOUND, GAP_BOUND, EXCESS_BOUND = 1e-11, -1e-14, 1e-15
-
-#: Range of the share of 95 % intervals that cover the exact value.
-COVERAGE_BOUNDS = 0.92, 0.98
 
 #: The largest |z| that passes.
 LARGEST_Z = 5.0
@@ -87,9 +81,6 @@ ROUNDINGS = 2.0**5
 #: Size of the separation whose growth is measured: its square is a rounding. Events before its
 #: growth is measured, and events of a pilot measurement, which sets the length of the paths.
 SEPARATION, FORGOTTEN, PILOT = 1e-8, 100, 200
-
-#: Independent repetitions of a measurement, each with as many replicas as share a stream.
-REPETITIONS = 800
 
 
 def judged(start, quantity, value, low=None, high=None, z=None, **cells):
@@ -669,37 +660,7 @@ def reversal_rows(box, seed):
         )
 
 
-# Error bars -------------------------------------------------------------------------------------
-
-
-def coverage_rows(box, seed, repetitions=REPETITIONS):
-    """Yield how often the 95 % interval of a mean time covers the exact value, event by event.
-
-    A repetition is one block of ``run_blocks``. If most repetitions have too few events
-    for an interval (``estimates.has_error_bar``), the row has the status too-few and no value.
-    """
-    low, high = COVERAGE_BOUNDS
-    for radius in ordinary_radii(box):
-        scene = box.scene(radius)
-        duration, times = find_engine(scene).replica_duration(scene), exact.mean_times(scene)
-        blocks = [
-            find_engine(scene).run_blocks(scene, EVENTS, seed, block, block + 1, duration)
-            for block in range(repetitions)
-        ]
-        start = start_of("coverage", "ordinary", radius) | {"count": repetitions}
-        for e, event in enumerate(EVENTS):
-            if times[event] is None:
-                continue
-            moments = [(int(sums[e]), int(products[e, e]), REPLICAS) for sums, products in blocks]
-            if sum(estimates.has_error_bar(*m) for m in moments) < repetitions / 2:
-                yield judged(start, event, None, status="too-few")
-                continue
-            intervals = [
-                estimates.mean_time(*m, scene.multiplicity(event) * duration) for m in moments
-            ]
-            share = sum(i is not None and covers(i, times[event]) for i in intervals) / repetitions
-            found = {"exact": 0.95, "stderr": math.sqrt(0.95 * 0.05 / repetitions)}
-            yield judged(start, event, share, low, high, status="counted", **found)
+# All rows ---------------------------------------------------------------------------------------
 
 
 def rows(box, seed, ordinary, hard):
@@ -714,4 +675,3 @@ def rows(box, seed, ordinary, hard):
     yield from dynamics_rows(box, seed, ordinary, hard)
     yield from extreme_rows(seed)
     yield from reversal_rows(box, seed)
-    yield from coverage_rows(box, seed)

@@ -16,7 +16,7 @@ class StabilityTable(Table):
             "theory: relative errors against 50 digits; sampling: accepted share of the "
             "proposals; estimates: conditioned Monte Carlo; times: errors of predicted times; "
             "dynamics: worst of a run; extremes: mean times in extreme scenes; reversal: reversed "
-            "velocities, and the Lyapunov exponent; coverage: of 95 % intervals"
+            "velocities, and the Lyapunov exponent"
         ),
         "quantity": TEXT(
             "the measured quantity. theory: for areas and mean_times the worst of them. times: "
@@ -25,7 +25,7 @@ class StabilityTable(Table):
             "centre beyond its range, both in units of the largest power of two in the side of "
             "the box; lanes_lost, trajectories that became infinite or stuck. reversal: exponent, "
             "per event; return_error, after count events and back; events_retraced, the number of "
-            "events at which it is 2⁻²⁶. coverage: the event. extremes: <event>_time, or virial, "
+            "events at which it is 2⁻²⁶. extremes: <event>_time, or virial, "
             "the sum rule"
         ),
         "method": TEXT(
@@ -49,9 +49,8 @@ class StabilityTable(Table):
         "low": SEE_QUANTITY("smallest value that passes"),
         "high": SEE_QUANTITY("largest value that passes"),
         "status": TEXT(
-            "estimates: as in areas.csv; extremes: as in check.csv; coverage: counted, or too-few "
-            "if most repetitions have no interval; reversal: long if the path stays exact for more "
-            "than 2000 events"
+            "estimates: as in areas.csv; extremes: as in check.csv; reversal: long if the path "
+            "stays exact for more than 2000 events"
         ),
         "passed": TRUTH(
             "whether low ≤ value ≤ high and |z| ≤ 5, as far as these are given; empty without them"
@@ -66,6 +65,31 @@ class StabilityTable(Table):
         return measure.rows(box, seed, ordinary, hard)
 
 
+class CalibrationTable(Table):
+    """One row per scene, call, size and quantity: what errors say, counted over seeds."""
+
+    columns = {
+        "case": TEXT("the scene, by its name in ``calibration.SCENES``"),
+        "call": TEXT("the function of the face"),
+        "size": TEXT("least: the smallest that the call accepts; usual; long"),
+        "quantity": TEXT("the quantity with an error"),
+        "test": TEXT("its test or status of the last seed"),
+        "scores": COUNT("values with an error"),
+        "withheld": COUNT("values without an error"),
+        "mean": NUMBER("mean of the scores; a positive one is a value that is too large"),
+        "mean_square": NUMBER("mean of their squares"),
+        "stderr": NUMBER("standard error of the mean square"),
+        "beyond_three": COUNT("scores beyond ±3"),
+    }
+
+    @staticmethod
+    def part(seeds, first):
+        """Return all rows, of ``seeds`` seeds from ``first`` on (see ``calibration.rows``)."""
+        from twodiscs_paper.studies.stability import calibration
+
+        return calibration.rows(seeds, first)
+
+
 def _parameters(configuration):
     ordinary = scaled(configuration.study_events, 8, 10**7, 25 * 10**7)
     return {**main_box(configuration), "hard": ordinary // 10, "ordinary": ordinary}
@@ -75,6 +99,7 @@ STUDY = Study(
     "stability",
     builds="how accurate each method is in numerically hard cases",
     tables=(StabilityTable,),
+    long_runs=(CalibrationTable,),
     seconds=20.0,
     order=3,
     figures={
@@ -107,14 +132,29 @@ STUDY = Study(
                 Velocities are reversed after n events: error of return after n more events, against
                 the binary digits that the Lyapunov exponent λ per event costs. The line is one
                 rounding that grows at this rate. The legend has the number of events after which
-                half of the digits are lost, and in brackets the number that λ predicts. (d) Share
-                of 95 % intervals that contain the exact mean time, over independent repetitions.
-                Crosses are events too rare for an interval. (e) Residuals of mean times, and of the
-                virial theorem, in extreme scenes: each effect at its extremes, or discs that hardly
-                fit. Rare events without an error bar are left out.
+                half of the digits are lost, and in brackets the number that λ predicts. (d)
+                Residuals of mean times, and of the virial theorem, in extreme scenes: each effect
+                at its extremes, or discs that hardly fit. Rare events without an error bar are left
+                out.
                 """
             ),
             tables=("stability",),
+        ),
+        "calibration": Figure(
+            "Error bars, counted",
+            "5 Numerical stability",
+            Caption(
+                """
+                Mean square of scores over seeds, for each quantity with an error, call and scene. A
+                score is the deviation over its own standard error, from the exact value or from the
+                mean over all seeds if no exact value is known; the mean square is 1 if errors are
+                right. Symbols are quantities of one scene: plain discs (circles), discs with
+                effects (squares) and more than two discs (triangles). The grey band is five
+                standard deviations of the mean square of as many normal scores. Symbols of the
+                shortest runs that the call accepts are open. The table is that of a long run.
+                """
+            ),
+            long_runs={"calibration": "paper/long_run/calibration/calibration.csv"},
         ),
     },
     parameters=_parameters,
