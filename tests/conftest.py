@@ -15,9 +15,9 @@ gc.set_threshold(100_000, 50, 1000)
 def pytest_collection_modifyitems(items):
     """The file that begins the one build comes first, because the build takes longest."""
 
-    def file_of(item):
+    def file_scene(item):
         return item.nodeid.partition("::")[0]
 
-    built = {file_of(item) for item in items if "complete" in item.fixturenames}
+    built = {file_scene(item) for item in items if "complete" in item.fixturenames}
     first = min(built, key=lambda file: ("test_build" not in file, file), default=None)
-    items.sort(key=lambda item: file_of(item) != first)
+    items.sort(key=lambda item: file_scene(item) != first)

@@ -251,7 +251,7 @@ def sources():
     }
 
 
-def file_of(text):
+def file_scene(text):
     """Return the path of the only file with this ``text``, once; raise ``LookupError`` otherwise."""
     found = [path for path, content in sources().items() for _ in range(content.count(text))]
     if len(found) != 1:
@@ -313,7 +313,7 @@ def nearest(mutated):
 
     By name, then by the imports in between, then by how often a file names what is mutated.
     """
-    path = file_of(mutated)
+    path = file_scene(mutated)
     for beginning, files in READERS.items():
         if path.startswith(beginning):
             return [file for file in files if (REPOSITORY / file).exists()]
@@ -371,7 +371,7 @@ def main(words, most):
     plans = []
     for what, old, new in MUTANTS:
         try:
-            file = file_of(old)
+            file = file_scene(old)
         except LookupError as error:
             print(f"{what}: NOT THERE: {error}", flush=True)
             continue

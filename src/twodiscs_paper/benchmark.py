@@ -34,7 +34,7 @@ from twodiscs_paper.studies.effects.price import (
 from twodiscs_paper.studies.effects.price import rows as cost_rows
 
 
-def in_long_box(discs, hops, events=1_000_000):
+def count_in_long_box(discs, hops, events=1_000_000):
     """Count about ``events`` of N discs in a box of 0.75 N × 1, without initial states."""
     scene = Scene(0.75 * discs, 1.0, SCENE.radius / 2, discs=discs)
     each = many_rates.block_replicas(scene)
@@ -111,7 +111,7 @@ def numpy_sampler(chunks=1000, chunk=16384):
 NUMBERS, WITH_HOPS, WITHOUT_HOPS = (3, 8, 16, 64, 256, 1024), "discs_{}", "discs_{}_without_hops"
 TWO = replace(SCENE, radius=SCENE.radius / 2)
 BY_NUMBER = {"lockstep": partial(lockstep, BLOCKS // 8, TWO)} | {
-    name.format(discs): partial(in_long_box, discs, name == WITH_HOPS)
+    name.format(discs): partial(count_in_long_box, discs, name == WITH_HOPS)
     for name in (WITH_HOPS, WITHOUT_HOPS)
     for discs in NUMBERS
 }

@@ -100,7 +100,7 @@ def outside(f, x_end, y_end, rho):
     return rectangle(f, x_end, y_end) - inside(f, x_end, y_end, rho)
 
 
-def on_circle(q, f):
+def circle_integral(q, f):
     """Return ∬ f(x, y) δ(√(x² + y²) − √2 r) over [0, √2 a] × [0, √2 b], along x and along y."""
     rho = mp.sqrt(2) * q.r
     middle = min(max(mp.pi / 4, q.beta), q.alpha)
@@ -156,7 +156,7 @@ def _profile(x_range, y_range, contact, weight, power):
     return total
 
 
-def volume_of(x_range, y_range, contact):
+def volume_by_separations(x_range, y_range, contact):
     """Return 4 ∬ (A − u)(B − v) over u² + v² ≥ σ² in [0, A] × [0, B], v first."""
     return 2 * _profile(x_range, y_range, contact, lambda u: x_range - u, 2)
 
@@ -164,7 +164,7 @@ def volume_of(x_range, y_range, contact):
 @_exact
 def volume(q):
     """The volume of configuration space."""
-    return volume_of(2 * q.a, 2 * q.b, 2 * q.r)
+    return volume_by_separations(2 * q.a, 2 * q.b, 2 * q.r)
 
 
 @_exact
@@ -221,7 +221,9 @@ AREAS = by_kind(
 
 def contact_density(q):
     """∫ δ(u² + v² − 4r²) over the prism, minus the derivative of V by 4r² at fixed A and B."""
-    return -mp.diff(lambda square: volume_of(2 * q.a, 2 * q.b, mp.sqrt(square)), 4 * q.r**2)
+    return -mp.diff(
+        lambda square: volume_by_separations(2 * q.a, 2 * q.b, mp.sqrt(square)), 4 * q.r**2
+    )
 
 
 def largest_radius(q):
@@ -345,7 +347,7 @@ def beside_volume(q):
     return outside(q.weight, mp.sqrt(2) * q.r, mp.sqrt(2) * q.b, mp.sqrt(2) * q.r)
 
 
-def beyond_volume(q):
+def volume_beyond_contact(q):
     """The part of a sixteenth of the volume with x > √2 r."""
     a, b, r = (mp.sqrt(2) * x for x in (q.a, q.b, q.r))
     return rectangle(q.weight, a, b) - rectangle(q.weight, r, b)

@@ -20,7 +20,7 @@ from twodiscs.dynamics.two import hop_clusters as of_two
 from twodiscs.measure.transmission import cluster_coefficient, odd_clusters_per_passage, plateau
 from twodiscs.model.scene import Scene
 from twodiscs.theory import n_discs
-from twodiscs_paper.studies.passages.measure import by_time
+from twodiscs_paper.studies.passages.measure import coefficients_at_times
 
 HOP = "horizontal_hop"
 
@@ -43,7 +43,7 @@ def test_two_discs_among_no_others_are_two_discs(hop, effects):
     same_sizes(counts, np.repeat(np.arange(other.size), other))
     assert events == pytest.approx(due, rel=0.05)
     found, reference = (
-        by_time(module.hop_sums(scene, hop, [0.2, 1.0, 5.0], 256, 3)[0])
+        coefficients_at_times(module.hop_sums(scene, hop, [0.2, 1.0, 5.0], 256, 3)[0])
         for module in (many_hop_clusters, of_two)
     )
     for mine, known in zip(found, reference, strict=True):
@@ -65,7 +65,7 @@ def test_clusters_are_those_of_another_program(periodic, discs, radius, gap):
 
 def test_correlations_are_those_of_another_program():
     scene, time = Scene(2.25, 1.0, 0.23, discs=3), 3.0
-    (found,) = by_time(many_hop_clusters.hop_sums(scene, HOP, [time], 256, 7)[0])
+    (found,) = coefficients_at_times(many_hop_clusters.hop_sums(scene, HOP, [time], 256, 7)[0])
     other = orders(8, 6000, 3, 2.25, 1.0, 0.23, False, time)
     five(found.value, other.mean(), math.hypot(found.stderr, other.std() / math.sqrt(other.size)))
     assert 5 * found.stderr < min(found.value, 1 - found.value)

@@ -20,7 +20,11 @@ from twodiscs.dynamics.many import many_hop_clusters as of_many
 from twodiscs.dynamics.two import hop_clusters
 from twodiscs.measure.transmission import cluster_coefficient, odd_clusters_per_passage, plateau
 from twodiscs.model.scene import Scene
-from twodiscs_paper.studies.passages.measure import by_time, of_order, passing_rate
+from twodiscs_paper.studies.passages.measure import (
+    coefficients_at_times,
+    order_correlation,
+    passing_rate,
+)
 
 HOP = "horizontal_hop"
 TIMES = [0.2, 1.0, 5.0, 10.0]
@@ -39,7 +43,7 @@ def test_correlations_are_those_of_another_program(inertia, periodic):
             4, 20_000, 1.5, 1.0, radius, inertia or 0.0, bool(periodic), np.array(TIMES)
         )
         means, errors = other.mean(axis=0), other.std(axis=0) / math.sqrt(len(other))
-        for estimate, mean, error in zip(by_time(sums), means, errors, strict=True):
+        for estimate, mean, error in zip(coefficients_at_times(sums), means, errors, strict=True):
             five(estimate.value, mean, math.hypot(estimate.stderr, error) + 1e-12)
 
 
@@ -82,10 +86,10 @@ def test_both_estimates_of_effects_agree(name):
     (hop, scene), gap = EFFECTS[name], 6.0
     mean = 1 / passing_rate(scene, hop)
     early = cluster_coefficient(hop_clusters.cluster_sizes(scene, hop, gap, 128, 6)[0])
-    (late,) = by_time(hop_clusters.hop_sums(scene, hop, [gap], 256, 7)[0])
+    (late,) = coefficients_at_times(hop_clusters.hop_sums(scene, hop, [gap], 256, 7)[0])
     kappa, other = (
         plateau(early, gap, mean, odd_clusters_per_passage),
-        plateau(late, gap, mean, of_order),
+        plateau(late, gap, mean, order_correlation),
     )
     five(kappa.value, other.value, math.hypot(kappa.stderr, other.stderr))
     assert 0 < kappa.value < 1
@@ -106,7 +110,7 @@ def test_displacements_grow_as_the_correlations_say():
     sums, _ = hop_clusters.hop_sums(scene, HOP, [20.0, 40.0], 512, 9, on_surface=False)
     rate = passing_rate(scene, HOP)
     grown = (sums[:, 1, 1] - sums[:, 1, 0]) / (20.0 * hop_clusters.HOPS_OF_BLOCK * rate)
-    (due,) = by_time(hop_clusters.hop_sums(scene, HOP, [30.0], 512, 10)[0])
+    (due,) = coefficients_at_times(hop_clusters.hop_sums(scene, HOP, [30.0], 512, 10)[0])
     error = grown.std(ddof=1) / math.sqrt(len(grown))
     five(grown.mean(), due.value, math.hypot(error, due.stderr))
 

@@ -21,7 +21,7 @@ from twodiscs.dynamics.two.hop_clusters import (
 from twodiscs.measure import transmission
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling import rounds
-from twodiscs_paper.studies.passages.measure import by_time, of_order
+from twodiscs_paper.studies.passages.measure import coefficients_at_times, order_correlation
 
 
 def test_clusters_are_weighed_by_their_sizes():
@@ -39,14 +39,14 @@ def test_clusters_are_weighed_by_their_sizes():
 def test_errors_of_a_correlation_between_walls_are_binomial():
     sums = np.zeros((2, SUMS, 1), np.int64)
     sums[:, 0, 0], sums[:, 1, 0] = -10, 10  # 20 of the replicas have changed sides
-    (found,) = by_time(sums)
+    (found,) = coefficients_at_times(sums)
     n = 2 * HOPS_OF_BLOCK
     assert found.value == 1 - 2 * 20 / n
     assert found.stderr == pytest.approx(math.sqrt((1 - found.value**2) / n), rel=1e-14)
 
 
 LAWS = {
-    "order": of_order,
+    "order": order_correlation,
     "clusters": transmission.odd_clusters_per_passage,
     "clusters of a pair of many": partial(transmission.odd_clusters_per_passage, others=4 / 3),
 }

@@ -31,7 +31,7 @@ from twodiscs.points.estimates import (
 )
 from twodiscs_paper.reference import exact_numbers
 from twodiscs_paper.studies.distributions.measure import density_at_zero
-from twodiscs_paper.studies.estimates import LinearFit, covers, mean_of
+from twodiscs_paper.studies.estimates import LinearFit, covers, sample_mean
 
 # Estimates ------------------------------------------------------------------------------------
 
@@ -98,13 +98,13 @@ def test_a_count_is_a_sum_of_others_if_it_is_so_in_every_replica():
 
 def test_a_mean_has_the_error_of_its_spread():
     values = np.random.default_rng(10).exponential(3.0, (50, 4))
-    for column, found in zip(values.T, mean_of(values), strict=True):
+    for column, found in zip(values.T, sample_mean(values), strict=True):
         assert found.value == pytest.approx(column.mean(), rel=1e-14)
         assert found.stderr == pytest.approx(sem(column), rel=1e-14)
         assert found.n == 50
-        assert mean_of(column).value == pytest.approx(found.value, rel=1e-14)
-        assert mean_of(list(column)).stderr == pytest.approx(found.stderr, rel=1e-14)
-    assert mean_of([1, 2]) == Estimate(1.5, 0.5, 2)
+        assert sample_mean(column).value == pytest.approx(found.value, rel=1e-14)
+        assert sample_mean(list(column)).stderr == pytest.approx(found.stderr, rel=1e-14)
+    assert sample_mean([1, 2]) == Estimate(1.5, 0.5, 2)
 
 
 X = np.array([1.0, 2.0, 4.0, 5.0, 9.0])

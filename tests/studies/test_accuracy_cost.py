@@ -58,8 +58,8 @@ def test_a_method_estimates_its_quantity_with_its_bias(method):
 
 
 def test_blocks_have_their_own_random_numbers_and_those_of_their_seed():
-    for make in (costs.by_scalar, costs.on_surface, costs.by_strip):
-        scene = costs.HARD if make is costs.by_strip else PAPER
+    for make in (costs.scalar_method, costs.surface_method, costs.strip_method):
+        scene = costs.HARD if make is costs.strip_method else PAPER
         blocks = [make(scene, seed).block(n) for seed, n in ((1, 2), (1, 3), (2, 2), (1, 2))]
         assert np.array_equal(blocks[0], blocks[3])
         assert not any(np.array_equal(a, b) for a, b in pairwise(blocks))

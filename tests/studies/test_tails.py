@@ -18,7 +18,7 @@ from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Box
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
-from twodiscs_paper.studies.estimates import mean_of
+from twodiscs_paper.studies.estimates import sample_mean
 from twodiscs_paper.studies.single import tail_constant
 from twodiscs_paper.studies.tails import measure as tails
 from twodiscs_paper.studies.tails.study import TailsTable
@@ -41,7 +41,7 @@ def test_weighted_starts_agree_with_plain_counting(radius, event):
     scene = PAPER.with_radius(radius)
     times = in_mean_times(scene, event, (1, 2, 5, 7, 10))
     weighted = tails.tail(scene, event, times, 20, 1)
-    plain = mean_of(tails.survivals(scene, event, times, 100_000, 2))
+    plain = sample_mean(tails.survivals(scene, event, times, 100_000, 2))
     for a, b in zip(weighted, plain, strict=True):
         assert abs(a.value - b.value) <= 5 * math.hypot(a.stderr, b.stderr)
         assert 0 < a.relative_stderr < 0.15
@@ -76,7 +76,7 @@ def test_a_stratum_without_a_longer_interval_adds_its_bound():
         tails.conditioned_sampler(scene), False,
     )  # fmt: skip
     mean = exact.mean_times(scene)[event]
-    (spread,) = mean_of(mean * sums.sum(axis=1))
+    (spread,) = sample_mean(mean * sums.sum(axis=1))
     empty = ~sums.any(axis=(0, 2))
     assert 2 < empty.sum() < strata
     bounds = mean * longest[empty, 1] / blocks * (longest[empty, 0] / time) ** 3
@@ -125,7 +125,7 @@ def test_the_rate_of_decay_is_that_of_the_counts():
     scene = PAPER.with_radius(0.3)
     first, last = in_mean_times(scene, "vertical_hop", (3, 5))
     counted = tails.survivals(scene, "vertical_hop", [first, last], 20_000, 8)
-    rate, (early, late) = tails.decay(counted, first, last), mean_of(counted)
+    rate, (early, late) = tails.decay(counted, first, last), sample_mean(counted)
     by_hand = math.log(early.value / late.value) / (last - first)
     assert rate.value == pytest.approx(by_hand, rel=1e-12)
     # Correlations between the two counts can only help, and intervals are nearly independent.

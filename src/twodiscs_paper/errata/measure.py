@@ -16,7 +16,7 @@ from twodiscs_paper.study import row
 WIDTH, HEIGHT = 1.5, 1.0
 
 
-def ratio_of(statement, q):
+def printed_ratio(statement, q):
     """Return printed over true, or None if the printed value is no real number."""
     try:
         printed = statement.printed(q)
@@ -26,7 +26,7 @@ def ratio_of(statement, q):
     return mp.re(printed) / statement.true(q) if real else None
 
 
-def boxes_of(name):
+def reported_boxes(name):
     """Return the boxes of a regime or limit, first the box to report, and the radius to report."""
     if name is None:
         return [MpScene.of(*box) for box in GENERAL], None
@@ -43,10 +43,10 @@ def finding(statement, name):
 
     Claims and undefined values have no ratio.
     """
-    boxes, radius = boxes_of(name)
+    boxes, radius = reported_boxes(name)
     if statement.is_claim:
         return all(map(statement.printed, boxes)), None, radius
-    ratios = [ratio_of(statement, q) for q in boxes]
+    ratios = [printed_ratio(statement, q) for q in boxes]
     right = all(ratio is not None and abs(ratio - 1) < SAME for ratio in ratios)
     return right, ratios[0], radius
 

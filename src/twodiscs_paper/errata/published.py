@@ -12,7 +12,7 @@ Integrals are evaluated over the printed limits. If all hops are open, the sourc
 
 from mpmath import mp, mpf
 
-from twodiscs_paper.reference import inside, line, on_circle, outside, rectangle, smooth
+from twodiscs_paper.reference import circle_integral, inside, line, outside, rectangle, smooth
 
 # Section II: model --------------------------------------------------------------------------------
 
@@ -40,7 +40,7 @@ def mean_free_time(volume, area, sides):
 # Section IV A: volume -----------------------------------------------------------------------------
 
 
-def over_y(q, power):
+def integrate_over_y(q, power):
     """Return 2 ∫ (2b − v) (2a − √(4r² − v²)₊)₊^power dv over [0, 2b]: v = |y1 − y2| is last."""
     contact, x_range, y_range = 2 * q.r, 2 * q.a, 2 * q.b
 
@@ -57,7 +57,7 @@ def over_y(q, power):
 
 def volume_indicator(q):
     """volindic: the coordinates that are not fixed first run along y, then along x."""
-    return over_y(q, 2)
+    return integrate_over_y(q, 2)
 
 
 def volume_separations(q):
@@ -166,7 +166,7 @@ def wall(x1, q):
 
 def wall_integral(q):
     """areaindic, and the first display on walls in appendix A: along x first."""
-    return over_y(q, 1)
+    return integrate_over_y(q, 1)
 
 
 def wall_area(q):
@@ -343,12 +343,12 @@ def hop_area_appendix(q):
 
 def collision_area_fourfold(q):
     """A_col over 16 as a fourfold integral; X and Y run over their ranges."""
-    return on_circle(q, q.weight)
+    return circle_integral(q, q.weight)
 
 
 def collision_area_twofold(q):
     """A_col over 16 as a twofold integral."""
-    return on_circle(q, lambda x, y: excluded_weight(q, x, y))
+    return circle_integral(q, lambda x, y: excluded_weight(q, x, y))
 
 
 def circle_polar(q):

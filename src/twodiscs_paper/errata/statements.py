@@ -226,8 +226,8 @@ STATEMENTS = (
         number="11",
     ),
     Statement(
-        "I_2", "IV A", ALL, published.volume_i2, "volume", share=16, truth=reference.beyond_volume,
-        number="13",
+        "I_2", "IV A", ALL, published.volume_i2, "volume", share=16,
+        truth=reference.volume_beyond_contact, number="13",
     ),
     Statement("volumeabd", "IV A", ALL, published.volume_abd, "volume", number="14"),
     Statement(
@@ -401,7 +401,7 @@ STATEMENTS = (
     Statement(
         "polar coordinates", "A 2 b", ANY, published.circle_polar,
         correction="the delta function in polar coordinates, taken for the length of the arc",
-        truth=lambda q: reference.on_circle(q, lambda x, y: mpf(1)), number="A16, A17",
+        truth=lambda q: reference.circle_integral(q, lambda x, y: mpf(1)), number="A16, A17",
     ),
     Statement(
         "app:colgeneral, first line", "A 2 b", ANY, published.collision_area_polar,

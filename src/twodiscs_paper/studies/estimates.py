@@ -9,7 +9,7 @@ from twodiscs.model.checks import InputError
 from twodiscs.points.estimates import Estimate
 
 
-def mean_of(values):
+def sample_mean(values):
     """Return the mean of independent ``values`` along their first axis, as an ``Estimate``.
 
     The error comes from their spread. For values in two dimensions the result is a list of

@@ -95,7 +95,7 @@ def _by_counts(name, scene, events, replicas, block, **more):
     return Method(name, f"{HOP}_time", scene, block, estimate, **more)
 
 
-def by_lockstep(scene, seed, blocks=1):
+def lockstep_method(scene, seed, blocks=1):
     """Return the ``Method`` of the engine: all events, ``blocks`` blocks as one."""
     duration = find_engine(scene).replica_duration(scene)
 
@@ -106,7 +106,7 @@ def by_lockstep(scene, seed, blocks=1):
     return _by_counts("lockstep", scene, EVENTS, blocks * REPLICAS, block)
 
 
-def by_scalar(scene, seed):
+def scalar_method(scene, seed):
     """Return the ``Method`` of one trajectory after the other."""
     given = FEW_REPLICAS, find_engine(scene).replica_duration(scene), scene.contact_distance
     given += conditioned_sampler(scene), (0, 0)
@@ -117,7 +117,7 @@ def by_scalar(scene, seed):
     return _by_counts("scalar", scene, scalar.COUNTED, FEW_REPLICAS, block)
 
 
-def by_steps(scene, seed, step):
+def steps_method(scene, seed, step):
     """Return the ``Method`` of looking for overlaps every ``step``, a power of two."""
     steps = round(find_engine(scene).replica_duration(scene) / step)
     given = FEW_REPLICAS, LANES, steps, step, scene.contact_distance, conditioned_sampler(scene)
@@ -129,7 +129,7 @@ def by_steps(scene, seed, step):
     return _by_counts("time_step", scene, scalar.COUNTED, FEW_REPLICAS, block, **more)
 
 
-def by_strip(scene, seed, blocks=8):
+def strip_method(scene, seed, blocks=8):
     """Return the ``Method`` of initial states in a strip next to the hop, ``blocks`` as one."""
     near = strip.choose_strip(scene, HOP)
     fractions = strip.stratum_fractions(scene, HOP, near)
@@ -147,12 +147,12 @@ def by_strip(scene, seed, blocks=8):
 # Volume and areas ---------------------------------------------------------------------------------
 
 
-def by_samples(scene, seed, quantity, fraction=None):
+def samples_method(scene, seed, quantity, fraction=None):
     """Return the ``Method`` of samples of the prism; an area has a shell of this ``fraction``."""
     return _sampled("rejection", montecarlo.prism_sampler, scene, seed, quantity, fraction)
 
 
-def by_draws(scene, seed):
+def draws_method(scene, seed):
     """Return the ``Method`` of the conditioned sampler, for the volume."""
     return _sampled("conditioned", montecarlo.conditioned, scene, seed, "volume", None)
 
@@ -196,7 +196,7 @@ def surface_hits(seed, block, samples, half_x, half_y, sigma):
     return hits
 
 
-def on_surface(scene, seed):
+def surface_method(scene, seed):
     """Return the ``Method`` of samples on the surface of disc collisions itself.
 
     Disc 1 is anywhere in the box and disc 2 at contact: an area of A B · 2πσ · √2.
@@ -217,17 +217,17 @@ def on_surface(scene, seed):
 def methods(seed):
     """Return all methods that are measured, with random numbers of ``seed``."""
     return [
-        by_lockstep(EASY, seed),
-        by_scalar(EASY, seed),
-        *(by_steps(EASY, seed, step) for step in STEPS),
-        by_strip(HARD, seed),
-        by_lockstep(HARD, seed, blocks=4),
-        by_samples(EASY, seed, "volume"),
-        by_draws(EASY, seed),
-        *(by_samples(EASY, seed, AREA, fraction) for fraction in SHELLS),
-        on_surface(EASY, seed),
-        by_samples(HARD, seed, "volume"),
-        by_samples(HARD, seed, AREA, SHELLS[-1]),
+        lockstep_method(EASY, seed),
+        scalar_method(EASY, seed),
+        *(steps_method(EASY, seed, step) for step in STEPS),
+        strip_method(HARD, seed),
+        lockstep_method(HARD, seed, blocks=4),
+        samples_method(EASY, seed, "volume"),
+        draws_method(EASY, seed),
+        *(samples_method(EASY, seed, AREA, fraction) for fraction in SHELLS),
+        surface_method(EASY, seed),
+        samples_method(HARD, seed, "volume"),
+        samples_method(HARD, seed, AREA, SHELLS[-1]),
     ]
 
 
@@ -235,7 +235,7 @@ def methods(seed):
 
 
 @compiled
-def along_arc(range_x, range_y, sigma, nodes, weights):
+def arc_sums(range_x, range_y, sigma, nodes, weights):
     """Return (volume, area of disc collisions) by a rule on [0, 1], in plain doubles."""
     start = math.acos(min(range_x / sigma, 1.0))
     turn = math.asin(min(range_y / sigma, 1.0)) - start
@@ -261,7 +261,7 @@ def rule(order):
 def quadrature(scene, nodes):
     """Return {quantity: value} of the volume and the area by a Gauss rule along the arc."""
     sides = scene.range_x, scene.range_y, scene.contact_distance
-    return dict(zip(("volume", AREA), along_arc(*sides, *rule(nodes)), strict=True))
+    return dict(zip(("volume", AREA), arc_sums(*sides, *rule(nodes)), strict=True))
 
 
 def evaluated(scene):

@@ -33,7 +33,7 @@ from twodiscs.sampling.conditioned import (
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact, laws
-from twodiscs_paper.studies.estimates import chi2_p, mean_of
+from twodiscs_paper.studies.estimates import chi2_p, sample_mean
 from twodiscs_paper.studies.single import tail_constant, time_to_next
 from twodiscs_paper.study import row
 
@@ -158,7 +158,7 @@ def constant_hazard(bins):
     )
 
 
-class Bin(NamedTuple):
+class HazardBin(NamedTuple):
     """The rate of hops between ``first`` and ``last``: ``count`` of the intervals ``alive`` end."""
 
     first: float
@@ -170,7 +170,7 @@ class Bin(NamedTuple):
 
 
 def hazard(counts, intervals, width):
-    """Yield the rate of hops as a function of the time since the last hop, as ``Bin`` objects.
+    """Yield the rate of hops as a function of the time since the last hop, as ``HazardBin``s.
 
     The rate from ``first`` to ``last`` is ln(S(first)/S(last))/(last − first), with a binomial
     error. S is the fraction of ``intervals`` that last longer. ``counts`` are joined until a bin is
@@ -188,7 +188,7 @@ def hazard(counts, intervals, width):
         time = (i + 1 - left) * width
         error = math.sqrt(1 / rest - 1 / alive) / time
         rate = math.log(alive / rest) / time
-        yield Bin(left * width, (i + 1) * width, rate, error, waiting, alive)
+        yield HazardBin(left * width, (i + 1) * width, rate, error, waiting, alive)
         left, alive, waiting = i + 1, rest, 0
 
 
@@ -239,7 +239,7 @@ def measured(start, scene, hop, seed, events=EVENTS):
         histogram,
     )  # fmt: skip
     intervals, passages = BLOCKS * block, BLOCKS * passages
-    time, square, cut_square, passage, cut_passage = mean_of(means)
+    time, square, cut_square, passage, cut_passage = sample_mean(means)
 
     of_intervals = start | {"count": intervals}
     z = _z(time.value - mean, time.stderr)
@@ -318,7 +318,7 @@ def late_hazard(late):
     return Estimate(hazard, hazard / math.sqrt(hops), hops)
 
 
-def over_cubic(late):
+def cubic_ratio(late):
     """Return the hops in the bins ``late`` over those expected from 3/t, as for a cubic tail."""
     expected = sum(
         6 * one["count"] / one["estimate"] / (one["first"] + one["last"]) for one in late
@@ -348,5 +348,5 @@ def shape(case):
     found = late_hazard(late)
     ends = {"first": late[0]["first"], "last": late[-1]["last"], "count": found.n}
     if found.value < FALLEN * rate["estimate"]:
-        yield row(start, quantity="over_cubic", estimate=over_cubic(late), **ends)
+        yield row(start, quantity="over_cubic", estimate=cubic_ratio(late), **ends)
     yield row(start, found, quantity=falling, **ends)

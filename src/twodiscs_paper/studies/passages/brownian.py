@@ -154,7 +154,7 @@ def joined(counts):
     return total
 
 
-def of_crossings(point, counts):
+def crossing_estimates(point, counts):
     """Return {quantity: ``Estimate``} from the ``counts`` of random crossings at a ``point``."""
     sizes = np.zeros(brownian_steps.LARGEST_CLUSTER + 2, np.int64)
     for n, number in counts["sizes"]:
@@ -177,7 +177,7 @@ def of_crossings(point, counts):
     return {"coefficient": kappa} | found
 
 
-def of_passages(point, counts):
+def passage_estimates(point, counts):
     """Return {quantity: ``Estimate``} from the ``counts`` of first passages at a ``point``."""
     pairs, moves = counts["pairs"], MOVES.get(point["program"], 1)
     means = {name: counts[name][0] / pairs for name in ("first", "passage", "crossings")}
@@ -206,7 +206,7 @@ def of_passages(point, counts):
 
 
 #: {method: (function of a point and its counts, count of a sample)}.
-METHODS = {"crossings": of_crossings, "passages": of_passages}
+METHODS = {"crossings": crossing_estimates, "passages": passage_estimates}
 
 
 def rows(counts):
@@ -316,7 +316,7 @@ def crossover(counts):
     for point in counts:
         length = neck(point["step"], point["halvings"])
         if point["program"] == "reflected" and low <= length <= high:
-            kappa = of_crossings(point, joined(point["seeds"]))["coefficient"]
+            kappa = crossing_estimates(point, joined(point["seeds"]))["coefficient"]
             found.append((math.log(length), math.log(kappa.value), kappa.stderr / kappa.value))
     x, y, error = np.array(found).T
     (bend, slope, _), covariance = np.polyfit(x, y, 2, w=1 / error, cov="unscaled")

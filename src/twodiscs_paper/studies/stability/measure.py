@@ -30,7 +30,7 @@ from twodiscs.sampling.initial_states import states
 from twodiscs.sampling.jit import compiled
 from twodiscs.theory import exact
 from twodiscs_paper.reference import DIGITS, exact_numbers
-from twodiscs_paper.studies.estimates import LinearFit, mean_of
+from twodiscs_paper.studies.estimates import LinearFit, sample_mean
 from twodiscs_paper.studies.single import advance
 from twodiscs_paper.studies.stability.closed_form import closed_form
 from twodiscs_paper.study import row
@@ -100,7 +100,7 @@ def judged(start, quantity, value, low=None, high=None, z=None, **cells):
     return row(start | bounds, quantity=quantity, value=value, **cells)
 
 
-def start_of(part, case, radius=None, distance=None):
+def radius_cells(part, case, radius=None, distance=None):
     """Return the cells that rows on one radius have in common."""
     return {"part": part, "case": case, "radius": radius, "distance": distance}
 
@@ -196,7 +196,7 @@ def theory_rows(box):
         stable = {"volume": exact.volume(scene)}, exact.areas(scene), exact.mean_times(scene)
         closed = closed_form(scene)
         plain = {"volume": closed["volume"]}, closed["areas"]
-        start = start_of("theory", case, radius, distance)
+        start = radius_cells("theory", case, radius, distance)
         for quantity, values, due in zip(QUANTITIES, stable, true, strict=True):
             error = relative_error(values, due)
             yield judged(start, quantity, error, high=THEORY_BOUND, method="stable")
@@ -226,7 +226,7 @@ def sampling_rows(box, seed):
         due = min(volume / 2 / draw.mass, 1.0)
         point = conditioned_point(scene, ["volume"], SHARE_PROPOSALS, other_seed(seed, i))
         hits, samples = point.quantities["volume"].hits, point.samples
-        start = start_of("sampling", case, radius, distance)
+        start = radius_cells("sampling", case, radius, distance)
         yield judged(start, "accepted_share", prism, method="prism")
         z, _ = scores.binomial_z(hits, samples, due)
         found = {"method": "conditioned", "count": samples, "exact": due}
@@ -241,7 +241,7 @@ def estimate_rows(box, seed):
         scene = box.scene(radius)
         quantities = ["volume", *(f"{event}_area" for event in EVENTS)]
         point = conditioned_point(scene, quantities, ESTIMATE_PROPOSALS, other_seed(seed, i))
-        start = start_of("estimates", case, radius, distance) | {"method": "conditioned"}
+        start = radius_cells("estimates", case, radius, distance) | {"method": "conditioned"}
         for found in VolumeTable.rows([point]) + AreasTable.rows([point]):
             kept = {"stderr": found["stderr"], "z": found["z"], "status": found["status"]}
             kept |= {"count": found["samples"], "exact": found["expectation"]}
@@ -338,7 +338,7 @@ def time_rows(box, seed, cases=400):
     generator = np.random.default_rng(seed)
     radius = ordinary_radii(box)[1]
     for case, flights in approaches(2 * radius, generator, cases).items():
-        start = start_of("times", case)
+        start = radius_cells("times", case)
         for method, quotient, bound in (
             ("stable", contact_quotient, TIME_BOUND),
             ("textbook", textbook_quotient, None),
@@ -359,7 +359,7 @@ def time_rows(box, seed, cases=400):
             for position, velocity in zip(positions, velocities, strict=True)
         ]
         cells = {"high": TIME_BOUND, "method": "stable", "count": cases}
-        yield judged(start_of("times", case), "wall_time", max(errors), **cells)
+        yield judged(radius_cells("times", case), "wall_time", max(errors), **cells)
 
 
 # Long runs --------------------------------------------------------------------------------------
@@ -449,7 +449,7 @@ def dynamics_rows(box, seed, ordinary, hard):
     for i, (case, distance, radius) in enumerate(hard_radii(box)):
         number = ordinary if case == "ordinary" else hard
         found = run(box.scene(radius), number, other_seed(seed, i))
-        start = start_of("dynamics", case, radius, distance) | {"count": found["events"]}
+        start = radius_cells("dynamics", case, radius, distance) | {"count": found["events"]}
         for quantity, bound in bounds.items():
             yield judged(start, quantity, float(found[quantity]), **bound)
 
@@ -501,7 +501,9 @@ def extreme_rows(seed, scenes=EXTREMES):
         target = dict.fromkeys(scene.events, EXTREME_ERROR)
         point = runs.DynamicsRun(scene, target, events, other_seed(seed, i)).run()
         times = MeanTimesTable.rows([point])
-        start = start_of("extremes", case, scene.radius, scene.radius / scene.largest_radius - 1)
+        start = radius_cells(
+            "extremes", case, scene.radius, scene.radius / scene.largest_radius - 1
+        )
         for found in comparisons([], [], times, [], [point]):
             if found["test"] == "certain":
                 continue
@@ -618,9 +620,9 @@ def reversal_rows(box, seed):
         def exponent(forgotten, measured, scene=scene, law=law):
             starts = states(scene, REVERSED, seed)
             factors = growth(starts, forgotten, measured, SEPARATION, law)
-            return mean_of(np.log(factors[np.isfinite(factors)]) / measured)
+            return sample_mean(np.log(factors[np.isfinite(factors)]) / measured)
 
-        there, back = (start_of("reversal", case, radius) for case in ("separation", "return"))
+        there, back = (radius_cells("reversal", case, radius) for case in ("separation", "return"))
         expected = exponent(FORGOTTEN, PILOT).value
         if expected < digits / LONGEST:
             yield judged(back, "events_retraced", None, status="long")
@@ -637,7 +639,7 @@ def reversal_rows(box, seed):
             starts = states(scene, REVERSED, seed, block)
             # A way back without any rounding is possible; it counts as an eighth of a rounding.
             off = np.maximum(return_errors(starts, number, law), 2.0**-56)
-            log_errors[number] = log = mean_of(np.log(off))
+            log_errors[number] = log = sample_mean(np.log(off))
             value = math.exp(log.value)
             yield judged(back, "return_error", value, count=number, stderr=value * log.stderr)
 

@@ -33,7 +33,7 @@ COLUMNS = ("radius", "estimate", "stderr", "exact")
 OF_FIT = ("scene", "width", "height", "event", "quantity", "form", "points")
 
 
-class Law(NamedTuple):
+class PowerLaw(NamedTuple):
     """C δ^p with δ the distance below a limiting radius: the leading law of a mean time."""
 
     limit: float
@@ -45,14 +45,14 @@ class Law(NamedTuple):
 
 
 def leading_law(box, event):
-    """Return the ``Law`` of a mean time in a plain ``Box``, or None if it stays finite."""
+    """Return the ``PowerLaw`` of a mean time in a plain ``Box``, or None if it stays finite."""
     limit = box.threshold(check_choice("event", event, EVENTS))
     near, far = (box.scene(limit * (1 - 2.0**-k)) for k in (21, 20))
     times = [threshold_time(scene, event) for scene in (near, far)]
     power = round(math.log2(times[1] / times[0]))
     if not power:
         return None
-    return Law(limit, power, times[0] / (limit - near.radius) ** power)
+    return PowerLaw(limit, power, times[0] / (limit - near.radius) ** power)
 
 
 def fits(start, law, quantity, radii, times, errors, exact):

@@ -31,7 +31,7 @@ from twodiscs.dynamics.many.all_pairs import HORIZONTAL, new_kicks
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.many import many_initial_states
 from twodiscs.theory import channel
-from twodiscs_paper.studies.estimates import mean_of
+from twodiscs_paper.studies.estimates import sample_mean
 
 
 def quotient(values, others):
@@ -40,7 +40,7 @@ def quotient(values, others):
     The error is that of the ``values`` − ratio × ``others``, so it has their correlation.
     """
     ratio, below = np.mean(values) / np.mean(others), np.mean(others)
-    spread = mean_of((np.asarray(values) - ratio * np.asarray(others)) / below)
+    spread = sample_mean((np.asarray(values) - ratio * np.asarray(others)) / below)
     return Estimate(ratio, spread.stderr, spread.n)
 
 
@@ -138,7 +138,7 @@ def measured_density(scene, places):
     numbers = np.arange(1, WAVES + 1)
     waves = [np.exp(2j * math.pi / scene.width * k * places).sum(axis=1) for k in numbers]
     sizes = [(np.abs(wave) ** 2).mean(axis=0) / scene.discs for wave in waves]
-    return mean_of(np.polyfit(numbers**2, sizes, 1)[1])
+    return sample_mean(np.polyfit(numbers**2, sizes, 1)[1])
 
 
 def thermal_speed(scene):
@@ -257,7 +257,7 @@ def order(places, length):
     return numbers - (totals - totals[0]) // places.shape[1]
 
 
-def in_order(places, numbers, length):
+def ordered_places(places, numbers, length):
     """Return the places of what is first, second … in the ``order``, instead of those of discs."""
     n, found = places.shape[1], np.empty_like(places)
     np.put_along_axis(found, numbers % n, places - numbers // n * length, axis=1)

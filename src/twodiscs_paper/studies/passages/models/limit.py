@@ -24,7 +24,7 @@ import numpy as np
 
 from twodiscs.sampling.jit import compiled, inlined
 from twodiscs.sampling.streams import open_stream, uniform
-from twodiscs_paper.studies.estimates import mean_of
+from twodiscs_paper.studies.estimates import sample_mean
 
 #: The separation below which invariants are kept; for half as much c is the same within 5e-3.
 ADIABATIC = 0.3
@@ -130,4 +130,4 @@ def amplitude(blocks, seed, near=ADIABATIC):
     ``near`` is the separation, in units of (ε σ²)^(1/3), below which invariants are taken as kept;
     c is the limit for small ones.
     """
-    return mean_of(returns(np.uint64(seed), 0, blocks, float(near)))
+    return sample_mean(returns(np.uint64(seed), 0, blocks, float(near)))
