@@ -22,7 +22,7 @@ from twodiscs.model.scene import Box, Scene
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.many import insertions
 from twodiscs.theory.flux import rates
-from twodiscs_paper.studies.estimates import LinearFit, mean_of
+from twodiscs_paper.studies.estimates import LinearFit, sample_mean
 from twodiscs_paper.studies.passages import figure, figure_diffusion, figure_transmission, measure
 from twodiscs_paper.studies.passages.measure import passing_rate
 from twodiscs_paper.studies.passages.models import file
@@ -106,7 +106,7 @@ def walked(scene, time, replicas, seed):
     places, hops = file.recorded(scene, time, 2, replicas, seed)
     early, late = file.squares(places, [1, 2]) / (scene.width / scene.discs) ** 2
     per_time = hops / (2 * time)
-    return file.quotient((late - early) / time, per_time), mean_of(per_time)
+    return file.quotient((late - early) / time, per_time), sample_mean(per_time)
 
 
 def test_numbers_in_proportion_have_a_quotient_without_error():
@@ -177,7 +177,7 @@ def test_order_changes_by_exchanges_alone():
     places = places[:, :, None]
     numbers = file.order(places, 3.0)
     assert numbers[:, :, 0].tolist() == [[0, 1, 2]] * 3 + [[1, 0, 2]]
-    found = file.in_order(places, numbers, 3.0)
+    found = file.ordered_places(places, numbers, 3.0)
     np.testing.assert_allclose(found[:3], places[:3])
     np.testing.assert_allclose(found[3, :, 0], [4.5, 4.6, 5.5])
     (walk,) = file.squares(numbers, [1])

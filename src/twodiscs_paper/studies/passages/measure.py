@@ -34,7 +34,7 @@ from twodiscs.model.scene import Box, Scene
 from twodiscs.points import estimates
 from twodiscs.points.estimates import Estimate
 from twodiscs.theory import exact, laws, weighted
-from twodiscs_paper.studies.estimates import LinearFit, mean_of
+from twodiscs_paper.studies.estimates import LinearFit, sample_mean
 from twodiscs_paper.studies.passages.models import file, limit
 from twodiscs_paper.study import row
 
@@ -96,12 +96,12 @@ LAST = 5
 HOP = ("scene", "width", "height", "event", "discs", "moment_of_inertia")
 
 
-def by_time(sums):
+def coefficients_at_times(sums):
     """Return the estimates of ``correlations`` from ``sums``, a row for each block of hops."""
     return correlations(sums.sum(axis=0), sums.shape[0] * HOPS_OF_BLOCK)
 
 
-def of_order(x):
+def order_correlation(x):
     """Return (κ(t)/κ, its derivative), e^(−2x), for x passages in the time on average."""
     left = math.exp(-2 * x)
     return left, -2 * left
@@ -161,7 +161,7 @@ def compared(found, reference, blocks=None):
     }
 
 
-def start_of(name, scene, hop, distance):
+def hop_cells(name, scene, hop, distance):
     """Return the cells that rows on a ``hop`` of a ``Scene`` have in common."""
     return {
         "scene": name,
@@ -193,7 +193,7 @@ class NearThreshold:
     def __init__(self, name, scene, hop, halvings, seed):
         self.name, self.scene, self.hop, self.seed = name, scene, hop, seed
         self.mean, self.halvings = 1 / passing_rate(scene, hop), halvings
-        self.start = start_of(name, scene, hop, 2.0**-halvings) | {"exact_mean": self.mean}
+        self.start = hop_cells(name, scene, hop, 2.0**-halvings) | {"exact_mean": self.mean}
 
     def _seed(self, what):
         inertia = self.scene.moment_of_inertia
@@ -217,14 +217,14 @@ class NearThreshold:
         if not are_rare(self.scene, self.hop, self.mean):
             return None, []
         found = cluster_sizes(self.scene, self.hop, gap, blocks, self.cluster_seed)
-        return self.of_sizes(*found, gap)
+        return self.cluster_rows(*found, gap)
 
     @property
     def cluster_seed(self):
         """The seed of the streams that clusters are drawn from."""
         return self._seed("clusters")
 
-    def of_sizes(self, sizes, events, gap):
+    def cluster_rows(self, sizes, events, gap):
         """Return (κ or None, the rows of it) from what ``cluster_sizes`` returns for a ``gap``."""
         found = cluster_coefficient(sizes)
         kappa = plateau(found, gap, self.mean, odd_clusters_per_passage)
@@ -243,12 +243,12 @@ class NearThreshold:
         box, own = box_time(self.scene, self.hop), []
         times = sorted({*([gap] if kappa else []), *(box * time for time in TIMES)})
         sums, events = hop_sums(self.scene, self.hop, times, blocks, self._seed("times"))
-        for time, estimate in zip(times, by_time(sums), strict=True):
+        for time, estimate in zip(times, coefficients_at_times(sums), strict=True):
             if time == gap:
                 own.append(estimate)
             else:
                 yield self.row("correlation", "hops", estimate, time)
-        flat = plateau(own[0], gap, self.mean, of_order) if kappa else None
+        flat = plateau(own[0], gap, self.mean, order_correlation) if kappa else None
         if flat:
             yield self.row("plateau", "hops", flat, gap, kappa, events)
 
@@ -264,7 +264,7 @@ class NearThreshold:
         parts = []
         for n in (1, 2):
             sums, _ = hop_sums(self.scene, self.hop, [n * time], blocks, self._seed(f"slope {n}"))
-            parts.append(by_time(sums)[0])
+            parts.append(coefficients_at_times(sums)[0])
         early, late = parts
         value = (4 * (1 - early.value) - (1 - late.value)) / (2 * time)
         error = math.hypot(4 * early.stderr, late.stderr) / (2 * time)
@@ -277,7 +277,7 @@ class NearThreshold:
         rate = exact.event_rate(self.scene)
         blocks = blocks_for(self.scene, 2.0**-self.halvings, around, events)
         sums, simulated = hop_sums(self.scene, self.hop, [around], blocks, self._seed("times"))
-        (correlated,) = by_time(sums)
+        (correlated,) = coefficients_at_times(sums)
         yield self.row("diffusion", "hops", correlated, around, events=simulated)
         time = max(around, self.mean)
         blocks = int(min(max(events / (rate * 2 * time), FEWEST), MOST_HOPS)) // HOPS_OF_BLOCK
@@ -285,10 +285,10 @@ class NearThreshold:
             self.scene, self.hop, [time, 2 * time], blocks, self._seed("states"), on_surface=False
         )
         per_time = sums / (HOPS_OF_BLOCK * time)
-        counted = mean_of(per_time[:, 2, 1] / 2)
+        counted = sample_mean(per_time[:, 2, 1] / 2)
         yield self.row("rate", "states", counted, 2 * time, 1 / self.mean, simulated)
         # Displacements in the second half of the time no longer depend on the start.
-        moved = mean_of((per_time[:, 1, 1] - per_time[:, 1, 0]) * self.mean)
+        moved = sample_mean((per_time[:, 1, 1] - per_time[:, 1, 0]) * self.mean)
         yield self.row("diffusion", "states", moved, 2 * time, correlated)
 
     def rate(self, blocks):
@@ -350,11 +350,11 @@ def one_friction(name, box, friction, halvings, events, seed):
     for n in halvings:
         scene = scene_at(box, "horizontal_hop", n, friction=friction)
         near = NearThreshold(name, scene, "horizontal_hop", n, seed)
-        gap = pause_of(scene, near.hop)
+        gap = cluster_pause(scene, near.hop)
         price = 2 * gap * (exact.event_rate(scene) + KICK * friction)
         hops = min(max(WORK * events / price, FEWEST_KICKED), MOST_HOPS)
         found = cluster_sizes(scene, near.hop, gap, int(hops) // HOPS_OF_BLOCK, near.cluster_seed)
-        kappa, rows = near.of_sizes(*found, gap)
+        kappa, rows = near.cluster_rows(*found, gap)
         yield from rows
         if n == halvings[0]:
             yield near.rate(STRIPS)
@@ -362,7 +362,7 @@ def one_friction(name, box, friction, halvings, events, seed):
     yield from local_exponents(measured)
 
 
-def pause_of(scene, hop):
+def cluster_pause(scene, hop):
     """Return the time without a hop that ends a cluster: with little friction it is shorter."""
     return quiet_time(scene, hop, PAUSE) if scene.friction else quiet_time(scene, hop)
 
@@ -428,7 +428,7 @@ def one_long_file(name, box, radius, frictions, seed, inertia=None, replicas=LON
         moment_of_inertia=inertia,
     )  # fmt: skip
     unit = box.height / file.thermal_speed(scene)
-    start = start_of(name, scene, "horizontal_hop", 1 - radius / limit)
+    start = hop_cells(name, scene, "horizontal_hop", 1 - radius / limit)
     for friction in frictions:
         rate = start["friction"] = None if friction is None else friction / unit
         kind = friction if inertia is None else f"rough {inertia}"
@@ -440,7 +440,7 @@ def one_long_file(name, box, radius, frictions, seed, inertia=None, replicas=LON
 
         places, hops = file.recorded(scene, STEP * unit, RECORDS, replicas, stream, rate)
         numbers = file.order(places, scene.width)
-        ordered = file.in_order(places, numbers, scene.width)
+        ordered = file.ordered_places(places, numbers, scene.width)
         moved, whole_file = (file.squares(x, LAGS) / per_disc**2 for x in (places, ordered))
         steps = file.squares(numbers, LAGS)
         if is_open and variance is None:
@@ -453,14 +453,14 @@ def one_long_file(name, box, radius, frictions, seed, inertia=None, replicas=LON
             return file.law(scene, rate, lag * STEP * unit, variance)
 
         for k, lag in enumerate(LAGS):
-            yield make_row("displacement", "states", mean_of(moved[k]), lag)
+            yield make_row("displacement", "states", sample_mean(moved[k]), lag)
             if is_open:
-                yield make_row("order", "states", mean_of(steps[k]), lag)
-            yield make_row("file", "states", mean_of(whole_file[k]), lag, reference=law(lag))
+                yield make_row("order", "states", sample_mean(steps[k]), lag)
+            yield make_row("file", "states", sample_mean(whole_file[k]), lag, reference=law(lag))
         if rate is not None:
             early, late = (LAGS.index(lag) for lag in SINGLE)
             root = math.sqrt(SINGLE[0] * STEP * unit)
-            found = mean_of((whole_file[late] - whole_file[early]) / root)
+            found = sample_mean((whole_file[late] - whole_file[early]) / root)
             due = (law(SINGLE[1]) - law(SINGLE[0])) / root
             # F is ∝ √S.
             error = due * variance.stderr / variance.value / 2 if variance else 0.0
@@ -468,7 +468,7 @@ def one_long_file(name, box, radius, frictions, seed, inertia=None, replicas=LON
             yield make_row("single_file", "states", found, SINGLE[1], **cells)
         if is_open:
             per_time = hops / (RECORDS * STEP * unit)
-            yield make_row("rate", "states", mean_of(per_time))
+            yield make_row("rate", "states", sample_mean(per_time))
             early, late = (LAGS.index(lag) for lag in HOPPED)
             walked = (steps[late] - steps[early]) / ((HOPPED[1] - HOPPED[0]) * STEP * unit)
             yield make_row("diffusion", "order", file.quotient(walked, per_time), HOPPED[1])
@@ -511,7 +511,7 @@ def in_long_file(name, box, blocked, seed):
 # Long runs --------------------------------------------------------------------------------------
 
 
-def at_distances(one):
+def long_run_thresholds(one):
     """Yield pairs (``NearThreshold``, pause) of a threshold ``one`` of a long run.
 
     The distance is halved ``every`` times from one to the next, once if this is not given. The
@@ -522,7 +522,7 @@ def at_distances(one):
         scene = scene_at(box, one["hop"], halvings, friction=one.get("friction", 0.0))
         near = NearThreshold(one["name"], scene, one["hop"], halvings, one["seed"])
         for pause in one.get("pauses", [1]):
-            yield near, pause * pause_of(scene, near.hop)
+            yield near, pause * cluster_pause(scene, near.hop)
 
 
 def cluster_counts(one):
@@ -532,7 +532,7 @@ def cluster_counts(one):
     "of" is how many sizes are told apart.
     """
     found, blocks = [], -(-one["hops"] // HOPS_OF_BLOCK)
-    for near, gap in at_distances(one):
+    for near, gap in long_run_thresholds(one):
         sizes, events = cluster_sizes(near.scene, near.hop, gap, blocks, near.cluster_seed)
         pairs = [[n, int(hops)] for n, hops in enumerate(sizes) if hops]
         found.append({"events": int(events), "of": len(sizes), "sizes": pairs})
@@ -542,11 +542,11 @@ def cluster_counts(one):
 def cluster_rows(one, counts):
     """Return the rows of passages.csv on a threshold ``one`` from its ``cluster_counts``."""
     measured, found = [], []
-    for (near, gap), count in zip(at_distances(one), counts, strict=True):
+    for (near, gap), count in zip(long_run_thresholds(one), counts, strict=True):
         sizes = np.zeros(count["of"], np.int64)
         for n, hops in count["sizes"]:
             sizes[n] = hops
-        kappa, own = near.of_sizes(sizes, count["events"], gap)
+        kappa, own = near.cluster_rows(sizes, count["events"], gap)
         measured.append((near, kappa))
         found += own
     if "pauses" in one:  # at one distance
@@ -577,7 +577,7 @@ def displacements(name, width, height, blocked, seed, replicas):
         yield from one_long_file(name, box, radius, frictions, seed, inertia, replicas)
 
 
-def file_of(box, discs, halvings):
+def file_scene(box, discs, halvings):
     """Return the ``Scene`` of ``discs`` on a ring, and the unit of its times, h over v_th."""
     scene = Scene(
         box.width / 2 * discs, box.height, radius_at(box.height / 4, halvings), discs=discs,
@@ -594,7 +594,7 @@ def file_counts(one, run):
     places by which a disc has moved in the order.
     """
     box, found = Box(run["width"], run["height"]), []
-    scene, unit = file_of(box, one["discs"], one["halvings"])
+    scene, unit = file_scene(box, one["discs"], one["halvings"])
     rate = one["friction"] / unit if "friction" in one else None
     step, number = run["step"] * unit, run["records"]
     window = run["margin"] * unit, number * step - run["margin"] * unit
@@ -615,13 +615,13 @@ def file_rows(one, run, counts):
     pair and of its neighbours in it. D/(ν ℓ²) over κ is the last row.
     """
     box = Box(run["width"], run["height"])
-    scene, unit = file_of(box, one["discs"], one["halvings"])
-    start = start_of(run["name"], scene, "horizontal_hop", 2.0 ** -one["halvings"])
+    scene, unit = file_scene(box, one["discs"], one["halvings"])
+    start = hop_cells(run["name"], scene, "horizontal_hop", 2.0 ** -one["halvings"])
     start["friction"] = one["friction"] / unit if "friction" in one else None
     hops, passed, total, moved = (np.array([count[k] for count in counts]) for k in range(4))
     discs, duration = one["discs"], run["records"] * run["step"] * unit
     per_time = 2 * total / (discs * duration)
-    rate = mean_of(per_time)
+    rate = sample_mean(per_time)
     yield row(start, rate, quantity="rate", method="states", replicas=rate.n)
     steps = [
         moved[:, k] / (discs * (run["records"] + 1 - lag)) for k, lag in enumerate(run["lags"])

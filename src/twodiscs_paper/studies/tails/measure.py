@@ -44,7 +44,7 @@ from twodiscs.sampling.initial_states import draw_starts
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.streams import next_bits, open_stream, uniform
 from twodiscs.theory import exact
-from twodiscs_paper.studies.estimates import chi2_p, mean_of
+from twodiscs_paper.studies.estimates import chi2_p, sample_mean
 from twodiscs_paper.studies.single import advance_to, tail_constant
 from twodiscs_paper.study import row
 
@@ -192,7 +192,7 @@ def tail(scene, event, times, samples, seed, blocks=BLOCKS):
         conditioned_sampler(oriented), hop,
     )  # fmt: skip
     mean = exact.mean_times(scene)[event]
-    estimates, (ends, values) = mean_of(sums.sum(axis=1) * mean), longest.T
+    estimates, (ends, values) = sample_mean(sums.sum(axis=1) * mean), longest.T
     return [
         replace(one, stderr=math.hypot(one.stderr, *unseen[ends <= time]))
         for one, time in zip(estimates, times, strict=True)
@@ -221,7 +221,7 @@ def counted_survival(scene, event, times, replicas, seed):
 
     If no interval was longer, the error is that of one interval.
     """
-    found = mean_of(survivals(scene, event, times, replicas, seed))
+    found = sample_mean(survivals(scene, event, times, replicas, seed))
     return [one if one.value else replace(one, stderr=1 / (8 * replicas)) for one in found]
 
 
@@ -260,7 +260,7 @@ def cases(box):
     return [case for case in candidates if box.fits(case[1]) and comes(*case)]
 
 
-def start_of(scene, event):
+def event_cells(scene, event):
     """Return the cells that all rows on an ``event`` of a ``Scene`` have in common."""
     return {"event": event, "radius": scene.radius, "exact_mean": exact.mean_times(scene)[event]}
 
@@ -284,7 +284,7 @@ def rows(box, samples, replicas, seed):
     found = []
     for i, (event, radius) in enumerate(cases(box)):
         scene = box.scene(radius)
-        start, constant = start_of(scene, event), tail_constant(scene, event)
+        start, constant = event_cells(scene, event), tail_constant(scene, event)
         mean = start["exact_mean"]
         times = [time * mean for time in COUNTED]
         estimates = counted_survival(scene, event, times, replicas, seed + 2 * i)
@@ -311,7 +311,7 @@ def long_run(weighted, counted):
     """
     box = Box(weighted["width"], weighted["height"])
     scene, event = box.scene(weighted["radius"]), weighted["event"]
-    start = start_of(scene, event)
+    start = event_cells(scene, event)
     times = [time * start["exact_mean"] for time in weighted["times"]]
     estimates = tail(scene, event, times, weighted["samples"], weighted["seed"])
     constant = tail_constant(scene, event)
@@ -319,7 +319,7 @@ def long_run(weighted, counted):
 
     box = Box(counted["width"], counted["height"])
     scene, event = box.scene(counted["radius"]), counted["event"]
-    start = start_of(scene, event)
+    start = event_cells(scene, event)
     times = [time * start["exact_mean"] for time in counted["times"]]
     seeds = range(counted["seed"], counted["seed"] + counted["runs"])
     of_runs = [counted_survival(scene, event, times, counted["replicas"], s) for s in seeds]
