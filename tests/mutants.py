@@ -24,8 +24,6 @@ from functools import cache
 from pathlib import Path
 from queue import SimpleQueue
 
-from twodiscs import _HOMES
-
 REPOSITORY = Path(__file__).resolve().parents[1]
 
 #: Test files for what is no module: the beginning of a path, in the order of running.
@@ -278,7 +276,15 @@ def imported(text):
             found |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
     attributes = [node for node in ast.walk(tree) if isinstance(node, ast.Attribute)]
     of_face = {one.attr for one in attributes if getattr(one.value, "id", "") in ("td", "twodiscs")}
-    return found | {f"twodiscs.{_HOMES[name]}" for name in of_face & _HOMES.keys()}
+    return found | {f"twodiscs.{homes()[name]}" for name in of_face & homes().keys()}
+
+
+@cache
+def homes():
+    """Return {name: module} of the face."""
+    stub = (REPOSITORY / "src/twodiscs/__init__.pyi").read_text(encoding="utf-8")
+    lines = re.findall(r"^from \.(\S+) import (.+)$", stub, re.MULTILINE)
+    return {name: module for module, names in lines for name in re.findall(r"as (\w+)", names)}
 
 
 @cache

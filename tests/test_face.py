@@ -64,27 +64,25 @@ def intervals():
 # Names ------------------------------------------------------------------------------------------
 
 
-def test_the_import_reads_nothing_else():
-    code = "import sys; known = {*sys.modules}; import twodiscs; print(*{*sys.modules} - known)"
-    assert {*python("-c", code, check=True).stdout.split()} <= {"twodiscs", "__future__"}
+def test_the_import_reads_no_module_of_the_package():
+    code = "import sys, twodiscs; print(*(name for name in sys.modules if 'twodiscs.' in name))"
+    assert python("-c", code, check=True).stdout.split() == []
 
 
 def test_every_name_is_there_with_its_types_where_an_editor_looks_for_it():
     assert {*td.__all__} <= {*dir(td)}
-    with pytest.raises(AttributeError, match="'twodiscs' has no attribute 'colour'"):
+    with pytest.raises(AttributeError, match="No twodiscs attribute colour"):
         td.colour  # noqa: B018
-    with open(td.__file__, encoding="utf-8") as file:
+    with open(f"{td.__file__}i", encoding="utf-8") as file:
         tree = ast.parse(file.read())
-    (block,) = (n for n in tree.body if isinstance(n, ast.If))
     typed = {
-        alias.name: node.module.removeprefix("twodiscs.")
-        for node in block.body
-        if isinstance(node, ast.ImportFrom) and node.module.startswith("twodiscs.")
+        alias.asname: node.module
+        for node in tree.body
+        if isinstance(node, ast.ImportFrom)
         for alias in node.names
     }
-    assert typed == td._HOMES
     assert {*typed} == {*td.__all__}
-    (effects,) = (n for n in block.body if isinstance(n, ast.ClassDef))
+    (effects,) = (n for n in tree.body if isinstance(n, ast.ClassDef))
     assert [part.target.id for part in effects.body[1:]] == [*EFFECTS, "discs"]
     for name in td.__all__:
         home = getattr(td, name)

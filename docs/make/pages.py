@@ -3,7 +3,7 @@
     python docs/make/pages.py
 
 writes, in the folder where it is called: config/schema.json, the names that editors complete
-in src/twodiscs/__init__.py, and the output of `twodiscs` in the pages of docs.
+in src/twodiscs/__init__.pyi, and the output of `twodiscs` in the pages of docs.
 """
 
 import json
@@ -21,7 +21,7 @@ from twodiscs_paper.configuration.schema import schema
 
 #: The names for checkers of types in the face, between their marks.
 NAMES = re.compile(
-    r"(?<=python docs/make/pages.py renews them.\n).*?(?=    # end of names\n)", re.DOTALL
+    r"(?<=python docs/make/pages.py renews them.\n).*?(?=# end of names\n)", re.DOTALL
 )
 
 #: A command that a page shows, and beneath it what it prints.
@@ -33,9 +33,9 @@ def literals():
     quantities = ("volume", *(f"{event}_area" for event in EVENTS))
     text = ""
     for name, values in {"Event": EVENTS, "Hop": HOPS, "Quantity": quantities}.items():
-        names, indent = "".join(f'"{value}", ' for value in values), " " * 8
+        names, indent = "".join(f'"{value}", ' for value in values), " " * 4
         lines = fill(names, 100, initial_indent=indent, subsequent_indent=indent)
-        text += f"    {name} = Literal[\n{lines}\n    ]  # fmt: skip\n"
+        text += f"{name} = typing.Literal[\n{lines}\n]  # fmt: skip\n"
     return text
 
 
@@ -48,9 +48,9 @@ def _tried(example):
 
 def pages(folder):
     """Return {path below ``folder``: text} of the files as they should be."""
-    face = Path(folder, "src/twodiscs/__init__.py").read_text(encoding="utf-8")
+    face = Path(folder, "src/twodiscs/__init__.pyi").read_text(encoding="utf-8")
     renewed = {
-        "src/twodiscs/__init__.py": NAMES.sub(lambda _: literals(), face),
+        "src/twodiscs/__init__.pyi": NAMES.sub(lambda _: literals(), face),
         "config/schema.json": json.dumps(schema(), ensure_ascii=False, indent=1) + "\n",
     }
     for path in (Path(folder, "README.md"), *sorted(Path(folder, "docs").glob("*.md"))):

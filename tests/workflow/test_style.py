@@ -12,7 +12,7 @@ from checkout import REPOSITORY
 import twodiscs
 
 
-@pytest.mark.parametrize("page", ["config/schema.json", "src/twodiscs/__init__.py"])
+@pytest.mark.parametrize("page", ["config/schema.json", "src/twodiscs/__init__.pyi"])
 def test_pages_made_from_declarations_are_up_to_date(page):
     text = (REPOSITORY / page).read_text(encoding="utf-8")
     assert text == pages.pages(REPOSITORY)[page], "python docs/make/pages.py"
