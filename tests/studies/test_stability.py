@@ -333,7 +333,7 @@ def test_errors_of_all_calls_and_scenes_are_what_they_say():
     assert len(rows) > 300
     alarm = 2 * norm.sf(5) / len(rows)
     for row in rows:
-        n = row["scores"]
+        n = min(row["scores"], 16)  # values of one seed are correlated
         assert chi2.sf(row["mean_square"] * n, n) > alarm, row
 
 

@@ -15,7 +15,7 @@ from uncertainties import UFloat
 
 import twodiscs as td
 from twodiscs.model.events import HOPS
-from twodiscs.theory.exact import events_per_interval
+from twodiscs.theory.exact import event_rate, events_per_interval
 
 PAPER = {"width": 1.5, "height": 1.0}
 
@@ -103,6 +103,8 @@ def _of_sample(scene, **settings):
 
 
 def _of_intervals(scene, **settings):
+    if event_rate(scene) is None:  # the work of an interval is not known
+        return
     for hop in HOPS:
         if scene.is_possible(hop) and events_per_interval(scene, hop) * 2**17 < MOST_EVENTS:
             result = td.intervals(scene, hop, **settings)
