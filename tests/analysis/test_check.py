@@ -194,7 +194,7 @@ def test_errors_of_the_wrong_size_show_in_the_spread(factor, sign):
     rng = np.random.default_rng(4)
     theory = exact_values(radii)
     dynamics = [
-        errors_times(factor, Laws(scene).dynamics(rng, 128, 5e-3, ("right_wall", "any_wall")))
+        errors_times(factor, Laws(scene).dynamics(rng, 1024, 5e-3, ("right_wall", "any_wall")))
         for scene in scenes(radii)
     ]
     found = text_table({"dynamics": dynamics}, theory)
@@ -203,7 +203,8 @@ def test_errors_of_the_wrong_size_show_in_the_spread(factor, sign):
         ("z_spread", "right_wall_time"),
         ("z_spread", "any_wall_time"),
     }
-    assert not any(name == "z_mean" for name, _, _ in names)
+    # Errors that are too small make chance look like a shift, too.
+    assert factor < 1 or not any(name == "z_mean" for name, _, _ in names)
     for row in found:
         if row["comparison"] == "z_spread":
             assert math.copysign(1, row["z"]) == sign

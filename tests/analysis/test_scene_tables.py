@@ -159,12 +159,12 @@ def test_too_few_events_show_no_error():
     assert row["stderr"] is row["relative_stderr"] is row["bound"] is None
     assert (row["z"], row["test"]) == (0.0, "cluster-bound")
     # 180 events in clusters of three are as good as 60.
-    assert time_row(180, 540)["status"] == "too-few"
-    row = time_row(300, 350)
+    assert time_row(180, 540, 20480 / 180)["status"] == "too-few"
+    row = time_row(300, 350, 20480 / 300)
     assert row["status"] == "budget"
     assert row["test"] == "cluster-bound"
     assert row["stderr"] > 0
-    assert time_row(2000, 3000)["test"] == "normal"
+    assert time_row(3000, 9000, 20480 / 3000)["test"] == "normal"
     assert time_row(10**6, 2 * 10**10, replicas=99)["status"] == "too-few"
 
 

@@ -27,6 +27,7 @@ from twodiscs_paper.studies.passages import figure_diffusion as diffusion
 from twodiscs_paper.studies.passages import figure_files as files
 from twodiscs_paper.studies.passages import figure_friction as friction
 from twodiscs_paper.studies.passages import figure_transmission as transmission
+from twodiscs_paper.studies.stability import figure_calibration
 from twodiscs_paper.studies.stability.figure_runs import rounded
 from twodiscs_paper.studies.tails import figure as tails
 from twodiscs_paper.studies.thresholds.measure import leading_law, near
@@ -263,7 +264,8 @@ def test_symbols_and_error_bars_are_those_of_the_table(name, panel, look, due):
 
 def test_every_figure_of_a_study_is_compared():
     """Costs are times, which no table of the repository has: tests of the study compare them."""
-    elsewhere = {"accuracy_cost", "accuracy_cost_by_radius", "stability"}
+    elsewhere = {"accuracy_cost", "accuracy_cost_by_radius", "stability", "stability_of_runs"}
+    elsewhere.add("calibration")
     assert {name for name, *_ in CASES} | elsewhere >= STUDY_FIGURES.keys()
 
 
@@ -305,6 +307,23 @@ def test_residuals_are_those_of_the_table():
             due = {(r["distance"], r["z"]) for r in rows if r["z"] is not None and r["distance"]}
             axes = drawn(name)["residuals" if "residuals" in drawn(name) else quantity]
             assert points(axes, colour, marker) == due
+
+
+def test_the_mean_squares_of_calibration_are_those_of_the_long_run():
+    """Every row with several scores of a call in the figure has a symbol, in its line."""
+    axes = drawn("calibration")["calibration"]
+    shown = sorted(
+        (round(y), x) for line in axes.lines if line.get_marker() in "os^"
+        for x, y in zip(*line.get_data(), strict=True)
+    )  # fmt: skip
+    path = EXPECTED.parent / "long_run" / "calibration" / "calibration.csv"
+    due = sorted(
+        (level, row["mean_square"])
+        for level, (call, part) in enumerate(figure_calibration.ESTIMATORS.values())
+        for row in select(read_table(path), call=call)
+        if part in row["quantity"] and row["scores"] > 1
+    )
+    assert shown == due != []
 
 
 def test_the_panels_of_stability_are_those_of_the_table():
@@ -361,7 +380,7 @@ def test_the_panels_of_stability_of_runs_are_those_of_the_table():
     for event, look in LOOKS.items():
         own = [row for row in select(extremes, quantity=f"{event}_time") if row["z"] is not None]
         due = {(row["z"], places.index(row["case"])) for row in own}
-        assert points(axes["e"], *look) == due != set()
+        assert points(axes["d"], *look) == due != set()
     returns = select(rows, part="reversal", quantity="return_error")
     radii = sorted({row["radius"] for row in returns})
     for radius, look in zip(radii, (*style.SERIES, (style.ORANGE, "v")), strict=True):

@@ -43,7 +43,7 @@ def bins_of(edges, chances, intervals, rng):
     alive, found = intervals, []
     for first, last, chance in zip(edges, edges[1:], chances, strict=False):
         count = int(rng.binomial(alive, chance)) if rng else round(alive * chance)
-        found.append(distributions.Bin(first, last, None, None, count, alive))
+        found.append(distributions.HazardBin(first, last, None, None, count, alive))
         alive -= count
     return found
 

@@ -154,14 +154,14 @@ def relative_variance(count):
 def is_enough(least, total, squares, replicas, expected=None):
     """Return whether there are 100 replicas and at least a number of effective events.
 
-    If the ``expected`` count of a replica is known, it decides, not the counts: runs with many
-    events by chance would else be judged by another law than those with few.
+    If the ``expected`` count of a replica is known, it decides, not the counts: otherwise runs with
+    more events than expected would be judged by another law than those with fewer. Clusters that
+    nobody foresaw are seen in the counts: they have far fewer effective events than expected.
     """
-    if replicas < MIN_EVENTS or not effective_count(total, squares, replicas):
-        return False
-    if expected is None:
-        return effective_count(total, squares, replicas) >= least
-    return replicas >= least * relative_variance(expected)
+    effective = effective_count(total, squares, replicas)
+    if replicas < MIN_EVENTS or expected is None:
+        return replicas >= MIN_EVENTS and effective >= least
+    return replicas >= least * relative_variance(expected) and effective >= least / CLUSTER
 
 
 def has_error_bar(total, squares, replicas, expected=None):

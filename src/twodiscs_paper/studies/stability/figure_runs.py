@@ -82,7 +82,7 @@ def name_radii(rows):
 
 def name_lines(axes, names, places):
     """Make the ordinate a list of ``names`` at ``places``, from the top down."""
-    axes.set_ylim(places[-1] + 0.6, places[0] - 0.6)
+    axes.set_ylim(max(places, default=0) + 0.6, min(places, default=0) - 0.6)
     axes.set_yticks(places, names, fontsize=6.9)
     axes.tick_params(axis="y", length=0)
 

@@ -83,11 +83,13 @@ class CalibrationTable(Table):
     }
 
     @staticmethod
-    def part(seeds, first):
+    def rows(seeds, first):
         """Return all rows, of ``seeds`` seeds from ``first`` on (see ``calibration.rows``)."""
         from twodiscs_paper.studies.stability import calibration
 
         return calibration.rows(seeds, first)
+
+    part = rows  # as a long run is made
 
 
 def _parameters(configuration):
