@@ -40,14 +40,17 @@ def common(case):
 
 
 def draw(box, tables):
-    """Draw the rows of calibration.csv; its scenes have boxes of their own, not the ``box``."""
-    rows = [row for row in tables["calibration"] if row["scores"] > 1]
+    """Draw the rows of calibration.csv; its scenes have boxes of their own, not the ``box``.
+
+    Long calls, with few seeds, are left out.
+    """
+    rows = [r for r in tables["calibration"] if r["scores"] > 1 and r["size"] != "long"]
     figure = new_figure(0.3 * len(ESTIMATORS) + 0.9, COLUMN, layout="constrained")
     axes = figure.subplots()
     axes.set_label("calibration")
     for level, (call, part) in enumerate(ESTIMATORS.values()):
         own = [r for r in rows if r["call"] == call and part in r["quantity"]]
-        fewest = min((r["scores"] for r in own if r["size"] != "long"), default=2)
+        fewest = min((r["scores"] for r in own), default=2)
         half = BAND * math.sqrt(2 / fewest)
         low, high = max(1 - half, SHOWN[0]), 1 + half
         axes.fill_betweenx((level - 0.42, level + 0.42), low, high, color="#EEEEEE", lw=0)
