@@ -94,6 +94,7 @@ depth: 1, moment_of_inertia: 0.4 → moment_of_inertia must be left out in a box
 
 #: Calls of the face.
 CALLS = """
+Scene(1.5, 1, 0.1, depth=1e50) → depth must lie between … and 1e45
 Scene(1.5, 1, 0.1, periodic='x,y') → periodic must be some of the axes x and y (z needs a depth), …
 Scene('0,3', 1, 0.1) → width must be a positive number, not '0,3'; decimals follow a point, 0.3
 Scene(1.5, 1, 0.1, n_discs=3) → 'n_discs'; did you mean discs?
@@ -147,6 +148,7 @@ td.diffusion(PAPER, [1]) → axis must be periodic in the scene for diffusion
 td.diffusion(RING, [1], axis='y') → axis must be one of x for
 td.diffusion(RING, [0, 1]) → times must be above 0 for diffusion
 start(x1=0.2) → have the discs apart, with 0.4 or more between their centres, not 0.3
+td.trajectory(td.Scene(1.5e-15, 1e-15, 2e-16), start=[-6e-16, 0, 5e-16, 0, 1, 0, 0, 0]) → inside
 start(x1=-0.6) → disc 1 inside the box, with x1 between -0.55 and 0.55, not -0.6
 start(y2=0.31) → disc 2 inside the box, with y2 between -0.3 and 0.3, not 0.31
 start(u1=2.0) → start must have a total energy of 0.5, not 2.0

@@ -120,6 +120,14 @@ def test_hops_of_many_discs_are_those_of_the_sum_without_a_series(monkeypatch):
     assert found == pytest.approx(channel.derivatives(scene).vertical_hops, rel=1e-11)
 
 
+@pytest.mark.parametrize("force", [1.0, 5.0, 20.0])
+def test_the_softness_of_a_channel_is_the_derivative_of_its_length(force):
+    """By a difference over 1e-4 of the force, whose rounding and curvature are below 1e-7."""
+    step = 1e-4 * force
+    low, here, high = (limit(1.0, 0.3, force + k * step) for k in (-1, 0, 1))
+    assert here.softness == pytest.approx((low.length - high.length) / (2 * step), rel=1e-7)
+
+
 def test_many_discs_tend_to_the_largest_eigenvalue():
     """At the same force only the two ends differ, by 1/N."""
     height, radius, force = 0.6, 0.18, 20.0

@@ -130,8 +130,9 @@ def test_bursts_in_corners_scale_as_the_stays():
     assert clusters.corner_variance(ROUGH, "right_wall", 1e-3) == pytest.approx(one[0] / 4)
     # A field keeps discs from the upper corners.
     falling = replace(ROUGH, field=0.5)
-    by_wall = [clusters.corner_variance(falling, w, 1e-3) for w in ("right_wall", "top_wall")]
-    assert by_wall[1] < 0.2 * by_wall[0]
+    right, top = (clusters.corner_variance(falling, w, 1e-3) for w in ("right_wall", "top_wall"))
+    left = (1 - 2 * 0.5 * 0.6) ** 2  # the density at the top over that at the bottom
+    assert top / right == pytest.approx(left / (1 + left), rel=1e-9)
 
 
 @pytest.mark.slow

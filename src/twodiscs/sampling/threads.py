@@ -1,10 +1,10 @@
 """Calls of kernels in threads, one after the other or on several cores.
 
-A process works in threads: on several cores, and so that Ctrl-C stops it
-without delay. Kernels release Python's lock, so threads can use all cores. Python handles no signal
-while a kernel runs. If it handles one while numba prepares or ends a call, the KeyboardInterrupt is
-lost, or a ``SystemError`` takes its place. Python handles signals in the main thread only. The main
-thread therefore waits, and other threads call the kernels.
+A process works in threads: on several cores, and so that Ctrl-C stops it without delay. Kernels
+release Python's lock, so threads can use all cores. Python handles no signal while a kernel runs.
+If it handles one while numba prepares or ends a call, the KeyboardInterrupt is lost, or a
+``SystemError`` takes its place. Python handles signals in the main thread only. The main thread
+therefore waits, and other threads call the kernels.
 """
 
 from collections import deque
