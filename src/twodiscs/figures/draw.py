@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from twodiscs.figures import configuration_space, geometry, motion, radius
+from twodiscs.figures import box_drawings, configuration_space, motion, radius
 
 #: {figure: function of a ``Box`` and of the rows of its table}
 TABLE_FIGURES = {name: partial(radius.draw, name) for name in radius.CURVES} | {
@@ -14,11 +14,11 @@ TABLE_FIGURES = {name: partial(radius.draw, name) for name in radius.CURVES} | {
 
 #: {drawing: function of a ``Box``}
 BOX_DRAWINGS = {
-    "model": geometry.draw_model,
+    "model": box_drawings.draw_model,
     "configuration_space": configuration_space.draw,
-    "largest_radius": geometry.draw_largest_radius,
-    "integration_regimes": geometry.draw_regimes,
-    "surface_shell": geometry.draw_shells,
+    "largest_radius": box_drawings.draw_largest_radius,
+    "integration_regimes": box_drawings.draw_regimes,
+    "surface_shell": box_drawings.draw_shells,
 }
 
 
