@@ -85,6 +85,15 @@ def test_a_name_and_a_box_are_enough(width, height):
     assert request.event_budget is None
 
 
+def test_the_check_and_the_cost_of_a_scene_read_the_points_of_all_stages():
+    configuration = yaml_files.load({"scenes": [PLAIN["scenes"][0]]})
+    (scene,) = configuration.scenes
+    for table in ("check", "cost"):
+        assert [*configuration.points(scene.name, table)] == [*scene.keys]
+    assert [*scene.keys] == ["monte_carlo", "dynamics", "intervals"]
+    assert [*configuration.points(scene.name, "hop_histogram")] == ["intervals"]
+
+
 def test_a_watch_block_is_everything_that_is_watched():
     request = one(watch={"mean_times": ["top_wall", "right_wall"]})
     assert request.quantities == RequestedQuantities(

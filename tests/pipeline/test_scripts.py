@@ -123,6 +123,14 @@ def test_a_shard_of_other_work_is_refused(run, changed, wrong):
         point(run, "monte_carlo", "a.json", [file])
 
 
+def test_a_shard_under_the_name_of_another_is_refused(run):
+    """Its first block is that of the name, its last one is not."""
+    (file,) = shards(run, "monte_carlo", [(0, 3)])
+    other = Path(file).rename(Path(file).with_name("all-0-2.json"))
+    with pytest.raises(InputError, match=r"all-0-2.json .*delete it"):
+        point(run, "monte_carlo", "a.json", [str(other)])
+
+
 def edit(path, blocks):
     """Add an event to the sums of the ``blocks`` of a file."""
     content = json.loads(Path(path).read_text())
