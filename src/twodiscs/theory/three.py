@@ -11,7 +11,8 @@ and their sum t, with weight B − t. With p, q, c = d(P), d(Q), d(t)
     V = 24 ∫_0^B dt (B − t) ∫_{t/2}^t dP [g(p + q) + g(q + c) + h(p + c, q)]
 
 In it h is g unless q > p + c. The derivatives by A, B and σ are taken under the integral, and all
-their terms are positive. For pairs with the same x, at least σ apart in y,
+their terms are positive; ``flux.rates`` makes rates of them. For pairs with the same x, at least σ
+apart in y,
 
     Σ ∫ δ(x_i − x_j) = 12 ∫_0^B dt (B − t) ∫_{t/2}^t dP
                        [A² 1(Q ≥ σ) + (A − q)₊² (1(P ≥ σ) + 1(t ≥ σ))]

@@ -1,7 +1,7 @@
-"""States of the invariant measure for N discs: velocities on a sphere, centres in three ways.
+"""Initial states of N discs, from the invariant measure: centres are drawn in one of three ways.
 
-A state is a column of x of all discs, then y, u and v, of rough discs also their spins s, as the
-speeds rω of their surfaces.
+Velocities are uniform on a sphere. A state is a column of x of all discs, then y, u and v, of rough
+discs also their spins s, as the speeds rω of their surfaces.
 
 * ``rejection``: N centres are drawn; after an overlap all are drawn again. Exact. The acceptance is
   V/(AB)^N, and the method is used if it is at least ``LEAST_FREE``.
