@@ -41,6 +41,8 @@ def format_number(value, form=""):
 
 def round_up(events):
     """Return the text of the next number of ``events`` with two digits, for a user to type."""
+    if events < 1:
+        return "1"
     step = 10.0 ** (math.floor(math.log10(events)) - 1)
     return format_number(step * math.ceil(events / step), "g")
 
