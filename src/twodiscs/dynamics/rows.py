@@ -6,7 +6,7 @@ import numpy as np
 
 from twodiscs.sampling.jit import inlined
 
-#: What a row is. After ``WALL`` there are the walls of x, y and z that disc 1 hits, then disc 2 …
+#: Kinds of rows. After ``WALL`` there are the walls of x, y and z that disc 1 hits, then disc 2 …
 START, END, KICK, VERTICAL_HOP, HORIZONTAL_HOP, COLLISION, WALL = range(7)
 
 #: Numbers in the states of the rows that are made at a time, which stay in the cache. The length

@@ -19,7 +19,7 @@ from twodiscs.theory import exact
 #: Wall and disc events that a trajectory lasts at most, on average.
 LONGEST_TRAJECTORY = 6000
 
-#: What a row is, by the code of the end of a flight from 0 on, and the discs of its event.
+#: The kind of a row, by the code of the end of a flight from 0 on, and the discs of its event.
 KINDS = np.array([0, 0, 1, 3, 4, 0, 2, 5]) + kinds.WALL
 KINDS[int(codes.END_OF_TIME)], KINDS[int(codes.DISC)] = kinds.END, kinds.COLLISION
 FIRST, SECOND = np.array([0, 1, 1, 2, 2, 1, 1, 2]), np.array([0, 0, 0, 0, 0, 2, 0, 0])
