@@ -46,9 +46,6 @@ SCENES = {
     "three rough discs": {**PAPER, "radius": 0.15, "discs": 3, "moment_of_inertia": 0.5},
     "eight discs in a channel": {"width": 5.0, "height": 0.6, "radius": 0.18, "discs": 8},
     "eight discs": {"width": 3.0, "height": 2.0, "radius": 0.2, "discs": 8},
-    "ring of twenty discs": {
-        "width": 12.0, "height": 1.0, "radius": 0.2, "discs": 20, "periodic": "x",
-    },
     "100 × 1": {"width": 100.0, "height": 1.0, "radius": 0.1},
 }  # fmt: skip
 
