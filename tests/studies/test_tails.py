@@ -166,7 +166,7 @@ def test_the_table_is_written(tmp_path, monkeypatch):
 
 
 def test_counts_without_a_longer_interval_have_the_error_of_one():
-    """Of ten replicas, with about 80 intervals, none lasts ten mean times."""
+    """Ten replicas have about 80 intervals, and none lasts ten mean times."""
     rows = tails.rows(BOX, 1, 10, 1)
     empty = [row for row in rows if row["method"] == "counted" and not row["estimate"]]
     assert len(empty) > 5

@@ -137,7 +137,7 @@ def test_bursts_in_corners_scale_as_the_stays():
 
 @pytest.mark.slow
 def test_the_tail_of_hits_in_corners_is_as_counted():
-    """P(N > n) → A/n² at the 100th largest of 20000 N: five errors of 10 %, and 20 % for A."""
+    """P(N > n) → A/n² at the 100th largest of 20000 N: five errors of 10 %, and 20 % more."""
     replicas, largest, event = 20000, 100, EVENTS.index("any_wall")
     counts = np.sort([
         run_blocks(ROUGH, ("any_wall",), 77, k, k + 1, 16.0, replicas=1, lanes=1)[0][event]
