@@ -8,12 +8,11 @@ import json
 import math
 import random
 import re
-import shutil
-import subprocess
 
 import pytest
 from browser import ABSENT, BROWSER, browser
 from checkout import REPOSITORY
+from py_mini_racer import MiniRacer
 
 from twodiscs.model.scene import Box
 from twodiscs.theory import exact
@@ -49,12 +48,10 @@ def written(path, scenes):
 
 
 def evaluated(expression, *scripts):
-    """Return the value of an expression about the ``scripts``, by Node."""
-    node = shutil.which("node") or pytest.skip("no Node is installed")
+    """Return the value of an expression about the ``scripts``, by V8."""
     script = "".join((SOURCES / name).read_text(encoding="utf-8") for name in scripts)
-    script += f"\nconsole.log(JSON.stringify({expression}));"
-    run = subprocess.run([node, "-"], input=script, capture_output=True, text=True, check=True)
-    return json.loads(run.stdout)
+    with MiniRacer() as engine:  # a process with an engine that is not closed does not end
+        return json.loads(engine.eval(f"{script}\nJSON.stringify({expression})"))
 
 
 # Formulas -----------------------------------------------------------------------------------------
@@ -110,14 +107,22 @@ def test_formulas_and_limits_in_javascript_are_those_of_the_package():
 
 # Motion and errors --------------------------------------------------------------------------------
 
+#: A function of a number of runs, a radius and a seed. It returns these runs in the box 1.5 × 1.
+RUNS = """
+((number, radius, seed) => {
+    const runs = new Runs(1.5, 1, radius, seed);
+    while (runs.done < number) runs.advance(10000, number);
+    return runs;
+})
+"""
+
 
 def test_scores_scatter_by_one():
     """The mean square of scores of Student's law with 99 degrees of freedom, at 5 sigma."""
     number = 600
     scores = evaluated(
         f"Array.from({{length: {number}}}, (_, seed) => {{"
-        " const many = new Runs(1.5, 1, 0.2, 1000 + seed);"
-        " while (many.done < ENOUGH) many.advance(100, ENOUGH);"
+        f" const many = {RUNS}(ENOUGH, 0.2, 1000 + seed);"
         " return [0, 2, 3].map(i => many.measured(i).z); })",
         *("theory.js", "dynamics.js"),
     )
@@ -201,6 +206,44 @@ def test_motion_is_that_of_theory():
             square = effects["friction"] ** 2 * seen["waits"] / kicks
             assert abs(square - 2) < SIGMAS * math.sqrt(20 / kicks), effects
     assert compared > 15
+
+
+def test_the_same_seed_gives_the_same_counts():
+    runs = f"[3, 3, 4].map(seed => [...{RUNS}(500, 0.2, seed).sums])"
+    first, again, other = evaluated(runs, "theory.js", "dynamics.js")
+    assert first == again
+    assert other != first
+
+
+#: A function of runs. It returns their intervals between horizontal hops in bins and the number of
+#: all of them, then those of one long trajectory, which is cut nowhere.
+INTERVALS = """
+((runs) => {
+    const { bins: found, end, total: all } = runs.histograms[1], bins = Array(BINS).fill(0);
+    const pair = new Pair(...runs.scene, runs.draw(new Random(5)));
+    let total = 0, last = NaN;
+    for (let time = 0; time < 6e5; time += pair.flight) {
+        pair.step(Infinity);
+        if (pair.horizontal < 0) continue;
+        const interval = time + pair.horizontal - last;
+        if (interval < end) bins[Math.floor(BINS * interval / end)]++;
+        total++;
+        last = time + pair.horizontal;
+    }
+    return [[[...found], all], [bins, total]];
+})
+"""
+
+
+def test_intervals_of_runs_are_those_of_one_long_trajectory():
+    """Also where hardly any interval that begins in a run ends in it, as with a mean of 100."""
+    found = evaluated(f"{INTERVALS}({RUNS}(4000, 0.24, 7))", "theory.js", "dynamics.js")
+    fractions = [[n / total for n in itertools.accumulate(bins)] for bins, total in found]
+    assert 0.95 < fractions[0][-1] < 1
+    for some, other in zip(*fractions, strict=True):
+        # Twice the error of independent intervals, for they are not.
+        spread = math.sqrt(some * (1 - some) * sum(1 / total for _, total in found))
+        assert abs(some - other) < 2 * SIGMAS * spread + 1e-9
 
 
 # Points and the file ------------------------------------------------------------------------------
@@ -293,45 +336,6 @@ def assert_right(page, asked, box, radius):
 def value(text):
     """Return the number in a cell."""
     return float(text.replace("−", "-").replace("\u202f", "").removesuffix(" %"))
-
-
-def test_the_same_seed_gives_the_same_counts(driven):
-    first, again, other = (counted(driven(f"seed={n}&runs=500"), 500) for n in (3, 3, 4))
-    assert first == again
-    assert other["any_wall"]["count"] != first["any_wall"]["count"]
-
-
-#: Intervals between hops of one long trajectory, which is cut nowhere, in bins as those of runs.
-LONG = """
-(() => {
-    const { end } = runs.histograms[1], bins = Array(BINS).fill(0);
-    const pair = new Pair(...runs.scene, runs.draw(new Random(5)));
-    let total = 0, last = NaN;
-    for (let time = 0; time < 6e5; time += pair.flight) {
-        pair.step(Infinity);
-        if (pair.horizontal < 0) continue;
-        const interval = time + pair.horizontal - last;
-        if (interval < end) bins[Math.floor(BINS * interval / end)]++;
-        total++;
-        last = time + pair.horizontal;
-    }
-    return [bins, total];
-})()
-"""
-
-
-def test_intervals_of_runs_are_those_of_one_long_trajectory(driven):
-    """Also where hardly any interval that begins in a run ends in it, as with a mean of 100."""
-    page = driven("radius=0.24&seed=7&runs=4000")
-    counted(page, 4000)
-    of_runs = page.look("[[...runs.histograms[1].bins], runs.histograms[1].total]")
-    found = of_runs, page.look(LONG)
-    fractions = [[n / total for n in itertools.accumulate(bins)] for bins, total in found]
-    assert 0.95 < fractions[0][-1] < 1
-    for some, other in zip(*fractions, strict=True):
-        # Twice the error of independent intervals, for they are not.
-        spread = math.sqrt(some * (1 - some) * sum(1 / total for _, total in found))
-        assert abs(some - other) < 2 * SIGMAS * spread + 1e-9
 
 
 def test_who_wants_no_motion_starts_it_himself_and_it_can_be_paused(driven):
