@@ -2,8 +2,8 @@
 
 A series is drawn from rows of a table: the exact curve on top of open symbols with error bars, one
 standard error each. Rows without an error are crosses. If no event was counted, an arrow begins at
-the lower bound of the mean time. Vertical lines through both panels mark the radii at which a
-regime ends, with names above.
+the lower bound of the mean time. A legend names crosses and arrows if there are any. Vertical lines
+through both panels mark the radii at which a regime ends, with names above.
 """
 
 import math
@@ -237,11 +237,21 @@ def _column(rows, *names):
     return [[row[name] for row in rows] for name in names]
 
 
-def draw_estimates(axes, rows, colour, marker):
-    """Draw the estimates of ``rows`` over their radii; estimates from a strip have full symbols."""
+#: The names in a legend of estimates from too few events for an error, and of bounds; their looks.
+ROUGH = ("too few events", {"color": GREY, "marker": "x", "ls": ""})
+BOUND = ("95 % lower bound", {"color": GREY, "marker": r"$\uparrow$", "ls": ""})
+
+
+def split_by_error(rows):
+    """Return the estimates of ``rows`` with an error, those without one, and the bounds."""
     known = [row for row in rows if row["estimate"] is not None and row["stderr"] is not None]
     rough = [row for row in rows if row["estimate"] is not None and row["stderr"] is None]
-    bound = [row for row in rows if row["estimate"] is None and row.get("bound") is not None]
+    return known, rough, [r for r in rows if r["estimate"] is None and r.get("bound") is not None]
+
+
+def draw_estimates(axes, rows, colour, marker):
+    """Draw the estimates of ``rows`` over their radii; estimates from a strip have full symbols."""
+    known, rough, bound = split_by_error(rows)
     for shown, style in split_by_start(known, open_symbol(colour, marker)):
         r, y, s = _column(shown, "radius", "estimate", "stderr")
         axes.errorbar(r, y, s, ls="", elinewidth=0.6, **style, zorder=3)
@@ -308,8 +318,11 @@ def legend(axes, series, single=None, more=()):
         if not single and part.is_visible():
             line = "-" if np.any(part.exact > 0) else ""
             entries.append((part.name, style | {"ls": line}))
-    names = [name for name, _ in (*entries, *more)]
-    handles = [Line2D([], [], **style) for _, style in (*entries, *more)]
+    _, *special = split_by_error([row for part in series for row in part.rows])
+    entries += more
+    entries += [entry for entry, rows in zip((ROUGH, BOUND), special, strict=True) if rows]
+    names = [name for name, _ in entries]
+    handles = [Line2D([], [], **style) for _, style in entries]
     if len(names) > 4:  # no place without a curve is large enough
         axes.figure.legend(handles, names, loc="outside lower center", ncols=3)
     else:

@@ -38,12 +38,13 @@ class Curves:
 class Caption:
     """The text beneath a figure, and sentences that are added for some scenes.
 
-    These are scenes of two ``plain`` discs, all ``other`` scenes, scenes of ``many`` discs, more
-    than two, and scenes with a ``field`` or a ``periodic`` axis.
+    These are scenes of two ``plain`` discs, those in a ``square``, all ``other`` scenes, scenes of
+    ``many`` discs, more than two, and scenes with a ``field`` or a ``periodic`` axis.
     """
 
     text: str
     plain: str = ""
+    square: str = ""
     other: str = ""
     many: str = ""
     field: str = ""
@@ -53,6 +54,7 @@ class Caption:
         """Return the text for the scenes in a ``Box``, for plain ones if it is None."""
         called = box.calls_for if box else {}
         parts = [self.text, self.other if called else self.plain]
+        parts += [self.square] * bool(box and not called and box.width == box.height)
         parts += [self.many] * ("discs" in called) + [self.field] * ("field" in called)
         parts += [self.periodic] * ("periodic" in called)
         return " ".join(" ".join(parts).split())
@@ -102,8 +104,7 @@ class Figure:
 # The notes of figures over the radius -------------------------------------------------------------
 
 _ERRORS = """
-Error bars are one standard error; they are hidden if they are smaller than the symbols. Crosses are
-estimates from too few events for an error bar.
+Error bars are one standard error; they are hidden if they are smaller than the symbols.
 """
 _LINES = {
     "plain": """
@@ -137,9 +138,7 @@ SHELLS = Caption(
     **_LINES,
     field=_WEIGHTED,
 )
-SIMULATED = Caption(
-    _ERRORS + "Arrows start at 95 % lower bounds if no event was counted." + _RESIDUALS, **_LINES
-)
+SIMULATED = Caption(_ERRORS + _RESIDUALS, **_LINES)
 
 
 # The figures --------------------------------------------------------------------------------------
@@ -200,8 +199,8 @@ FIGURES = {
             plain="""
             The ordinate is the separation of the discs along the longer side. Dots mark the hops,
             at which the separation changes sign. A hop is often undone soon, before collisions have
-            scrambled the motion. (c) A hop that is not undone soon, at the same scale; this panel
-            is left out if there is none.
+            scrambled the motion. (c) A hop that is not undone soon, where there is one, at the same
+            scale.
             """,
             other="""
             With two discs the ordinate is their separation in one direction, and dots mark its
@@ -270,9 +269,9 @@ FIGURES = {
             (symbols).
             """,
             plain="""
-            The area of any wall and any disc is four times the sum of the two others, which are the
-            same in a square box.
+            The area of any wall and any disc is four times the sum of the two others.
             """,
+            square="These are the same in a square box.",
         ),
         SHELLS,
         **_radius_fields(
@@ -308,8 +307,9 @@ FIGURES = {
             plain="""
             Dashed lines in (a) are the laws for small discs, to first order in r. In (b) they are
             the limiting laws: if a hop becomes blocked before the discs jam, its time diverges as
-            (r_c − r)⁻². In a square box both hops have the same mean time.
+            (r_c − r)⁻².
             """,
+            square="In a square box both hops have the same mean time.",
             many="Hops are those of any pair of discs. There is no (b) if no exact value is known.",
         ),
         SIMULATED,
@@ -355,9 +355,10 @@ FIGURES = {
             plain="""
             Times of disc 1 are averages over trajectories that can reach the wall. The time of the
             right wall halves at r = h/4 and that of the top wall at r = w/4: configuration space
-            becomes disconnected there, and disc 1 keeps to one side. In a square box both times are
-            the same. Dashed lines are the laws for small discs and below the largest radius.
+            becomes disconnected there, and disc 1 keeps to one side. Dashed lines are the laws for
+            small discs and below the largest radius.
             """,
+            square="In a square box both times are the same.",
             other="""
             Times of disc 1 are averages over trajectories that can reach the wall, with more than
             two discs over all initial conditions. A time halves if disc 1 begins to keep to its

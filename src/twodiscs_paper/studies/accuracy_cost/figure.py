@@ -191,7 +191,7 @@ def _draw_law(axes, c, floor, one, setting, is_first):
         name, symbol = SETTINGS[one.method]
         text = rf"{name if is_first else ''} ${symbol}={number}$".strip()
         style = {"rotation": 90, "ha": "left", "va": "top", "fontsize": 6.8, "color": one.colour}
-        drawing.label(axes, text, (floor, SECONDS[1]), (1, -3), **style)
+        drawing.label(axes, text, (floor, SECONDS[1]), (2, -3), **style)
 
 
 def _draw_textbook(axes, rows, radii):

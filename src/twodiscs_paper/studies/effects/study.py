@@ -156,8 +156,7 @@ STUDY = Study(
                 Processor time per wall hit or disc collision at r = 0.2, divided by the time in a
                 copy of the package from which all effects are removed (numbers beside the symbols),
                 and the number of machine instructions of the compiled kernel. Leaving a periodic
-                cell, or a kick of friction, takes time but is not counted. Crosses are estimates
-                from too few events for an error bar.
+                cell, or a kick of friction, takes time but is not counted.
                 """
             ),
             tables=("effects", "effects_cost", "effects_curves"),

@@ -25,7 +25,7 @@ SUM = {"ls": "", "marker": "_", "markersize": 6.5, "mew": 0.8}
 LONG = ("displacement", "file", "order")
 
 #: Names of curves are apart by this factor of the ordinate at least.
-APART = 1.3
+APART = 1.4
 
 #: The times that are shown, in units of h over the thermal speed: names stand behind the last.
 SHOWN = (0.4, 400)

@@ -50,13 +50,12 @@ def draw(box, tables):
     large = np.array([DIFFUSIVE, SHOWN[1]])
     upper.plot(large, DIFFUSIVE / large, label=r"$1$ and $3/(4x)$", **style)
     for exponent, name, side in (
-        (-1.5, r"$-\frac{3}{2}$  long necks", 5),
-        (-2.0, r"$-2$  short necks", 3),
+        (-1.5, "$-3/2$  long necks", "left"),
+        (-2.0, "$-2$  short necks", "right"),
     ):
         lower.axhline(exponent, color=GREY, lw=0.8, ls=(0, (4, 2)), zorder=1)
-        at = (SHOWN[0], exponent) if exponent == -1.5 else (SHOWN[1], exponent)
-        ha = "left" if exponent == -1.5 else "right"
-        drawing.label(lower, name, at, (3 if ha == "left" else -3, side), ha=ha, color=GREY)
+        at, offset = (SHOWN[0], 3) if side == "left" else (SHOWN[1], -3)
+        drawing.label(lower, name, (at, exponent), (offset, 5), ha=side, color=GREY)
     upper.set(xscale="log", yscale="log", xlim=SHOWN, ylim=(0.012, 1.3))
     upper.set_ylabel(r"transmission $\kappa$")
     upper.tick_params(which="both", labelbottom=False)

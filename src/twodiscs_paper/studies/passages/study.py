@@ -287,8 +287,8 @@ STUDY = Study(
                 √(2/π) s/√(εσ) of a separation that diffuses. (b) The local power of ε with which
                 the mean time between passages grows, divided by the volume of the allowed
                 positions. Dashed: the powers that theories of diffusion and of transition states
-                have, and 0 of a time that stays finite. Error bars are one standard error. The
-                table is that of a long run.
+                have, and 0 of a time that stays finite. Error bars are one standard error. All
+                symbols are from a long run.
                 """
             ),
             long_runs={"brownian": "paper/long_run/brownian/brownian.csv"},

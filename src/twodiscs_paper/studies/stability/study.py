@@ -154,7 +154,7 @@ STUDY = Study(
                 effects (squares) and more than two discs (triangles). The grey band is five
                 standard deviations of the mean square of as many normal scores. Symbols of the
                 shortest runs that the call accepts are open; long runs, with fewer seeds, are left
-                out. The table is that of a long run.
+                out. All symbols are from a long run.
                 """
             ),
             long_runs={"calibration": "paper/long_run/calibration/calibration.csv"},
