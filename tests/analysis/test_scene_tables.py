@@ -164,6 +164,9 @@ def test_too_few_events_show_no_error():
     assert row["status"] == "budget"
     assert row["test"] == "cluster-bound"
     assert row["stderr"] > 0
+    for factor, status in ((1.001, "reached"), (0.999, "budget")):
+        target = {"vertical_hop": factor * row["relative_stderr"]}
+        assert time_row(300, 350, 20480 / 300, target=target)["status"] == status
     assert time_row(3000, 9000, 20480 / 3000)["test"] == "normal"
     assert time_row(10**6, 2 * 10**10, replicas=99)["status"] == "too-few"
 

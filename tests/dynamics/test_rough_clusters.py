@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 
 import twodiscs as td
+from twodiscs.dynamics.ensemble import REPLICAS
+from twodiscs.dynamics.runs import DynamicsRun
 from twodiscs.theory.exact import replicas_needed
 
 
@@ -43,6 +45,8 @@ def test_a_run_waits_for_crowds_that_its_budget_can_show():
         for budget in (1e6, 1e9)
     )
     assert few.rows[0]["replicas"] < needed <= enough.rows[0]["replicas"]
+    run = DynamicsRun(scene, {"disc_collision": 1e-2}, 10**9, 1).components["all"]
+    assert run.planned * REPLICAS >= needed
     assert few["disc_collision_time"].status == "too-few"
     assert enough["disc_collision_time"].status == "reached"
     assert abs(enough["disc_collision_time"].z) < 5

@@ -65,7 +65,9 @@ def test_a_plateau_is_what_passages_leave(law):
     assert found.value == pytest.approx(kappa, rel=1e-12)
     higher = transmission.plateau(Estimate(fallen + step, 0.01, 9), time, mean, law).value
     assert found.stderr == pytest.approx(0.01 * (higher - kappa) / step, rel=1e-3)
-    assert transmission.plateau(Estimate(fallen, 0.01, 9), time, 30.0, law) is None
+    # Up to a tenth of a passage in the time.
+    assert transmission.plateau(Estimate(0.5, 0.01, 9), 1.0, 5.0, law) is not None
+    assert transmission.plateau(Estimate(0.5, 0.01, 9), 1.0, 4.99, law) is None
     assert transmission.plateau(Estimate(-0.01, 0.01, 9), time, mean, law) is None
 
 
@@ -183,3 +185,7 @@ def test_frequent_hops_have_a_curve_only():
     assert found.clusters == {}  # none are looked for: they would hardly end
     assert "too frequent" in str(found)
     assert len(found.frame()) == len(transmission.TIMES)
+    # Up to a quarter of a hop in the pause.
+    scene, pause = td.Scene(1.5, 1.0, 0.2), 48 * 1.1
+    assert transmission.are_rare(scene, "horizontal_hop", 4.001 * pause)
+    assert not transmission.are_rare(scene, "horizontal_hop", 3.999 * pause)

@@ -6,20 +6,25 @@ budget.
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
+from effect_scenes import SCENES
 from factory import all_reached, through_json
 from hypothesis import given
 from hypothesis import strategies as st
 
+import twodiscs as td
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Box
 from twodiscs.points.base import reached
-from twodiscs.sampling import rounds
+from twodiscs.sampling import montecarlo, rounds
+from twodiscs.sampling.many import insertions
+from twodiscs.theory import exact
 from twodiscs_paper.pipeline import points
 
 PAPER = Box(1.5, 1.0)
@@ -90,19 +95,58 @@ def test_sums_beyond_64_bits_are_exact():
 
 @pytest.mark.parametrize("budget", [1e12, 5e6])
 def test_rounds_end_where_the_error_is_reached_or_the_budget_spent(budget):
+    """Each round but the first is as long as the error before it says, up to eight times."""
     seen = []
-    run, counts = fabricated(0.003, budget)
+    run, counts = fabricated(0.004, budget)
     done = rounds.run_in_rounds(run, lambda *given: seen.append(given))
     sums, blocks = reached(done)
     total = int(counts[:blocks].sum())
     assert int(sums[0][0]) == total
     assert (run.error_over_target(sums, blocks)[0] <= 1) == (budget == 1e12)
     assert 200 * total <= budget
+    assert min(done) == (0, 32)
+    for (_, before), (_, after) in pairwise(sorted(done) if budget == 1e12 else ()):
+        (excess,) = run.error_over_target([counts[:before].sum()[None]], before)
+        assert after - 1 < before * min(1.05 * excess**2, 9) <= after
     # The reported work grows to the whole work.
     known = [(now, all_of_it) for now, all_of_it in seen if now is not None]
     assert known == sorted(known, key=lambda pair: pair[0])
     assert known[-1][0] == blocks * run.block_work
     assert known[-1][0] <= known[-1][1]
+
+
+#: A scene of each rule that ends a run, and its events; None are all.
+BRANCHES = {
+    "two discs": (PAPER.scene(0.2), None),
+    "strip": (PAPER.scene(0.2499), ["horizontal_hop"]),
+    "both": (PAPER.scene(0.24), None),
+    "friction": (td.Scene(1.5, 1.0, 0.2, friction=2.0), None),
+    "rough": (td.Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5), ["disc_collision", "right_wall"]),
+    "effects": (SCENES["combination"], None),
+    "three discs": (td.Scene(1.5, 1.0, 0.15, discs=3), None),
+    "ring": (td.Scene(1.5, 1.0, 0.15, discs=4, periodic="x"), None),
+}
+
+
+@pytest.mark.parametrize("name", BRANCHES)
+def test_without_a_budget_a_run_ends_with_the_first_round_that_reaches_every_error(name):
+    """One error that is asked for, of another event with each seed, is just not reached at once."""
+    scene, events = BRANCHES[name]
+    for seed in range(6):
+        first = td.simulate(scene, 1.0, seed=seed, events=events)
+        errors = {row["event"]: row["relative_stderr"] for row in first.rows}
+        possible = [event for event, error in errors.items() if error]
+        late = possible[seed % len(possible)]
+        asked = {event: 2 * (error or 0.5) for event, error in errors.items()}
+        found = first.more(error=asked | {late: 0.98 * errors[late]})
+        for row in found.rows:
+            assert row["status"] == ("reached" if row["event"] in possible else "impossible")
+            assert row["status"] == "impossible" or row["relative_stderr"] <= row["target"]
+        for component, content in found.components.items():
+            begun, *later = sorted(content["sums"])
+            assert begun == (0, 32)
+            waits = component == (late if late in found.components else "all")
+            assert 0 < len(later) <= 2 if waits else not later
 
 
 def test_the_work_of_runs_one_after_the_other_ends_at_their_total():
@@ -201,6 +245,42 @@ def test_planned_events_follow_the_errors_asked_for_as_far_as_the_budget_goes(bu
         for components in (coarse, fine):
             events = sum(one.planned * one.block_events for one in components.values())
             assert 0.9 * budget < events < (1 + 1 / 16) * 1.05 * budget
+
+
+#: {what is counted: (number in a block, run of at least a number)}
+WHOLE = {
+    "intervals": (2**16, lambda n: runs.IntervalsRun(PAPER.scene(0.1), "vertical_hop", n, 5)),
+    "time": (2.0**16, lambda t: runs.TimedRun(PAPER.scene(0.2), {"any_wall": 1.0}, None, 1, t)),
+    "samples": (montecarlo.BLOCK, lambda n: sampling(PAPER.scene(0.2), n)),
+    "conditioned": (64 * montecarlo.PROPOSALS, lambda n: sampling(PAPER.scene(0.38), n)),
+    "weighted": (montecarlo.BLOCK, lambda n: sampling(SCENES["field"], n)),
+    "insertions": (insertions.BLOCK, lambda n: sampling(td.Scene(1.5, 1.0, 0.1, discs=3), n)),
+}
+
+
+def sampling(scene, number):
+    return montecarlo.MonteCarloRun(scene, ("volume",), number, 0.02, 1)
+
+
+@pytest.mark.parametrize("what", WHOLE)
+def test_a_number_that_is_asked_for_is_rounded_up_to_whole_blocks(what):
+    each, run = WHOLE[what]
+    for blocks in (1, 2, 5):
+        for more, due in ((-1, blocks), (0, blocks), (1, blocks + 1)):
+            component = run(blocks * each + more).components["all"]
+            assert (component.planned, component.first_round) == (due, due)
+            assert not component.error_over_target(None, due).size
+
+
+@pytest.mark.parametrize("blocks", [1, 2.01, 2.99])
+def test_a_budget_of_intervals_has_the_whole_blocks_that_it_can_pay(blocks):
+    scene, hop = PAPER.scene(0.1), "vertical_hop"
+    events = 2**16 * exact.mean_times(scene)[hop] * exact.event_rate(scene)
+    budget = math.ceil(blocks * events)
+    run = runs.IntervalsRun(scene, hop, 10**9, 5, budget).components["all"]
+    assert run.planned == int(blocks)
+    with pytest.raises(td.InputError, match=r"^budget must allow for 65536 intervals"):
+        runs.IntervalsRun(scene, hop, 10**9, 5, int(0.999 * events))
 
 
 def test_intervals_in_pieces_are_those_of_one_process():

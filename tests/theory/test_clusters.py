@@ -58,16 +58,22 @@ def shares(scene, axis, within):
 
 @pytest.mark.parametrize("scene", [BOX, RING])
 def test_shares_of_regions_are_those_of_another_quadrature(scene):
-    regions = clusters.regions(scene)
+    regions, needed = clusters.regions(scene), {0.3: 0.0, 0.1: 0.0, 0.01: 0.0}
     assert len(regions) > 1
     for region in regions:
         volume, contact = shares(scene, region.axis, region.within)
+        for error, most in needed.items():
+            excess = contact / (0.3 * error)
+            needed[error] = max(most, min(100, excess**2) / volume if excess > 1 else 0.0)
         assert region.volume == pytest.approx(volume, rel=1e-8)
         assert region.rates["disc_collision"] == pytest.approx(contact, rel=1e-8)
     for small, large in pairwise(regions):
         if small.axis == large.axis:
             assert large.within == 2 * small.within
             assert all(0 <= small.rates[e] <= large.rates[e] <= 1 + 1e-12 for e in small.rates)
+    for error, due in needed.items():
+        found = clusters.replicas_needed(scene, "disc_collision", error)
+        assert found == pytest.approx(due, rel=1e-7)
     # A hop has all of its rate where the discs are level.
     hops = {"x": "horizontal_hop", "y": "vertical_hop"}
     assert all(r.rates.get(hops[r.axis], 1.0) == pytest.approx(1.0) for r in regions)
