@@ -15,7 +15,7 @@ from factory import BOX, Laws, bins_point, counts_point, hits_point
 import twodiscs as td
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.checks import InputError
-from twodiscs.points.base import KEY, read_json, write_json
+from twodiscs.points.base import KEY, digest_line, read_json, require_logged, write_json
 from twodiscs.points.dynamics_point import StripCount
 from twodiscs.points.intervals_point import Bins
 from twodiscs.points.monte_carlo_point import Hits, InsertionPoint, MonteCarloPoint, Weights
@@ -189,3 +189,20 @@ def test_what_is_no_such_file_is_refused(tmp_path, text):
     (tmp_path / "a.json").write_text(text)
     with pytest.raises(InputError, match=re.escape(SENTENCE)):
         read_json(tmp_path / "a.json")
+
+
+def test_a_file_is_what_the_last_line_of_its_log_says(tmp_path):
+    """A log also has what the job printed, other files, and maybe an earlier content."""
+    path, log = tmp_path / "small" / "a.csv", tmp_path / "logs" / "small" / "a.log"
+    for folder in (path.parent, log.parent):
+        folder.mkdir(parents=True)
+    lines = []
+    for text in ("old", "new"):
+        path.write_text(text)
+        require_logged(path)
+        lines.append(digest_line(path))
+    log.write_text("\n".join([lines[0], "0 rows", lines[1], f"{lines[0][:-5]}b.csv"]))
+    require_logged(path)
+    path.write_text("old")
+    with pytest.raises(InputError, match=re.escape(SENTENCE)):
+        require_logged(path)
