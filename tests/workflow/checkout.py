@@ -42,14 +42,18 @@ rule mine:
 """
 
 #: The studies whose rows a build takes from the expected tables, because their tests measure.
-#: Tables with seconds, and those of other tables, are made.
+#: Rows of seconds are fabricated, and a part of a table is empty.
 EXPECTED = "errata", "distributions", "more_discs", "passages", "stability", "tails"
 KEPT = f"""
 from pathlib import Path
 
+inspect.signature(work).bind(**given)
 kept = Path({str(REPOSITORY / "paper" / "expected")!r}, f"{{table.name()}}.csv")
 if is_part:
     rows = []
+elif table.name() == "effects_cost":
+    known = {{"benchmark": "effects", "value": 1e8, "unit": "1/s", "ratio": 1.0}}
+    rows = [known | {{"variant": name, "instructions": 9}} for name in ("plain", *given["scenes"])]
 elif table.name() in {EXPECTED}:
     names = {{"paper": "full", "long": "walls"}}
     rows = [row | {{k: names.get(row[k], row[k]) for k in ("scene",) if k in row}}
@@ -59,33 +63,29 @@ else:
 table.write_and_log(snakemake.output.table, rows)
 """
 
-STUDIES = "src/twodiscs_paper/studies"
-
-#: (File, its text, its text in a checkout). Every figure is drawn, but only ``volume`` is rendered.
-#: One part of a table is made. Repetitions do not follow from the budget of a scene. The cost of
-#: effects is measured without kernels that nothing else compiles.
-QUICKER = (
-    (
-        "workflow/scripts/study.py",
-        "table.write_and_log(snakemake.output.table, work(**given))",
-        KEPT,
+#: What is edited in a checkout, so that a build is quick, and the tests that see what a build does
+#: not see therefore: {file: (text, its text in a checkout, tests)}.
+QUICKER = {
+    "workflow/scripts/study.py": (  # rows of studies
+        "table.write_and_log(snakemake.output.table, work(**given))", KEPT, "tests/studies",
     ),
-    (
-        "workflow/scripts/figure.py",
+    "workflow/scripts/figure.py": (  # all figures except ``volume`` are drawn, but saved empty
         "style.save(figure, path",
         'style.save(figure if name == "volume" else style.new_figure(1), path',
+        "tests/figures/test_figures.py",
     ),
-    ("src/twodiscs/figures/animation.py", "CROSSING = 110, 60,", "CROSSING = 11, 6,"),
-    (f"{STUDIES}/passages/study.py", 'return parts | {"in_the_limit"', 'return {"in_the_limit"'),
-    (f"{STUDIES}/accuracy_cost/measure.py", "(0.6, 0.2, 0.05, 1e-2, ", "("),
-    (
-        f"{STUDIES}/effects/price.py",
-        '"blocks": 40, "repetitions": 5',
-        '"blocks": 8, "repetitions": 1',
+}  # fmt: skip
+
+#: The same for the one complete build. Other tests compile the engine of its scene with effects.
+ONE_SCENE = {
+    "src/twodiscs_paper/studies/effects/study.py": (  # five scenes of six
+        '("balls", "channel", "field", "rough", "torus", "unequal")', '("field",)',
+        "tests/workflow/test_jobs.py",
     ),
-    (f"{STUDIES}/effects/price.py", "scenes.items()} | MORE", "scenes.items()}"),
-    (f"{STUDIES}/effects/price.py", "from {__package__} import engine_without_effects; ", ""),
-)
+    "config/scenes/field.yaml": (  # six radii of seven
+        "[0.02, 0.1, 0.15, 0.2, 0.3, 0.34, 0.36]", "[0.3]", "tests/workflow/test_scenes.py",
+    ),
+}  # fmt: skip
 
 #: The rules that build nothing but lists of files: targets, and checksums of sources.
 AUXILIARY = r"all|default|(\w+_)?code"
@@ -199,8 +199,8 @@ class Checkout:
         return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
 
 
-def fresh(path):
-    """Return a checkout at ``path`` in which nothing is built."""
+def fresh(path, edits=QUICKER):
+    """Return a checkout at ``path`` with some ``edits``, in which nothing is built."""
     for part in PARTS:
         source, target = REPOSITORY / part, path / part
         if source.is_dir():
@@ -210,8 +210,9 @@ def fresh(path):
             shutil.copy2(source, target)
     shutil.copy(Path(__file__).with_name("small.yaml"), path / "config" / "config.yaml")
     checkout = Checkout(path)
-    for edit in QUICKER:
-        checkout.replace(*edit)
+    for file, (old, new, tests) in edits.items():
+        assert (REPOSITORY / tests).exists()
+        checkout.replace(file, old, new)
     return checkout
 
 

@@ -2,19 +2,15 @@
 
 import fcntl
 import os
-import re
 import shutil
 import sys
 from pathlib import Path
 
 import pytest
-from checkout import Checkout, fresh
+from checkout import ONE_SCENE, QUICKER, Checkout, fresh
 
 # Jobs start as `python`, as where the environment of the tests is activated.
 os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
-
-#: The scene with effects that is built, at this radius: other tests compile its engine.
-EFFECTS = {"field": [0.3]}
 
 
 @pytest.fixture(scope="session")
@@ -40,14 +36,7 @@ def complete(tmp_path_factory):
         fcntl.flock(lock, fcntl.LOCK_EX)  # the worker that comes second waits
         if not done.exists():
             shutil.rmtree(path, ignore_errors=True)  # of a build that failed
-            checkout = fresh(path)
-            scenes = '("balls", "channel", "field", "rough", "torus", "unequal")'
-            study = "src/twodiscs_paper/studies/effects/study.py"
-            checkout.replace(study, scenes, repr((*EFFECTS,)))
-            for name, radii in EFFECTS.items():
-                file = path / "config" / "scenes" / f"{name}.yaml"
-                text = re.sub(r"^( +radii: )\[.*\]", rf"\1{radii}", file.read_text(), flags=re.M)
-                file.write_text(text)
+            checkout = fresh(path, QUICKER | ONE_SCENE)
             checkout.snakemake("--cores", "2")
             done.touch()
     return Checkout(path)
