@@ -8,6 +8,7 @@ Mistakes in words are in ``test_bad_input.py``.
 import csv
 import io
 import json
+import math
 import os
 import re
 import shlex
@@ -20,10 +21,12 @@ from unittest.mock import Mock
 import pytest
 from checkout import REPOSITORY
 from commands import command, python
+from factory import empty
 from snakemake.jobs import Reason
 
 import twodiscs
 from twodiscs import cli
+from twodiscs.analysis.tables import MeanTimesTable
 from twodiscs.model.checks import InputError
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS
@@ -243,7 +246,7 @@ def test_a_run_is_a_line_of_snakemake(tmp_path, monkeypatch):
         build.command("my.yaml", ["volme"], Path("Snakefile"))
 
 
-def test_a_target_that_shows_nothing_is_refused(tmp_path, monkeypatch, capsys):
+def test_what_cannot_be_built_is_refused(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     scene = "{name: a, box: {width: 1, height: 1}, effects: {field: 1}, watch: {mean_times: true}}"
     Path("a.yaml").write_text(f"scenes: [{scene}]\n")
@@ -255,6 +258,18 @@ def test_a_target_that_shows_nothing_is_refused(tmp_path, monkeypatch, capsys):
         assert command(monkeypatch, cli, "run", "a.yaml", target) == 2
         assert capsys.readouterr().err == f"error: {target} {reason}\n"
     build.check_targets("a.yaml", ["mean_hop_time", "effects", "check"], load(read("a.yaml")))
+    Path("a.yaml").write_text(f"seeed: 1\nseed: x\nscenes: [{scene}]\n")
+    assert command(monkeypatch, cli, "run", "a.yaml") == 2
+    assert re.fullmatch(
+        r"error: a.yaml: the configuration has an unknown key 'seeed'.*\n"
+        r"error: a.yaml: seed must be an integer .*, not 'x'\n",
+        capsys.readouterr().err,
+    )
+    Path("a.yaml").write_text(f"results: a.yaml\nscenes: [{scene}]\n")
+    assert command(monkeypatch, cli, "run", "a.yaml") == 2
+    assert capsys.readouterr().err.startswith("error: results must be ")
+    assert command(monkeypatch, cli, "run", "b.yaml") == 2
+    assert capsys.readouterr().err == "error: b.yaml: No such file or directory\n"
 
 
 def test_targets_may_stand_behind_options(monkeypatch, capsys):
@@ -296,6 +311,51 @@ def test_a_build_ends_with_its_own_verdict_and_report(tmp_path):
     old = f"{passed} is older than the configuration; the target check renews it\n"
     assert build.closing(tmp_path, _dag([], []), [mine]) == old
     assert old not in build.closing(tmp_path, _dag([], [[passed]]), [mine])
+    # What was not reached is said of scenes that were built.
+    rows = [empty(MeanTimesTable, radius=0.2, event="any_wall", target=0.1, relative_stderr=0.2)]
+    scenes = [{"name": name, "event_budget": 10**6} for name in ("a", "b")]
+    tables = [tmp_path / scene["name"] / "mean_times.csv" for scene in scenes]
+    for table in tables:
+        table.parent.mkdir()
+        MeanTimesTable.write(table, [row | {"status": "budget"} for row in rows])
+    *_, line = build.closing(tmp_path, _dag([], [tables[:1]]), [mine], scenes).splitlines()
+    assert line.startswith("a, radius 0.2: 0.1 asked for; the budget of 1e6 events ended it at 0.2")
+
+
+KILLED = "error: the job ended without a word: it was killed, or no memory was left\n"
+TRACEBACK = "Traceback (most recent call last):\n  in\nKeyError: 'a'\n"
+SENTENCE = "twodiscs.model.checks.InputError: a.json is cut; delete it\n"
+
+
+@pytest.mark.parametrize(
+    ("log", "lines"),
+    [
+        (None, KILLED),
+        (" \n", KILLED),
+        (TRACEBACK, "error: KeyError: 'a'\n"),
+        (TRACEBACK + SENTENCE, "error: a.json is cut; delete it\n"),
+        ("1\n2\n3\n4\n5\n6\n", "".join(f"error: {n}\n" for n in range(2, 7))),
+    ],
+)
+def test_a_run_with_failed_jobs_ends_with_their_reasons(log, lines, tmp_path, monkeypatch):
+    """A group of jobs, as on a cluster, has those of each; so has a full disk."""
+    path = tmp_path / "a.log"
+    if log is not None:
+        path.write_text(log)
+    job = SimpleNamespace(log=[path])
+    for failed in (job, SimpleNamespace(jobs=[job])):
+        workflow = SimpleNamespace(scheduler=SimpleNamespace(failed=[failed]))
+        again = (
+            "Remove the cause; the same command goes on, and keeps the files that are finished.\n"
+        )
+        said = f"{lines}The log is {path}\n{again}"
+        assert build.failure(workflow, 1, tmp_path) == said
+        with monkeypatch.context() as patch:
+            patch.setattr(build, "FULL", math.inf)
+            full = f"error: no space is left on the disk of {tmp_path}\n"
+            assert build.failure(workflow, 1, tmp_path) == full + said
+            assert build.failure(None, 1, tmp_path) == full + again
+    assert build.failure(None, 1, tmp_path) == ""  # Snakemake ended with the reason
 
 
 def test_a_dry_run_counts_the_jobs_of_a_scene_and_names_a_reason():
