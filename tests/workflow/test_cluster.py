@@ -4,10 +4,12 @@ Without these tests a queue or a Slurm could run other jobs, or give other bytes
 """
 
 import os
+import subprocess
 import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from importlib.util import find_spec
+from pathlib import Path
 
 import psutil
 import pytest
@@ -87,6 +89,29 @@ def kill_a_job(jobs):
                     return
         time.sleep(0.05)
     raise AssertionError("no job counted events")
+
+
+def test_a_queue_knows_how_a_job_ended(tmp_path, monkeypatch):
+    """A job that is killed at its limit has failed: a queue that says nothing waits for ever."""
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+
+    def asked(*words):
+        script = REPOSITORY / "profiles" / "queue" / "queue.sh"
+        return subprocess.check_output(["sh", script, *words], text=True).strip()
+
+    jobs = {}
+    for number, line in enumerate(("true", "exit 3", "sleep 600")):
+        (tmp_path / f"{number}.sh").write_text(f"{line}\n")
+        jobs[line] = asked("submit", tmp_path / f"{number}.sh")
+    sleeping = psutil.Process(int(Path(jobs["sleep 600"], "process").read_text()))
+    assert asked("status", jobs["sleep 600"]) == "running"
+    for one in (sleeping, *sleeping.children(recursive=True)):
+        one.kill()
+    for job in jobs.values():
+        while psutil.pid_exists(int(Path(job, "process").read_text())):
+            time.sleep(0.05)
+    found = {line: asked("status", job) for line, job in jobs.items()}
+    assert found == {"true": "success", "exit 3": "failed", "sleep 600": "failed"}
 
 
 @pytest.mark.slow

@@ -3,13 +3,17 @@
 Without these tests shards could be done twice, be lost, or have the numbers of others.
 """
 
+import re
 import shutil
 
 import pytest
 from checkout import folder
 
 from twodiscs.dynamics.stages import STAGES
+from twodiscs.model.scene import Box
+from twodiscs.points.base import file_content, write_json
 from twodiscs_paper.configuration.yaml_files import load
+from twodiscs_paper.pipeline import job_cost
 
 TINY = {
     "shared": [],
@@ -46,8 +50,11 @@ def shards(place):
     return {path: path.stat().st_mtime_ns for path in paths}
 
 
-def test_shards_are_jobs_that_a_dry_run_shows_and_do_not_depend_on_the_accuracy(unbuilt, tmp_path):
-    """Those that Snakemake takes for made, here by ``--touch``, are not planned again."""
+def test_shards_are_jobs_of_a_dry_run_and_one_of_another_scene_is_refused(unbuilt, tmp_path):
+    """Those that Snakemake takes for made, here by ``--touch``, are not planned again.
+
+    They do not depend on the accuracy. A job that is tried again has twice the time.
+    """
     place = place_at(tmp_path, unbuilt)
 
     def planned():
@@ -66,6 +73,25 @@ def test_shards_are_jobs_that_a_dry_run_shows_and_do_not_depend_on_the_accuracy(
     assert all(any(f"/{each}-" in name for name in files) for each in ("all", "horizontal_hop"))
     place.snakemake("--cores", "1", "results/code/physics.sha256")
     place.snakemake("--cores", "1", "--touch", "--", *files)
+    # A file with the first blocks, which another box has, too.
+    (scene,) = load(TINY).scenes
+    blocks, box = min(job_cost.shards(scene, "dynamics", 0.24))[1:], Box(3.0, 1.0)
+    content = {"all": {"sums": {blocks: [0]}}}
+    content = file_content(
+        "simulate", box.scene(0.24).parameters(), scene.shard_arguments("dynamics"), content
+    )
+    name = f"all-{blocks[0]}-{blocks[1]}.json"
+    write_json(tmp_path / "results/tiny/shards/dynamics/0.24" / name, content)
+    point = "results/tiny/points/dynamics/0.24.json"
+    run = place.snakemake("--cores", "1", "--retries", "1", "--", point, passes=False)
+    assert run.returncode != 0
+    limits = [int(n) for n in re.findall(r"resources: .*runtime=(\d+)", run.stderr)]
+    assert limits == [job_cost.minutes(scene, "dynamics") * attempt for attempt in (1, 2)]
+    log = (tmp_path / "results/logs/tiny/dynamics/0.24.log").read_text()
+    said = f"{name} has width 3.0, but its job asks for 1.5; delete it, and it is made again\n"
+    assert log.endswith(said)
+    assert not (tmp_path / point).exists()
+
     place_at(place.path, unbuilt, accuracy=5e-4)
     assert planned()
     assert not planned() & first
