@@ -324,7 +324,9 @@ def test_a_build_ends_with_its_own_verdict_and_report(tmp_path):
 
 KILLED = "error: the job ended without a word: it was killed, or no memory was left\n"
 TRACEBACK = "Traceback (most recent call last):\n  in\nKeyError: 'a'\n"
-SENTENCE = "twodiscs.model.checks.InputError: a.json is cut; delete it\n"
+SENTENCE, CUT = (
+    f"{start}: a.json is cut\n" for start in ("twodiscs.model.checks.InputError", "error")
+)
 
 
 @pytest.mark.parametrize(
@@ -333,8 +335,8 @@ SENTENCE = "twodiscs.model.checks.InputError: a.json is cut; delete it\n"
         (None, KILLED),
         (" \n", KILLED),
         (TRACEBACK, "error: KeyError: 'a'\n"),
-        (TRACEBACK + SENTENCE, "error: a.json is cut; delete it\n"),
-        ("1\n2\n3\n4\n5\n6\n", "".join(f"error: {n}\n" for n in range(2, 7))),
+        (TRACEBACK + SENTENCE, CUT),
+        (f"1\n2\n3\n{SENTENCE}5\n6\n", f"error: 2\nerror: 3\n{CUT}error: 5\nerror: 6\n"),
     ],
 )
 def test_a_run_with_failed_jobs_ends_with_their_reasons(log, lines, tmp_path, monkeypatch):

@@ -18,7 +18,7 @@ from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.checks import InputError
 from twodiscs.points.base import digest, read_json, write_json
-from twodiscs_paper.pipeline import build, job
+from twodiscs_paper.pipeline import job
 from twodiscs_paper.pipeline.points import read_point
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "workflow" / "scripts"
@@ -142,27 +142,6 @@ def test_a_part_of_a_point_that_is_missing_is_named(run):
     files = shards(run, "monte_carlo", [(0, 1), (2, 3)])
     with pytest.raises(InputError):
         point(run, "monte_carlo", "a.json", files)
-
-
-TRACEBACK = """Traceback (most recent call last):
-  File "a.py", line 1, in <module>
-    call()
-  twodiscs.model.checks.InputError: no box of this name"""
-
-
-@pytest.mark.parametrize(
-    ("log", "reasons"),
-    [
-        ("", ["the job ended without a word: it was killed, or no memory was left"]),
-        ("\n".join("1234567"), [*"34567"]),
-        (f"1\n{TRACEBACK}\n\n", ["no box of this name"]),
-        ("1\ntwodiscs.model.checks.InputError: 2\n3", [*"123"]),
-    ],
-)
-def test_a_job_ends_for_the_reasons_in_the_last_lines_of_its_log(log, reasons, tmp_path):
-    (tmp_path / "job.log").write_text(log)
-    assert build.reasons(tmp_path / "job.log") == reasons
-    assert build.reasons(tmp_path / "missing.log")[0].startswith("the job ended without a word")
 
 
 @pytest.fixture
