@@ -106,7 +106,7 @@ def cases():
             yield "effects", panel, effects._look(k), due
     # Open and full symbols of one look are of crossings and of first passages.
     (path,) = STUDY_FIGURES["brownian"].long_runs.values()
-    rows = [row for row in read_table(EXPECTED.parents[1] / path) if row["stderr"] is not None]
+    rows = [row for row in read_table(EXPECTED.parents[1] / path) if row["room"] <= 1 / 4]
     for program, (colour, _) in brownian.LOOKS.items():
         for step, marker in brownian.MARKERS.items():
             for panel, quantity in (("kappa", "coefficient"), ("exponent", "local_exponent")):
@@ -138,18 +138,30 @@ def long_run(name):
     return read_table(EXPECTED.parent / "long_run" / name / "passages.csv")
 
 
+def passage_rows():
+    """Return (rows of the build for which a long run has none of the same hop, rows of it)."""
+    kept = [row for row in long_run("passages") if row["scene"] != "pause"]
+    names = "width", "height", "event", "distance", "moment_of_inertia", "friction", "quantity"
+    taken = {tuple(map(row.get, names)) for row in kept}
+    return [row for row in table("passages") if tuple(map(row.get, names)) not in taken], kept
+
+
 def passage_cases():
-    rows = table("passages")
-    ours = select(
-        rows, scene=rows[0]["scene"], event="horizontal_hop", periodic=None, friction=None
-    )
+    rows, kept = passage_rows()
+    plain = {"width": rows[0]["width"], "height": rows[0]["height"], "event": "horizontal_hop"}
+    plain |= {"periodic": None, "friction": None}
+    ours = select([*rows, *kept], **plain)
     for inertia, look in passages.LOOKS.items():
         own = select(ours, moment_of_inertia=inertia)
         kappa, times = select(own, quantity="coefficient"), select(own, quantity="passage_time")
+        built = select(
+            table("passages"), quantity="passage_time", moment_of_inertia=inertia, **plain
+        )
+        distances = {row["distance"] for row in built}
+        times = [row for row in times if row["distance"] in distances]
         yield "passages", "times", look, columns(times, "distance")
         due = columns(kappa, "distance")
         if inertia is None:
-            kappa = [*kappa, *select(long_run("passages"), quantity="coefficient", scene="h/4")]
             due = [*map(over_cube_root, kappa)]
         yield "transmission", "rough" if inertia else "smooth", look, due
         shown = [2.0**-n for n in passages.SHOWN.get(inertia, ())]
@@ -160,7 +172,7 @@ def passage_cases():
         yield "diffusion", "ring", look, columns(ring, "distance")
     for rate, look in friction.LOOKS.items():
         kappa, exponents = [], []
-        for some in (rows, long_run("passages")):
+        for some in (rows, kept):
             own = select(some, friction=rate, quantity="coefficient")
             kappa += [symbol(scaled(row), row) for row in own]
             # The first distance has no exponent.
@@ -271,8 +283,9 @@ def test_every_figure_of_a_study_is_compared():
 
 def test_what_passages_leave_falls_at_twice_their_rate():
     """The curves κ exp(−2κt/τ) of the figure, at all their times."""
-    rows = select(table("passages"), scene=table("passages")[0]["scene"], event="horizontal_hop")
-    rows = select(rows, friction=None)
+    first = table("passages")[0]
+    same = {"width": first["width"], "height": first["height"], "event": "horizontal_hop"}
+    rows = select([row for some in passage_rows() for row in some], **same, friction=None)
     shown = [
         line.get_data()
         for line in drawn("passages")["curves"].lines
@@ -296,6 +309,14 @@ def test_the_laws_of_passages_with_friction_are_one_and_three_quarters_over_x():
     one, diffusive = (line.get_xydata() for line in dashed)
     assert np.all(one[:, 1] == 1)
     np.testing.assert_allclose(diffusive[:, 0] * diffusive[:, 1], 0.75, rtol=1e-12)
+    (b,) = (
+        row["estimate"] for row in long_run("passages") if row["quantity"] == "scaling_constant"
+    )
+    (fit,) = (
+        line for line in drawn("friction")["kappa"].lines if line.get_label() == friction.FORMULA
+    )
+    x, kappa = fit.get_data()
+    np.testing.assert_allclose(1 / kappa, 4 * x / 3 + 1 / (1 + b * x), rtol=1e-12)
 
 
 def test_residuals_are_those_of_the_table():

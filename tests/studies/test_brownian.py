@@ -26,15 +26,15 @@ def deviation(found, other):
 
 def estimates(method, program, step, halvings, samples, seed=1):
     """Return the estimates of one ``method`` at one point."""
-    count = {"crossings": study.crossing_counts, "passages": study.passage_counts}[method]
+    count, estimated = study.METHODS[method]
     point = {"program": program, "step": step, "halvings": halvings}
-    return study.METHODS[method](point, count(seed, program, step, halvings, samples))
+    return estimated(point, count(seed, program, step, halvings, samples))
 
 
 # Laws that can be solved ------------------------------------------------------------------------
 
 
-def test_volume_and_resistance_are_integrals_of_the_density():
+def test_volume_resistance_and_first_passage_are_integrals_of_the_density():
     for room in (0.3, 2.0**-10):
 
         def density(u, room=room):
@@ -47,6 +47,11 @@ def test_volume_and_resistance_are_integrals_of_the_density():
             points=[-1, -math.sqrt(room), 0, math.sqrt(room), 1], limit=200,
         )  # fmt: skip
         assert study.resistance(room) == pytest.approx(flow, rel=1e-7)
+        time, _ = quad(
+            lambda u: quad(density, u, study.HALF, points=[1.0])[0] / density(u), 0, study.HALF,
+            points=[math.sqrt(room), 1], limit=200,
+        )  # fmt: skip
+        assert study.first_passage(0.1, room) == pytest.approx(100 * time, rel=1e-6)
 
 
 def test_a_separation_that_diffuses_has_the_limit_of_long_necks():

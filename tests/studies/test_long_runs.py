@@ -46,7 +46,7 @@ def rows_of_clusters(configuration, counts):
         for count in counts[one["name"]]:
             blocks = -(-one["hops"] // HOPS_OF_BLOCK)
             assert sum(hops for _, hops in count["sizes"]) == blocks * HOPS_OF_BLOCK
-        yield from passages.cluster_rows(one, counts[one["name"]])
+    return passages.long_run_rows(configuration["thresholds"], counts)
 
 
 def rows_of_files(configuration, counts):
@@ -62,7 +62,7 @@ def rows_of_steps(configuration, counts):
             assert len(point["seeds"]) == len(configuration["seeds"]) == 2
             for seed in point["seeds"]:
                 assert (seed.get("pairs") or sum(n for _, n in seed["sizes"])) == due[3]
-    return BrownianTable.rows(counts)
+    return brownian.rows(counts)
 
 
 @pytest.mark.parametrize(
@@ -129,7 +129,7 @@ def test_files_diffuse_by_passages_if_hops_are_rare():
             PassagesTable,
             "coefficient",
             ("distance", "friction", "moment_of_inertia"),
-            11,
+            24,
         ),
         ("tails", TailsTable, "survival", ("radius", "method"), 10),
         # The same streams: the radii of the build are among those of the long run.

@@ -22,7 +22,7 @@ from twodiscs.model.scene import Box, Scene
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.many import insertions
 from twodiscs.theory.flux import rates
-from twodiscs_paper.studies.estimates import LinearFit, sample_mean
+from twodiscs_paper.studies.estimates import sample_mean
 from twodiscs_paper.studies.passages import figure, figure_diffusion, figure_transmission, measure
 from twodiscs_paper.studies.passages.measure import passing_rate
 from twodiscs_paper.studies.passages.models import file
@@ -72,7 +72,14 @@ def test_a_power_is_fitted_to_the_last_octaves():
     rough = power_rows(0.5, {4: 0.01, 3: 0.02}, inertia=0.5)
     alone = power_rows(0.5, {4: 0.01}, inertia=1.0)
     beyond = [row | {"estimate": 1.01, "event": "vertical_hop"} for row in smooth]
-    first, second = measure.fits([*smooth[::-1], *far, *rough, *alone, *beyond])
+    *steps, first, step, second = measure.fits([*smooth[::-1], *far, *rough, *alone, *beyond])
+    assert [row["quantity"] for row in (*steps, step)] == ["exponent"] * 6
+    # The line through two points, from the far one on.
+    assert steps[1]["estimate"] == pytest.approx(1 / 3)
+    assert steps[1]["stderr"] == pytest.approx(math.hypot(0.01, 0.01) / math.log(2))
+    assert (step["estimate"], step["stderr"]) == pytest.approx(
+        (second["estimate"], second["stderr"])
+    )
     assert first["estimate"] == pytest.approx(1 / 3)
     assert (first["distance"], first["replicas"]) == (2.0**-8, 5)
     # Five equal errors at distances of one octave: Σ(x − x̄)² is 10 (ln 2)².
@@ -160,10 +167,12 @@ def test_damped_sound_has_its_limits():
     assert file.law(scene, speed, 9.0, variance) == pytest.approx(due, rel=1e-12)
 
 
-def test_sound_comes_back_around_the_ring():
+def test_sound_has_a_law_until_it_comes_back_around_the_ring():
     scene, density = Scene(96.0, 1.0, 0.28, discs=128, periodic="x"), file.Density(0.1, 4.5)
     around = scene.width / (density.speed * file.thermal_speed(scene))
-    assert file.sound(scene, density, around) == pytest.approx(0, abs=1e-9)
+    assert file.sound(scene, density, 0.51 * around) is None
+    half = file.sound(scene, density, 0.499 * around)
+    assert half == pytest.approx(scene.width**2 / 128 / 4.5**2 / 4, rel=1e-4)
     early = 0.01 * around
     slope = file.thermal_speed(scene) * 0.75 / density.speed
     assert file.sound(scene, density, early) == pytest.approx(0.99 * slope * early)
@@ -274,7 +283,7 @@ def test_the_table_is_written(rough, tmp_path, small, monkeypatch):
     assert max(abs(row["z"]) for row in judged if row["z"] is not None) < 5
     assert {row["quantity"] for row in rows} == {
         "correlation", "coefficient", "passage_time", "plateau", "slope", "exponent",
-        "passage_exponent", "last_exponent", "rate", "diffusion", "single_file", "displacement",
+        "last_exponent", "rate", "diffusion", "single_file", "displacement",
         "file", "amplitude",
     }  # fmt: skip
     # Nothing but the passages tells time between passages from time between hops.
@@ -300,21 +309,6 @@ def test_scores_have_the_errors_of_both_estimates():
     two, five = Estimate(2.0, 0.3, 100), Estimate(5.0, 0.4, 100)
     row = near.row("plateau", "hops", two, 1.0, five)
     assert (row["z"], row["reference_stderr"]) == (pytest.approx(-6), 0.4)
-
-
-@pytest.mark.parametrize("inertia", [None, 0.5])
-def test_the_error_of_an_exponent_is_that_of_a_line_through_two_logarithms(inertia):
-    effects = {} if inertia is None else {"moment_of_inertia": inertia}
-    kappas, found = [Estimate(0.3, 0.02, 100), Estimate(0.2, 0.01, 100)], []
-    for n, kappa in enumerate(kappas, 5):
-        scene = Box(1.5, 1.0, **effects).scene(measure.radius_at(0.25, n))
-        found.append((measure.NearThreshold("a", scene, "horizontal_hop", n, 1), kappa))
-    (row,) = measure.exponents(found)
-    values = [k.value if inertia else 1 - k.value for k in kappas]
-    errors = [k.stderr / v for k, v in zip(kappas, values, strict=True)]
-    x = [-n * math.log(2) for n in (5, 6)]
-    slope = LinearFit(x, [math.log(v) for v in values], errors).slope
-    assert (row["estimate"], row["stderr"]) == pytest.approx((slope.value, slope.stderr))
 
 
 # Friction ----------------------------------------------------------------------------------------
@@ -345,6 +339,24 @@ def test_rows_with_friction(kicked, monkeypatch):
         assert slope["stderr"] == pytest.approx(math.sqrt(square) / math.log(4) / octaves)
     assert len(slopes) == 2
     assert list(measure.fits([empty(PassagesTable, **row) for row in rows])) == []
+
+
+def test_the_law_of_friction_is_fitted_to_what_it_gives():
+    """κ of the law with b = 0.4, with the limits of large x; one value is 3 % above it."""
+    rows = []
+    for n in (8, 12, 16):
+        scene = measure.scene_at(BOX, HOP, n, friction=160.0)
+        cells = measure.hop_cells("kicks", scene, HOP, 2.0**-n)
+        x, limit = measure.scaled_friction(scene, HOP), measure.diffusive_limit(scene, HOP)
+        kappa = 1 / (x / limit + 1 / (1 + 0.4 * x))
+        rows.append(cells | {"quantity": "coefficient", "estimate": kappa, "stderr": 1e-4 * kappa})
+    constant, chi2, deviation = measure.scaling_fits(rows)
+    assert constant["estimate"] == pytest.approx(0.4, abs=1e-6)
+    rows[0] |= {"estimate": 1.03 * rows[0]["estimate"], "stderr": 10.0}
+    constant, chi2, deviation = measure.scaling_fits(rows)
+    assert (constant["estimate"], deviation["estimate"]) == pytest.approx((0.4, 0.03), rel=1e-3)
+    assert deviation["distance"] == 2.0**-8
+    assert chi2["estimate"] < 1e-3
 
 
 @pytest.mark.parametrize("halvings", [8, 10])

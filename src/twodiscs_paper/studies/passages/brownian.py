@@ -29,12 +29,12 @@ from twodiscs_paper.study import row
 #: {program: its number in ``models.brownian``}.
 PROGRAMS = {
     "reflected": brownian_steps.REFLECTED, "kicked": brownian_steps.KICKED,
-    "together": brownian_steps.TOGETHER,
+    "together": brownian_steps.TOGETHER, "confined": brownian_steps.CONFINED,
     "singly": brownian_steps.SINGLY,
 }  # fmt: skip
 
 #: {program that rejects moves: the standard deviation of a move of u over s}.
-REJECTING = {"together": math.sqrt(2), "singly": 1.0}
+REJECTING = {"together": math.sqrt(2), "confined": math.sqrt(2), "singly": 1.0}
 
 #: {program: its flights or moves in a step, if they are not one}.
 MOVES = {"kicked": 2, "singly": 2}
@@ -42,9 +42,12 @@ MOVES = {"kicked": 2, "singly": 2}
 #: Half of the length of the ring, in σ: the box 1.5 × 1 has this length close to h/4.
 HALF = 1.5
 
-#: Exponents are fitted where the neck is ``LONG`` steps or more, or ``SHORT`` steps or less. Where
-#: the exponent is halfway, follows from a parabola through ln κ over the logarithms of ``MIDDLE``.
-LONG, SHORT, MIDDLE = 8.0, 0.125, (0.5, 2.0)
+#: Exponents are fitted where the neck is ``LONG`` steps or more, or ``SHORT`` steps or less.
+LONG, SHORT = 8.0, 0.125
+
+#: In wider channels the methods differ by more than a per cent: pairs that are too far apart to
+#: touch need not come to the end of the ring, where passages begin and end.
+NARROW = 1 / 16
 
 
 def side_volume(room):
@@ -66,6 +69,27 @@ def resistance(room):
     return 2 * (near + (HALF - 1) / (1 + room) ** 2)
 
 
+def first_passage(step, room):
+    """Return the mean time from the largest separation to u = 0 if the separation diffuses.
+
+    It is ∫ du/ρ(u) ∫ ρ(u′) du′ over s², with u from 0 to ``HALF`` and u′ from u to ``HALF``.
+    """
+    breadth = 1 + room
+
+    def beyond(u):
+        near = min(u, 1.0)
+        arc = math.acos(near) - near * math.sqrt(1 - near * near)
+        volume = breadth**2 * (HALF - u) - breadth * arc
+        return volume + (2 / 3 - near + near**3 / 3)
+
+    def slowness(u):
+        return beyond(u) / (breadth - math.sqrt(max(1 - u * u, 0.0))) ** 2
+
+    points = [min(math.sqrt(room), 0.5), 1.0]
+    time, _ = quad(slowness, 0, HALF, points=points, epsabs=0, epsrel=1e-10)
+    return time / step**2
+
+
 def crossing_rate(step, room):
     """Return the rate of crossings from one side, per step, of discs with thermal velocities."""
     return step / math.sqrt(math.pi) * room**2 / side_volume(room)
@@ -74,6 +98,10 @@ def crossing_rate(step, room):
 def diffusive(step, room):
     """Return κ of a separation that diffuses."""
     return step**2 / (side_volume(room) * resistance(room)) / crossing_rate(step, room)
+
+
+#: {quantity: the function of step and ε that it is for a separation that diffuses}.
+DIFFUSING = {"coefficient": diffusive, "first_time": first_passage}
 
 
 def neck(step, halvings):
@@ -120,37 +148,19 @@ def _stream(seed, what, program, step, halvings):
     return np.uint64(stream_seed(seed, f"brownian {program} {what}", "passages", point))
 
 
-def counted(seeds, crossings, passages):
-    """Return {"crossings": points, "passages": points}: the counts at each point, by seed."""
-    found = {"crossings": [], "passages": []}
-    for kind, groups, count in (
-        ("crossings", crossings, crossing_counts),
-        ("passages", passages, passage_counts),
-    ):
-        for program, step, halvings, samples in points(groups):
-            point = {"program": program, "step": step, "halvings": halvings}
-            counts = [count(seed, program, step, halvings, samples) for seed in seeds]
-            found[kind].append(point | {"seeds": counts})
-    return found
-
-
 # Rows -------------------------------------------------------------------------------------------
 
 
 def joined(counts):
     """Return the sums of the ``counts`` of several seeds."""
     total = {}
-    for name, first in counts[0].items():
+    for name in counts[0]:
         values = [one[name] for one in counts]
         if name == "sizes":
-            sizes = Counter()
-            for pairs in values:
-                sizes.update(dict(pairs))
-            total[name] = [[n, sizes[n]] for n in sorted(sizes)]
-        elif isinstance(first, list):
-            total[name] = [sum(own) for own in zip(*values, strict=True)]
+            sizes = sum(map(Counter, map(dict, values)), Counter())
+            total[name] = sorted(sizes.items())
         else:
-            total[name] = sum(values)
+            total[name] = np.sum(values, axis=0).tolist()
     return total
 
 
@@ -205,14 +215,29 @@ def passage_estimates(point, counts):
     }
 
 
-#: {method: (function of a point and its counts, count of a sample)}.
-METHODS = {"crossings": crossing_estimates, "passages": passage_estimates}
+#: {method: (counts of a sample at a point, function of a point and its counts)}.
+METHODS = {
+    "crossings": (crossing_counts, crossing_estimates),
+    "passages": (passage_counts, passage_estimates),
+}
+
+
+def counted(seeds, **groups):
+    """Return {method: points}: the counts at each point of the ``groups`` of a method, by seed."""
+    found = {}
+    for method, (count, _) in METHODS.items():
+        found[method] = [
+            {"program": program, "step": step, "halvings": halvings}
+            | {"seeds": [count(seed, program, step, halvings, samples) for seed in seeds]}
+            for program, step, halvings, samples in points(groups[method])
+        ]
+    return found
 
 
 def rows(counts):
     """Yield the rows of brownian_steps.csv from what ``counted`` returns."""
     known = {}
-    for method, estimates in METHODS.items():
+    for method, (_, estimates) in METHODS.items():
         for point in counts[method]:
             seeds = [estimates(point, one) for one in point["seeds"]]
             both = joined(point["seeds"])
@@ -230,7 +255,6 @@ def rows(counts):
                 steps = both["passage"][0] if method == "passages" else both["steps"]
                 yield row(cells, found, samples=found.n, steps=steps)
     yield from exponents(counts)
-    yield crossover(counts["crossings"])
 
 
 def _cells(point, method, quantity):
@@ -242,12 +266,14 @@ def _cells(point, method, quantity):
         "neck": neck(point["step"], point["halvings"]),
         "quantity": quantity,
         "method": method,
-        "diffusive": diffusive(point["step"], room) if quantity == "coefficient" else None,
+        "diffusive": DIFFUSING[quantity](point["step"], room) if quantity in DIFFUSING else None,
     }
 
 
 def _reference(known, program, step, halvings, quantity):
-    """Return what a quantity is compared with: an ``Estimate``, or None."""
+    """Return what a quantity is compared with: an ``Estimate``, or None, as in a wide channel."""
+    if 2.0**-halvings > NARROW:
+        return None
     if quantity == "crossing_rate" and program == "reflected":
         return Estimate(1.0, 0.0, 1)
     if program == "kicked":
@@ -264,23 +290,25 @@ def compared(found, reference):
 
 
 def exponents(counts):
-    """Yield the rows of exponents of the time between passages over V, as powers of ε.
+    """Yield the rows of exponents of times, as powers of ε.
 
-    Local exponents are between neighbouring widths of the neck, of all seeds together. Fitted ones
-    are of reflected discs, for each seed and for all seeds.
+    They are those of the time between passages over V, and of the first crossing from far apart as
+    it is. Local exponents are between neighbouring widths of the neck, of all seeds together.
+    Fitted ones are of reflected discs, for each seed and for all seeds.
     """
-    for method, estimates in METHODS.items():
+    for method, (_, estimates) in METHODS.items():
         for (program, step), group in groupby(
             counts[method], key=operator.itemgetter("program", "step")
         ):
             own = sorted(group, key=operator.itemgetter("halvings"))
             start = {"program": program, "step": step, "method": method}
-            times = [_time(point, estimates(point, joined(point["seeds"]))) for point in own]
-            for one, other in pairwise(times):
-                cells = start | {"room": math.sqrt(one[0] * other[0]), "quantity": "local_exponent"}
-                cells["neck"] = math.sqrt(cells["room"]) / step
-                yield row(cells, _slope([one, other]), samples=2)
-            if program != "reflected":
+            found = [(point, estimates(point, joined(point["seeds"]))) for point in own]
+            for quantity, time in EXPONENTS[method].items():
+                for one, other in pairwise([time(*one) for one in found]):
+                    cells = start | {"room": math.sqrt(one[0] * other[0]), "quantity": quantity}
+                    cells["neck"] = math.sqrt(cells["room"]) / step
+                    yield _slope_row(cells, [one, other])
+            if (program, method) != ("reflected", "crossings"):
                 continue
             for where in (lambda x: x >= LONG, lambda x: x <= SHORT):
                 chosen = [point for point in own if where(neck(step, point["halvings"]))]
@@ -293,49 +321,45 @@ def exponents(counts):
 
 def _fits(cells, chosen, estimates):
     """Yield the fitted exponents of some points: of all seeds together, and of each seed."""
-    together = _slope([_time(point, estimates(point, joined(point["seeds"]))) for point in chosen])
+    together = [_time(point, estimates(point, joined(point["seeds"]))) for point in chosen]
     seeds = [
-        _slope(
-            [_time(point, estimates(point, one)) for point, one in zip(chosen, own, strict=True)]
-        )
+        [_time(point, estimates(point, one)) for point, one in zip(chosen, own, strict=True)]
         for own in zip(*(point["seeds"] for point in chosen), strict=True)
     ]
-    agree = {"seeds_z": compared(*seeds)["z"]} if len(seeds) == 2 else {}
-    yield row(cells | agree, together, samples=together.n)
-    for number, slope in enumerate(seeds, 1):
-        yield row(cells, slope, seed=number, samples=slope.n)
-
-
-def crossover(counts):
-    """Return the row of the neck over step at which the exponent of reflected discs is −7/4.
-
-    There d ln κ/d ln(neck) is −1/2, because the time between passages over V is ∝ 1/(κ ε²).
-    """
-    low, high = MIDDLE
-    found = []
-    for point in counts:
-        length = neck(point["step"], point["halvings"])
-        if point["program"] == "reflected" and low <= length <= high:
-            kappa = crossing_estimates(point, joined(point["seeds"]))["coefficient"]
-            found.append((math.log(length), math.log(kappa.value), kappa.stderr / kappa.value))
-    x, y, error = np.array(found).T
-    (bend, slope, _), covariance = np.polyfit(x, y, 2, w=1 / error, cov="unscaled")
-    place = -(0.5 + slope) / (2 * bend)
-    # The derivatives of ln(neck) by the curvature and the slope.
-    by = np.array([-place / bend, -1 / (2 * bend), 0.0])
-    spread = math.sqrt(by @ covariance @ by)
-    where = Estimate(math.exp(place), math.exp(place) * spread, len(x))
-    cells = {"program": "reflected", "quantity": "crossover", "method": "crossings"}
-    return row(cells, where, samples=where.n)
+    agree = {"seeds_z": compared(*map(_slope, seeds))["z"]} if len(seeds) == 2 else {}
+    yield _slope_row(cells | agree, together)
+    for number, times in enumerate(seeds, 1):
+        yield _slope_row(cells | {"seed": number}, times)
 
 
 def _time(point, found):
-    """Return (ε, ln of the time between passages over V, its error)."""
+    """Return (ε, ln of the time between passages over V, its error, the same by diffusion)."""
     kappa, room = found["coefficient"], 2.0 ** -point["halvings"]
-    return room, -math.log(kappa.value * room**2), kappa.stderr / kappa.value
+    time = -math.log(kappa.value * room**2)
+    return room, time, kappa.stderr / kappa.value, math.log(resistance(room))
 
 
-def _slope(times):
+def _first(point, found):
+    """Return (ε, ln of the time of the first crossing, its error, the same by diffusion)."""
+    time, room = found["first_time"], 2.0 ** -point["halvings"]
+    diffusing = math.log(first_passage(point["step"], room))
+    return room, math.log(time.value), time.stderr / time.value, diffusing
+
+
+#: {method: {quantity: the function of a point and its estimates whose exponent it is}}.
+EXPONENTS = {
+    "crossings": {"local_exponent": _time},
+    "passages": {"local_exponent": _time, "first_exponent": _first},
+}
+
+
+def _slope(times, column=1):
     """Return the exponent of some ``times`` as an ``Estimate``."""
-    room, time, error = zip(*times, strict=True)
-    return LinearFit(np.log(room), time, error).slope
+    rooms, errors = ([time[k] for time in times] for k in (0, 2))
+    return LinearFit(np.log(rooms), [time[column] for time in times], errors).slope
+
+
+def _slope_row(cells, times):
+    """Return the row of the exponent of some ``times``, with that of a separation that diffuses."""
+    diffusing = _slope(times, column=3).value
+    return row(cells, _slope(times), samples=len(times), diffusive=diffusing)

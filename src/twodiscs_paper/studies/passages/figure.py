@@ -20,17 +20,35 @@ LOOKS = {
 }  # fmt: skip
 
 
+#: The columns that rows of a build and of a long run have in common.
+PLACE = ("width", "height", "event", "distance", "moment_of_inertia", "friction", "quantity")
+
+
 def draw(box, tables):
-    """Draw the rows of passages.csv: κ(t) and mean times, for the last hop of the first scene."""
+    """Draw the rows of passages.csv: κ(t) and mean times, for the last hop of the first scene.
+
+    ``kept`` rows are those of long runs.
+    """
     rows = tables["passages"]
+    kept = [row for row in tables["kept"] if row["scene"] != "pause"]
     figure, (curves, times) = panels.stacked(curves=2.9, times=2.3)
     if is_empty(figure, curves, rows, box):
         return figure
-    main, hop, limit, ours = measured(rows, box)
+    main, hop, limit, ours = measured(at_places(rows, kept, False), box)
+    ours += at_places(kept, measured(rows, box)[-1], True)
     _curves(curves, main, hop, limit, ours)
     _times(times, main, hop, limit, ours)
     panels.title(curves, "a", main, f",  {event_name(hop)}")
     return figure
+
+
+def at_places(rows, others, inside):
+    """Return the ``rows`` at the places of ``others``, or those elsewhere.
+
+    A long run stands for a build at the places that both have.
+    """
+    own = {tuple(row[name] for name in PLACE) for row in others}
+    return [row for row in rows if (tuple(row[name] for name in PLACE) in own) == inside]
 
 
 def is_empty(figure, upper, rows, box):

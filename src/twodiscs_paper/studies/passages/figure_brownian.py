@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from twodiscs.figures import drawing, panels
-from twodiscs.figures.style import BLACK, BLUE, GREEN, GREY, PURPLE, VERMILLION
+from twodiscs.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILLION
 from twodiscs_paper.studies.passages.figure import columns, points
 from twodiscs_paper.study import select
 
@@ -14,6 +14,7 @@ LOOKS = {
     "reflected": (BLUE, "reflected"),
     "kicked": (PURPLE, "reflected, random times"),
     "together": (VERMILLION, "rejected, both discs"),
+    "confined": (ORANGE, "the same, and at walls"),
     "singly": (GREEN, "rejected, one disc"),
 }
 
@@ -21,7 +22,10 @@ LOOKS = {
 MARKERS = {2.0**-2: "o", 2.0**-3: "s", 2.0**-5: "^", 2.0**-7: "D"}
 
 #: The abscissas and the ordinates that are shown.
-NECKS, KAPPAS, EXPONENTS = (0.006, 60), (6e-3, 120), (-3.6, 0.4)
+NECKS, KAPPAS, EXPONENTS = (0.006, 60), (2e-3, 120), (-3.6, 0.4)
+
+#: Wider channels, in σ, have no neck.
+WIDEST = 1 / 4
 
 #: κ times neck over step, for a separation that diffuses through a long neck.
 DIFFUSIVE = math.sqrt(2 / math.pi)
@@ -29,7 +33,7 @@ DIFFUSIVE = math.sqrt(2 / math.pi)
 
 def draw(box, tables):
     """Draw the rows of brownian.csv; the ``box`` is not that of the channel."""
-    rows = tables["brownian"]
+    rows = [row for row in tables["brownian"] if row["room"] <= WIDEST]
     figure, (upper, lower) = panels.stacked(kappa=2.7, exponent=2.0)
     for program, (colour, _) in LOOKS.items():
         for step, marker in MARKERS.items():

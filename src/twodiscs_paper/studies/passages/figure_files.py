@@ -81,10 +81,8 @@ def _moved(axes, rows):
             if blocked and inertia is None:
                 scene = _scene(own[0])
                 time = np.geomspace(x[0], x[-1], 120)
-                due = np.array([file.law(scene, friction, t / _thermal(own[0])) for t in time])
-                # Sound that has gone around half of the ring brings the discs back.
-                rises = np.append(np.diff(due) > 0, True).cumprod() > 0
-                axes.plot(time[rises], due[rises], color=BLACK, lw=0.8, zorder=5)
+                due = [file.law(scene, friction, t / _thermal(own[0])) for t in time]
+                axes.plot(time, np.array(due, float), color=BLACK, lw=0.8, zorder=5)
             elif not blocked:
                 _, place, _ = _scaled_columns(own, "file")
                 _, walk, _ = _scaled_columns(own, "order")

@@ -4,9 +4,19 @@ import numpy as np
 
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import BLACK, GREY, SERIES
-from twodiscs.model.scene import Box
-from twodiscs_paper.studies.passages.figure import columns, first_scene, is_empty, points
-from twodiscs_paper.studies.passages.measure import KICKED
+from twodiscs_paper.studies.passages.figure import (
+    at_places,
+    columns,
+    first_scene,
+    is_empty,
+    points,
+)
+from twodiscs_paper.studies.passages.measure import (
+    KICKED,
+    row_scene,
+    scaled_friction,
+    scaling_law,
+)
 from twodiscs_paper.study import select
 
 #: {rate of kicks: colour, marker}.
@@ -15,16 +25,18 @@ LOOKS = dict(zip(KICKED, SERIES, strict=True))
 #: The scaled friction that is shown.
 SHOWN = (0.015, 45)
 
+#: The law that is fitted to the long run.
+FORMULA = r"$1/\kappa=4x/3+1/(1+bx)$"
+
 #: κ x for large x and smooth discs between walls, see docs/passages.md.
 DIFFUSIVE = 3 / 4
 
 
 def draw(box, tables):
     """Draw the rows of passages.csv with friction, and those of a long run, the ``kept`` ones."""
-    rows, kept = (
-        [row for row in tables[name] if row["friction"] is not None]
-        for name in ("passages", "kept")
-    )
+    kept = tables["kept"]
+    rows = at_places(tables["passages"], kept, False)
+    rows = [row for row in rows if row["friction"] is not None]
     figure, (upper, lower) = panels.stacked(kappa=2.3, exponent=1.8)
     if is_empty(figure, upper, rows, box):
         return figure
@@ -34,7 +46,8 @@ def draw(box, tables):
             own = select(some, friction=friction, quantity="coefficient")
             if own:
                 value, error = columns(own, "estimate", "stderr")
-                name = None if filled else rf"$\gamma={friction:g}$"
+                is_named = filled and select(rows, friction=friction, quantity="coefficient")
+                name = None if is_named else rf"$\gamma={friction:g}$"
                 points(upper, scaled(own), value, error, look, name, filled)
             # An exponent belongs between its two distances.
             steps = select(some, friction=friction, quantity="local_exponent")
@@ -44,9 +57,11 @@ def draw(box, tables):
                 points(
                     lower, np.sqrt(scaled(steps) * scaled(before)), value, error, look, None, filled
                 )
-    x = np.geomspace(*SHOWN, 2)
+    for row in select(kept, quantity="scaling_constant"):
+        x = np.geomspace(*SHOWN, 60)
+        upper.plot(x, scaling_law(x, row["estimate"]), color=BLACK, lw=0.8, label=FORMULA, zorder=5)
     style = {"color": BLACK, "lw": 0.8, "ls": (0, (4, 2)), "zorder": 5}
-    upper.plot(x, np.ones(2), **style)
+    upper.plot(SHOWN, np.ones(2), **style)
     large = np.array([DIFFUSIVE, SHOWN[1]])
     upper.plot(large, DIFFUSIVE / large, label=r"$1$ and $3/(4x)$", **style)
     for exponent, name, side in (
@@ -70,12 +85,7 @@ def draw(box, tables):
 
 def scaled(rows):
     """Return γ√(εσ) of each row, as an array."""
-    return np.array([_scaled(row) for row in rows])
-
-
-def _scaled(row):
-    scene = Box(row["width"], row["height"]).scene(row["radius"])
-    return row["friction"] * (scene.clearance(row["event"]) * scene.contact_distance) ** 0.5
+    return np.array([scaled_friction(row_scene(row), row["event"]) for row in rows])
 
 
 def _before(row, coefficients):

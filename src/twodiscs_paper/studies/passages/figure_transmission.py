@@ -9,6 +9,7 @@ from twodiscs.model.events import AXIS
 from twodiscs.model.scene import Box
 from twodiscs_paper.studies.passages.figure import (
     LOOKS,
+    at_places,
     columns,
     is_empty,
     measured,
@@ -36,14 +37,16 @@ def draw(box, tables):
 
     Long runs of smooth discs are ``kept`` rows; they go closer to the threshold.
     """
-    rows = tables["passages"]
+    kept = [row for row in tables["kept"] if row["scene"] != "pause"]
+    rows = at_places(tables["passages"], kept, False)
     heights = {"smooth": 2.35, "rough": 1.85, "slope": 0.95, "plateau": 1.2}
     figure, (smooth, rough, *lower) = panels.stacked(**heights)
     if is_empty(figure, smooth, rows, box):
         return figure
     main, hop, _, ours = measured(rows, box)
-    _smooth(smooth, rows, ours, tables["kept"])
-    _rough(rough, ours, place(main, hop))
+    _smooth(smooth, rows, kept, place(main, hop))
+    own = select(kept, width=main.width, height=main.height, event=hop)
+    _rough(rough, ours, own, place(main, hop))
     for axes, (quantity, look) in zip(lower, RESIDUAL_LOOKS.items(), strict=True):
         residuals(axes, select(rows, friction=None), {quantity: look})
     lower[0].set_xlabel("")
@@ -51,24 +54,24 @@ def draw(box, tables):
     return figure
 
 
-def _smooth(axes, rows, ours, kept):
+def _smooth(axes, rows, kept, ours):
     """Draw 1 − κ of smooth discs in units of ∛(σ²ε)/A over δ^(1/6), at every threshold.
 
-    The correction of the law is of this relative order, so a line leads to the limit c.
+    The correction of the law is of this relative order, so a line leads to the limit c. ``ours`` is
+    the place of the first scene.
     """
-    others = iter(OTHERS)
-    looks = {}
+    others, looks, named = iter(OTHERS), {ours: LOOKS[None]}, set()
     for some, filled in ((rows, False), (kept, True)):
         found = select(some, quantity="coefficient", moment_of_inertia=None, friction=None)
-        found = [row for row in found if row["scene"] != "pause"]
         for scene, event in dict.fromkeys((row["scene"], row["event"]) for row in found):
             own = select(found, scene=scene, event=event)
             where = place(Box(own[0]["width"], own[0]["height"]), event)
-            is_ours = any(row in ours for row in own)
             if where not in looks:
-                looks[where] = LOOKS[None] if is_ours else next(others)
+                looks[where] = next(others)
             x, value, error = _units(own)
-            points(axes, x, value, error, looks[where], None if filled else where, filled)
+            name = None if where in named else where
+            points(axes, x, value, error, looks[where], name, filled)
+            named.add(where)
     for row in select(rows, quantity="amplitude"):
         c = row["estimate"]
         axes.errorbar([0], [c], [row["stderr"]], color=BLACK, marker="*", markersize=5, ls="",
@@ -105,27 +108,19 @@ def cube_root(row):
     return (scene.contact_distance**2 * scene.clearance(hop)) ** (1 / 3) / scene.reach(AXIS[hop])
 
 
-def _rough(axes, ours, where):
-    """Draw κ of rough discs and the powers fitted to them, with ``where`` above the legend."""
+def _rough(axes, ours, kept, where):
+    """Draw κ of rough discs, with ``where`` above the legend and fitted powers in it."""
     for inertia, look in LOOKS.items():
-        own = select(ours, quantity="coefficient", moment_of_inertia=inertia)
+        rows = select(kept, moment_of_inertia=inertia) or select(ours, moment_of_inertia=inertia)
+        own = select(rows, quantity="coefficient")
         if not own or inertia is None:
             continue
         distance, value, error = columns(own, "distance", "estimate", "stderr")
         name = rf"$I={inertia:g}$"
-        for fit in select(ours, quantity="last_exponent", moment_of_inertia=inertia):
+        for fit in select(rows, quantity="last_exponent"):
             name += rf",  $\delta^{{{fit['estimate']:.2f}}}$"
-            last = slice(-fit["replicas"], None)
-            weights = (value[last] / error[last]) ** 2
-            height = np.average(
-                np.log(value[last] / distance[last] ** fit["estimate"]), weights=weights
-            )
-            ends = distance[last][[0, -1]]
-            axes.plot(
-                ends, np.exp(height) * ends ** fit["estimate"], color=look[0], lw=0.7, zorder=1
-            )
-        points(axes, distance, value, error, look, name)
-    scale(axes, (1.5e-3, 0.03), (0.01, 0.25), r"$\kappa$, rough discs", title=where)
+        points(axes, distance, value, error, look, name, rows[0] in kept)
+    scale(axes, (4e-4, 0.03), (5e-3, 0.25), r"$\kappa$, rough discs", title=where)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter(lambda x, _: f"{x:g}" if f"{x:e}"[0] in "25" else "")

@@ -13,6 +13,7 @@ from functools import partial
 from itertools import pairwise
 
 import numpy as np
+from scipy.optimize import curve_fit
 
 from twodiscs.analysis.scores import student_deviate
 from twodiscs.dynamics.ensemble import REPLICAS
@@ -309,7 +310,6 @@ def one_hop(name, box, hop, halvings, inertia, events, seed):
     ``inertia`` is the moment of inertia of rough discs, None for smooth discs. An estimate may take
     about ``events`` wall and disc events, κ ``IN_PAUSES`` times as many.
     """
-    measured = []
     for n in halvings:
         scene = scene_at(box, hop, n, moment_of_inertia=inertia)
         near, both = NearThreshold(name, scene, hop, n, seed), 2 * quiet_time(scene, hop)
@@ -319,29 +319,6 @@ def one_hop(name, box, hop, halvings, inertia, events, seed):
         yield from near.curve(max(blocks // RECORDED, FEWEST_HOPS // HOPS_OF_BLOCK), kappa)
         if inertia is None:
             yield from near.slope(MOST_HOPS // HOPS_OF_BLOCK)
-        if kappa:
-            measured.append((near, kappa))
-    yield from exponents(measured)
-
-
-def exponents(measured):
-    """Yield the exponents of κ or 1 − κ between distances, and of the time between passages.
-
-    ``measured`` are pairs (``NearThreshold``, κ), the distance halved from one to the next.
-    """
-    for (_, before), (near, kappa) in pairwise(measured):
-        rough = near.scene.moment_of_inertia is not None
-        values = [(k.value if rough else 1 - k.value) for k in (before, kappa)]
-        if min(values) <= 0:
-            continue
-        errors = [k.stderr / v for k, v in zip((before, kappa), values, strict=True)]
-        slope = Estimate(math.log2(values[0] / values[1]), math.hypot(*errors) / math.log(2), 2)
-        yield near.row("exponent", "fit", slope)
-    if len(measured) > 2:
-        x = [-near.halvings * math.log(2) for near, _ in measured]
-        y = [math.log(near.mean / kappa.value) for near, kappa in measured]
-        errors = [kappa.stderr / kappa.value for _, kappa in measured]
-        yield measured[-1][0].row("passage_exponent", "fit", LinearFit(x, y, errors).slope)
 
 
 def one_friction(name, box, friction, halvings, events, seed):
@@ -519,7 +496,8 @@ def long_run_thresholds(one):
     """
     box = Box(one["width"], one["height"])
     for halvings in range(one["first"], one["last"] + 1, one.get("every", 1)):
-        scene = scene_at(box, one["hop"], halvings, friction=one.get("friction", 0.0))
+        effects = {"friction": one.get("friction", 0.0), "moment_of_inertia": one.get("inertia")}
+        scene = scene_at(box, one["hop"], halvings, **effects)
         near = NearThreshold(one["name"], scene, one["hop"], halvings, one["seed"])
         for pause in one.get("pauses", [1]):
             yield near, pause * cluster_pause(scene, near.hop)
@@ -553,14 +531,56 @@ def cluster_rows(one, counts):
         return found
     if "friction" in one:
         return [*found, *local_exponents(measured)]
-    found += exponents(measured)
     return [*found, *fits(found)]
 
 
 def long_run(thresholds):
-    """Yield the rows of many hops at ``thresholds``, at distances that no build goes down to."""
-    for one in thresholds:
-        yield from cluster_rows(one, cluster_counts(one))
+    """Return the rows of many hops at ``thresholds``, at distances that no build goes down to."""
+    return long_run_rows(thresholds, {one["name"]: cluster_counts(one) for one in thresholds})
+
+
+def long_run_rows(thresholds, counts):
+    """Return the rows of passages.csv on ``thresholds`` from {name: its ``cluster_counts``}."""
+    found = [row for one in thresholds for row in cluster_rows(one, counts[one["name"]])]
+    return [*found, *scaling_fits(found)]
+
+
+def scaling_law(x, b, limit=3 / 4):
+    """Return κ of a scaled friction x: 1/κ = x/``limit`` + 1/(1 + b x), with a number ``b``.
+
+    It is 1 for small x, and ``limit``/x for large x, which is what diffusion has.
+    """
+    return 1 / (x / limit + 1 / (1 + b * x))
+
+
+def scaling_fits(rows):
+    """Yield b of ``scaling_law``, fitted to κ with friction, χ², and the largest deviation of κ."""
+    own = [row for row in rows if row["quantity"] == "coefficient" and row["friction"]]
+    if not own:
+        return
+    hops = [(row_scene(row), row["event"]) for row in own]
+    x, limit = (
+        np.array([value(*hop) for hop in hops]) for value in (scaled_friction, diffusive_limit)
+    )
+    kappa, error = np.array([(row["estimate"], row["stderr"]) for row in own]).T
+    fitted, covariance = curve_fit(
+        partial(scaling_law, limit=limit), x, kappa, 0.5, error, absolute_sigma=True
+    )
+    law = scaling_law(x, *fitted, limit)
+    off, start = kappa / law - 1, {"event": own[0]["event"], "discs": 2, "method": "fit"}
+    constant = Estimate(float(fitted[0]), math.sqrt(covariance[0, 0]), len(own))
+    yield row(start, constant, quantity="scaling_constant", replicas=len(own))
+    chi2 = float((((kappa - law) / error) ** 2).sum())
+    yield row(start, quantity="scaling_chi2", estimate=chi2, replicas=len(own))
+    worst = np.abs(off).argmax()
+    start |= {name: own[worst][name] for name in ("distance", "friction")}
+    largest = Estimate(float(off[worst]), float(error[worst] / law[worst]), 1)
+    yield row(start, largest, quantity="scaling_deviation")
+
+
+def row_scene(row):
+    """Return the ``Scene`` of two discs between walls of a ``row`` of passages.csv."""
+    return Box(row["width"], row["height"], friction=row["friction"] or 0.0).scene(row["radius"])
 
 
 def displacements(name, width, height, blocked, seed, replicas):
@@ -651,28 +671,30 @@ def long_files(files, **run):
 
 
 def fits(rows):
-    """Yield the fitted powers of ``rows`` of passages.csv.
+    """Yield the powers of ``rows`` of passages.csv, as powers of the distance.
 
-    The power is fitted to 1 − κ for smooth discs, and to κ for rough discs, both without friction.
-    A fit takes the last ``LAST`` distances of a hop. A hop has no fit if it has fewer than two
-    distances, or if a value is not positive.
+    The power is that of 1 − κ for smooth discs, and of κ for rough discs, both without friction. It
+    is taken from each distance of a hop and the one before, and from the last ``LAST`` distances.
+    There is no power if a value is not positive.
     """
     hops = {}
     for one in rows:
         if one["quantity"] == "coefficient" and one["friction"] is None:
             hops.setdefault(tuple(one[name] for name in HOP), []).append(one)
     for found in hops.values():
-        last = sorted(found, key=lambda one: -one["distance"])[-LAST:]
-        is_rough = last[0]["moment_of_inertia"] is not None
-        values = [one["estimate"] if is_rough else 1 - one["estimate"] for one in last]
-        if len(last) < 2 or min(values) <= 0:
-            continue
-        x = [math.log(one["distance"]) for one in last]
-        y = [math.log(value) for value in values]
-        errors = [one["stderr"] / value for one, value in zip(last, values, strict=True)]
-        kept = {name: last[-1][name] for name in (*HOP, "radius", "distance", "exact_mean")}
-        slope = LinearFit(x, y, errors).slope
-        yield row(kept, slope, quantity="last_exponent", method="fit", replicas=len(last))
+        found.sort(key=lambda one: -one["distance"])
+        steps = [("exponent", pair) for pair in pairwise(found)]
+        for quantity, last in [*steps, ("last_exponent", found[-LAST:])]:
+            is_rough = last[0]["moment_of_inertia"] is not None
+            values = [one["estimate"] if is_rough else 1 - one["estimate"] for one in last]
+            if len(last) < 2 or min(values) <= 0:
+                continue
+            x = [math.log(one["distance"]) for one in last]
+            y = [math.log(value) for value in values]
+            errors = [one["stderr"] / value for one, value in zip(last, values, strict=True)]
+            kept = {name: last[-1][name] for name in (*HOP, "radius", "distance", "exact_mean")}
+            slope = LinearFit(x, y, errors).slope
+            yield row(kept, slope, quantity=quantity, method="fit", replicas=len(last))
 
 
 #: The parts of passages.csv.

@@ -50,12 +50,13 @@ class PassagesTable(Table):
             "hops that are passages, by clusters of hops without a pause; plateau: the same from "
             "κ(t); passage_time: τ/κ; exponent: of 1 − κ for smooth discs, of κ for rough ones, "
             "as powers of the distance, from this distance and the one before; last_exponent: the "
-            "same, fitted to the last five distances; passage_exponent: of the time between "
-            "passages, over all distances; local_exponent: of that time with friction, from this "
-            "distance and the one before, without the regular factor of τ: −2 + |d ln κ/d ln x|/2; "
-            "scaled_coefficient: κ x, x = γ√(εσ); rate: hops per time, of both of two discs, or of "
-            "each of more discs; diffusion: D/(ν ℓ²) with ν hops of a disc per time in either "
-            "direction, each by ℓ; "
+            "same, fitted to the last five distances; local_exponent: of the time between passages "
+            "with friction, from this distance and the one before, without the regular factor of "
+            "τ: −2 + |d ln κ/d ln x|/2; scaled_coefficient: κ x, x = γ√(εσ); scaling_constant: b "
+            "of 1/κ = x/c + 1/(1 + b x), with the limit c of κ x, fitted to κ with friction; "
+            "scaling_chi2: its χ²; scaling_deviation: the largest κ over it, less one; rate: hops "
+            "per time, of both of two discs, or of each of more discs; diffusion: D/(ν ℓ²) with "
+            "ν hops of a disc per time in either direction, each by ℓ; "
             "single_file: F of the mean square displacement F √t, over ℓ² in single files; "
             "density: S, the relative variance of the number of discs in a long piece of a single "
             "file; in long single files, over ℓ²: displacement, the mean square displacement of a "
@@ -117,8 +118,9 @@ class BrownianTable(Table):
             "how discs move in a step. reflected: thermal velocities are drawn for each step, and "
             "collisions are elastic; kicked: the same with random times between draws, half a step "
             "on average; together: both discs are displaced, and the step is rejected if they "
-            "overlap; singly: two moves of one random disc each, a move is rejected if discs "
-            "overlap"
+            "overlap, walls fold it; confined: the same, a step into a wall is rejected too; "
+            "singly: two moves of one random disc each, a move is rejected if discs overlap, walls "
+            "fold it"
         ),
         "step": Column(
             float, "σ", "s, the standard deviation of a coordinate of a free disc after a step"
@@ -135,10 +137,11 @@ class BrownianTable(Table):
             "coefficient: κ, the rate of passages over that of crossings in transition state "
             "theory, s ε²/(√π V) in one direction; crossing_rate: of all crossings, over the same; "
             "passage_time: mean time from the largest separation to the largest one on the other "
-            "side; first_time: to the first crossing; local_exponent: of the time between passages "
+            "side; first_time: to the first crossing; first_exponent: of first_time, as a power of "
+            "ε, from two neighbouring widths; local_exponent: of the time between passages "
             "over V, as a power of ε, from two neighbouring widths; exponent: the same, fitted "
-            "where the neck is at least 8 steps or at most 1/8 of a step; crossover: the neck over "
-            "step at which it is −7/4. V is the volume of the allowed positions"
+            "where the neck is at least 8 steps or at most 1/8 of a step. V is the volume of the "
+            "allowed positions"
         ),
         "method": TEXT(
             "crossings: random crossings, followed in both directions of time until the discs are "
@@ -147,7 +150,7 @@ class BrownianTable(Table):
         ),
         "estimate": Column(float, "step or none", "estimate"),
         "stderr": AS_ESTIMATE("its standard error"),
-        "diffusive": NUMBER("κ of a separation that diffuses"),
+        "diffusive": NUMBER("the same of a separation that diffuses: κ, first_time, an exponent"),
         "reference": AS_ESTIMATE(
             "expected value: 1 for crossings of reflected discs, by crossings for passages, of "
             "reflected discs for kicked ones"
@@ -160,13 +163,6 @@ class BrownianTable(Table):
         "samples": COUNT("crossings, or pairs; for an exponent, points"),
         "steps": COUNT("steps, or moves of one disc, simulated for the estimate"),
     }
-
-    @staticmethod
-    def rows(counts):
-        """Return the rows that follow from the ``counts`` of a long run."""
-        from twodiscs_paper.studies.passages import brownian
-
-        return brownian.rows(counts)
 
     @staticmethod
     def part(seeds, crossings, passages):
@@ -226,12 +222,13 @@ STUDY = Study(
                 (circles) and rough ones (squares). κ(t) starts with the exact slope −2p(0⁺)
                 (dashed, in the limit δ → 0). If hops are rare it has a plateau, which falls as
                 passages follow one another (lines). There κ is the fraction of odd clusters among
-                all hops, from independent runs. (b) Exact mean time τ between hops (lines, ∝ δ⁻²
-                close to the threshold) and mean time τ/κ between passages (symbols). Error bars are
-                one standard error.
+                all hops, from independent runs, long ones where there are any. (b) Exact mean time
+                τ between hops (lines, ∝ δ⁻² close to the threshold) and mean time τ/κ between
+                passages (symbols). Error bars are one standard error.
                 """
             ),
             tables=("passages",),
+            long_runs={"kept": "paper/long_run/passages/passages.csv"},
         ),
         "transmission": Figure(
             "Passages near the threshold",
@@ -241,14 +238,14 @@ STUDY = Study(
                 Transmission coefficient κ near the radius r_c at which hops become blocked, w/4 or
                 h/4, at distances δ = (r_c − r)/r_c. (a) Smooth discs: 1 − κ, multiplied by the
                 range A along the hop and divided by ∛(εσ²), with σ = 2r and the room ε that the
-                discs leave in the neck. Full symbols are long runs. The star is the limit c for δ →
-                0, which is computed in that limit. The correction to it is of the relative order of
-                δ to the power 1/6, so that a straight line leads to it; the slope of the grey line
-                is fitted to the long runs at h/4. (b) Rough discs: κ falls, with local exponents
-                that depend on their moment of inertia I, in units of mr². Lines are powers fitted
-                to the last distances. (c), (d) Residuals z in standard errors: of the slope of κ(t)
-                at 0 from its exact value, and between two estimators of κ. Error bars are one
-                standard error.
+                discs leave in the neck. Full symbols are long runs, which stand for all runs at
+                their distances. The star is the limit c for δ → 0, which is computed in that limit.
+                The correction to it is of the relative order of δ to the power 1/6, so that a
+                straight line leads to it; the slope of the grey line is fitted to the long runs at
+                h/4. (b) Rough discs: κ falls, with local exponents that depend on their moment of
+                inertia I, in units of mr². Powers in the legend are fitted to the last distances.
+                (c), (d) Residuals z in standard errors: of the slope of κ(t) at 0 from its exact
+                value, and between two estimators of κ. Error bars are one standard error.
                 """
             ),
             tables=("passages",),
@@ -263,10 +260,11 @@ STUDY = Study(
                 (a) The fraction κ of hops that are passages, near the radius r_c = h/4 at which
                 hops become blocked. The abscissa is x = γ√(εσ), with the room ε = h − 4r that the
                 discs leave in the neck and σ = 2r. Dashed: the limits of ballistic discs, 1, and of
-                discs that diffuse through the neck, 3/(4x). (b) The local power of the distance r_c
-                − r with which the time τ/κ between passages grows, from one distance to the next.
-                Dashed: the powers of a pair that diffuses through the neck, and of one that crosses
-                it in one flight. Full symbols are a long run. Error bars are one standard error.
+                discs that diffuse through the neck, 3/(4x). Line: 1/κ = 4x/3 + 1/(1 + bx), with b
+                fitted to the long run. (b) The local power of the distance r_c − r with which the
+                time τ/κ between passages grows, from one distance to the next. Dashed: the powers
+                of a pair that diffuses through the neck, and of one that crosses it in one flight.
+                Full symbols are a long run. Error bars are one standard error.
                 """
             ),
             tables=("passages",),
@@ -280,15 +278,15 @@ STUDY = Study(
                 Passages of two discs in Brownian dynamics, in a channel of the height 2σ + ε that
                 is closed to a ring of the length 3σ. In a step each coordinate of a free disc moves
                 by a normal deviate of the standard deviation s. The abscissa is the length √(εσ) of
-                the neck over s. Reflected discs fly through the step and collide elastically; if
-                steps are rejected, they are those of both discs or of one disc. (a) κ, the rate of
-                passages over the rate of crossings in transition state theory. Open symbols follow
-                random crossings in both directions of time, dots are first passages. Dashed: 1, and
-                √(2/π) s/√(εσ) of a separation that diffuses. (b) The local power of ε with which
-                the mean time between passages grows, divided by the volume of the allowed
-                positions. Dashed: the powers that theories of diffusion and of transition states
-                have, and 0 of a time that stays finite. Error bars are one standard error. All
-                symbols are from a long run.
+                the neck over s. Reflected discs fly through the step and collide elastically. Steps
+                of both discs or of one disc are rejected if the discs overlap; walls reflect them,
+                or reject them too. (a) κ, the rate of passages over the rate of crossings in
+                transition state theory. Open symbols follow random crossings in both directions of
+                time, dots are first passages. Dashed: 1, and √(2/π) s/√(εσ) of a separation that
+                diffuses. (b) The local power of ε with which the mean time between passages grows,
+                divided by the volume of the allowed positions. Dashed: the powers that theories of
+                diffusion and of transition states have, and 0 of a time that stays finite. Error
+                bars are one standard error. All symbols are from a long run.
                 """
             ),
             long_runs={"brownian": "paper/long_run/brownian/brownian.csv"},

@@ -1,4 +1,4 @@
-"""Brownian dynamics of two hard discs in a channel: four programs with steps of equal length.
+"""Brownian dynamics of two hard discs in a channel: five programs with steps of equal length.
 
 Two discs of the diameter σ = 1 are in a channel of the height 2σ + ε between hard walls, which is
 closed to a ring of the length 2H. Their centres have the heights y₁ and y₂ in [0, B], B = σ + ε,
@@ -15,11 +15,13 @@ standard deviation s: D = s²/(2Δt) is its coefficient of diffusion, and s/Δt 
 * ``KICKED``: the same, but the times between draws are exponential with the mean Δt/2, which
   gives the same D. This is friction of the rate γ = 2/Δt.
 * ``TOGETHER``: both discs get their displacements, and the step is rejected if the discs overlap
-  (Cichocki and Hinsen, Physica A 166, 473 (1990)). Walls reflect.
+  (Cichocki and Hinsen, Physica A 166, 473 (1990)). Walls fold the step: a height beyond a wall is
+  reflected at it.
+* ``CONFINED``: the same, but a step into a wall is rejected as well.
 * ``SINGLY``: a step is two moves of one random disc each; a move that leads to an overlap is
-  rejected.
+  rejected. Walls fold it.
 
-All four keep the uniform distribution of the allowed (u, y₁, y₂) and satisfy detailed balance.
+All five keep the uniform distribution of the allowed (u, y₁, y₂) and satisfy detailed balance.
 Its density of u is ρ(u) = L², with L = B − √(σ² − u²) for |u| < σ, else L = B.
 """
 
@@ -30,7 +32,7 @@ import numpy as np
 from twodiscs.sampling.jit import compiled, inlined
 from twodiscs.sampling.streams import exponential, open_stream, signed_uniform, uniform
 
-REFLECTED, KICKED, TOGETHER, SINGLY = range(4)
+REFLECTED, KICKED, TOGETHER, CONFINED, SINGLY = range(5)
 
 #: Crossings in a block, which has a stream of random numbers.
 CROSSINGS = 2**6
@@ -60,6 +62,26 @@ def folded(y, breadth):
     while y < 0.0 or y > breadth:
         y = -y if y < 0.0 else 2 * breadth - y
     return y
+
+
+@inlined
+def moved(y, z, kind, step, breadth, b, c, stream):
+    """Return heights after a step of random length, where ``b`` and ``c`` are normal deviates."""
+    if kind != SINGLY:
+        y, z = y + step * b, z + step * c
+        if kind == TOGETHER:
+            y, z = folded(y, breadth), folded(z, breadth)
+    elif uniform(stream) < 0.5:
+        y = folded(y + step * b, breadth)
+    else:
+        z = folded(z + step * b, breadth)
+    return y, z
+
+
+@inlined
+def is_free(u, y, z, breadth):
+    """Return whether neither two discs nor a disc and a wall overlap."""
+    return u * u + (y - z) ** 2 >= 1.0 and min(y, z) >= 0.0 and max(y, z) <= breadth
 
 
 @compiled
@@ -118,26 +140,19 @@ def advance(state, kind, step, half, breadth, stream):
     Returns how often u changed its sign.
     """
     a, b = normal_pair(stream)
+    c, _ = (0.0, 0.0) if kind == SINGLY else normal_pair(stream)
+    length = step if kind == SINGLY else math.sqrt(2.0) * step
     if kind <= KICKED:
-        c, _ = normal_pair(stream)
-        state[3], state[4], state[5] = math.sqrt(2.0) * step * a, step * b, step * c
+        state[3], state[4], state[5] = length * a, step * b, step * c
         time = 1.0 if kind == REFLECTED else exponential(stream) / 2
         return fly(state, time, half, breadth)
-    if kind == TOGETHER:
-        c, _ = normal_pair(stream)
-        u = state[0] + math.sqrt(2.0) * step * a
-        y, z = folded(state[1] + step * b, breadth), folded(state[2] + step * c, breadth)
-    else:
-        u, y, z = state[0] + step * a, state[1], state[2]
-        if uniform(stream) < 0.5:
-            y = folded(y + step * b, breadth)
-        else:
-            z = folded(z + step * b, breadth)
+    u = state[0] + length * a
+    y, z = moved(state[1], state[2], kind, step, breadth, b, c, stream)
     end = 0.0
     while abs(u) > half:
         end = math.copysign(1.0, u)
         u = end * 2 * half - u
-    if u * u + (y - z) ** 2 < 1.0:
+    if not is_free(u, y, z, breadth):
         return 0
     crossings = 1 if u * state[0] < 0.0 else 0
     state[0], state[1], state[2] = u, y, z
@@ -215,17 +230,11 @@ def draw_crossing(state, other, kind, step, half, breadth, stream):
         if forward > farthest:
             continue
         other[0] = -phase * forward
-        if other[0] ** 2 + (other[1] - other[2]) ** 2 < 1.0:
+        if not is_free(other[0], other[1], other[2], breadth):
             continue
-        state[0], state[1], state[2] = other[0] + forward, other[1], other[2]
-        if kind == TOGETHER:
-            state[1] = folded(state[1] + step * c, breadth)
-            state[2] = folded(state[2] + step * d, breadth)
-        elif uniform(stream) < 0.5:
-            state[1] = folded(state[1] + step * c, breadth)
-        else:
-            state[2] = folded(state[2] + step * c, breadth)
-        if state[0] ** 2 + (state[1] - state[2]) ** 2 >= 1.0:
+        state[0] = other[0] + forward
+        state[1], state[2] = moved(other[1], other[2], kind, step, breadth, c, d, stream)
+        if is_free(state[0], state[1], state[2], breadth):
             state[7] = 0.0
             return tried
 

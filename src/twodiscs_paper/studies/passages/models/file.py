@@ -52,8 +52,7 @@ class Limit(NamedTuple):
     """A channel of infinitely many discs at kT = 1; all values are per disc.
 
     ``length`` ℓ is the mean length of the channel and ``softness`` −dℓ/dp its decrease with the
-    force p. ``per_height`` is ∂lnV/∂B and ``per_contact`` −∂lnV/∂σ; ``level`` is the density of
-    neighbours at y = y', Σ∫δ(y_i − y_{i+1})/V.
+    force p. ``per_height`` is ∂lnV/∂B and ``per_contact`` −∂lnV/∂σ.
     """
 
     force: float
@@ -61,7 +60,6 @@ class Limit(NamedTuple):
     softness: float
     per_height: float
     per_contact: float
-    level: float
 
 
 def limit(height, radius, force):
@@ -99,7 +97,6 @@ def limit(height, radius, force):
         softness=1 / force**2 + spread,
         per_height=1 / b + force * mean(separation**2 / (b * distance)),
         per_contact=force * mean(sigma / distance),
-        level=float(psi**2 @ np.diag(kinds[0]) / value),
     )
 
 
@@ -147,10 +144,13 @@ def thermal_speed(scene):
 
 
 def sound(scene, density, time):
-    """Return ⟨x²⟩ of smooth discs at a ``time``, from sound alone."""
-    around = density.speed * thermal_speed(scene) * time / scene.width % 1
+    """Return ⟨x²⟩ of smooth discs at a ``time``, from sound alone.
+
+    It is None once sound has gone around half of the ring: from then on it brings the discs back.
+    """
+    around = density.speed * thermal_speed(scene) * time / scene.width
     size = scene.width**2 / scene.discs / density.speed**2
-    return size * around * (1 - around)
+    return size * around * (1 - around) if around <= 0.5 else None
 
 
 def damped(scene, variance, friction, time):
@@ -175,14 +175,15 @@ def law(scene, friction, time, variance=None):
     """Return ⟨x²⟩/ℓ² at a ``time`` by theory, with kicks at the rate ``friction`` or None.
 
     Without a ``variance`` S the discs must be in an ordered channel, whose theory is exact. Smooth
-    discs with a ``variance`` have no law: the speed of sound is not known.
+    discs with a ``variance`` have no law: the speed of sound is not known. They have none, too,
+    once ``sound`` comes back around the ring.
     """
     per_disc = scene.width / scene.discs
     if friction is None:
         moved = sound(scene, _exact_density(scene), time)
     else:
         moved = damped(scene, variance or _exact_density(scene).variance, friction, time)
-    return moved / per_disc**2
+    return moved and moved / per_disc**2
 
 
 def recorded(scene, step, number, replicas, seed, friction=None):
