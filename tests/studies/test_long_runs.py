@@ -111,7 +111,8 @@ def test_files_diffuse_by_passages_if_hops_are_rare():
         kappa = of(own, quantity="coefficient")[-1]
         value, error = kappa["estimate"], kappa["stderr"]
         if discs < 10:
-            scene, unit = passages.file_scene(Box(1.5, 1.0), discs, 5)
+            radius = passages.radius_at(1 / 4, 5)
+            scene, unit = passages.file_scene(Box(1.5, 1.0), discs, radius)
             gap = 8 * unit
             sizes, _ = cluster_sizes(scene, "horizontal_hop", gap, 48, 5)
             law = partial(odd_clusters_per_passage, others=2)

@@ -23,6 +23,7 @@ from twodiscs.measure.transmission import cluster_coefficient
 from twodiscs.model.seeds import stream_seed
 from twodiscs.points.estimates import Estimate
 from twodiscs_paper.studies.estimates import LinearFit
+from twodiscs_paper.studies.passages.measure import compared
 from twodiscs_paper.studies.passages.models import brownian_steps
 from twodiscs_paper.study import row
 
@@ -50,13 +51,14 @@ LONG, SHORT = 8.0, 0.125
 NARROW = 1 / 16
 
 
-def side_volume(room):
+def side_volume(room, near=0.0):
     """Return the volume of the allowed (u, y₁, y₂) on one side, for a neck of the width ``room``.
 
-    It is the integral of L² over 0 < u < ``HALF``, with L of ``models.brownian``.
+    It is the integral of L² over ``near`` < u < ``HALF``, with L of ``models.brownian``.
     """
-    breadth = 1 + room
-    return breadth**2 * HALF - math.pi / 2 * breadth + 2 / 3
+    breadth, u = 1 + room, min(near, 1.0)
+    arc = math.acos(u) - u * math.sqrt(1 - u * u)
+    return breadth**2 * (HALF - near) - arc * breadth + 2 / 3 - u + u**3 / 3
 
 
 def resistance(room):
@@ -74,19 +76,11 @@ def first_passage(step, room):
 
     It is ∫ du/ρ(u) ∫ ρ(u′) du′ over s², with u from 0 to ``HALF`` and u′ from u to ``HALF``.
     """
-    breadth = 1 + room
-
-    def beyond(u):
-        near = min(u, 1.0)
-        arc = math.acos(near) - near * math.sqrt(1 - near * near)
-        volume = breadth**2 * (HALF - u) - breadth * arc
-        return volume + (2 / 3 - near + near**3 / 3)
 
     def slowness(u):
-        return beyond(u) / (breadth - math.sqrt(max(1 - u * u, 0.0))) ** 2
+        return side_volume(room, u) / (1 + room - math.sqrt(max(1 - u * u, 0.0))) ** 2
 
-    points = [min(math.sqrt(room), 0.5), 1.0]
-    time, _ = quad(slowness, 0, HALF, points=points, epsabs=0, epsrel=1e-10)
+    time, _ = quad(slowness, 0, HALF, points=[math.sqrt(room), 1], epsabs=0, epsrel=1e-10)
     return time / step**2
 
 
@@ -239,14 +233,20 @@ def rows(counts):
     known = {}
     for method, (_, estimates) in METHODS.items():
         for point in counts[method]:
+            program, step, halvings = (point[name] for name in ("program", "step", "halvings"))
+            start = {"program": program, "step": step, "room": 2.0**-halvings, "method": method}
+            start["neck"] = neck(step, halvings)
             seeds = [estimates(point, one) for one in point["seeds"]]
             both = joined(point["seeds"])
             for quantity, found in estimates(point, both).items():
-                cells = _cells(point, method, quantity)
-                place = (point["program"], point["step"], point["halvings"], quantity)
+                cells = start | {"quantity": quantity}
+                if quantity in DIFFUSING:
+                    cells["diffusive"] = DIFFUSING[quantity](step, start["room"])
+                place = (program, step, halvings, quantity)
                 reference = _reference(known, *place)
                 if reference is not None:
                     cells |= compared(found, reference)
+                    del cells["test"]
                 if quantity == "coefficient" and method == "crossings":
                     known[place] = found
                 if len(seeds) == 2:
@@ -255,19 +255,6 @@ def rows(counts):
                 steps = both["passage"][0] if method == "passages" else both["steps"]
                 yield row(cells, found, samples=found.n, steps=steps)
     yield from exponents(counts)
-
-
-def _cells(point, method, quantity):
-    room = 2.0 ** -point["halvings"]
-    return {
-        "program": point["program"],
-        "step": point["step"],
-        "room": room,
-        "neck": neck(point["step"], point["halvings"]),
-        "quantity": quantity,
-        "method": method,
-        "diffusive": DIFFUSING[quantity](point["step"], room) if quantity in DIFFUSING else None,
-    }
 
 
 def _reference(known, program, step, halvings, quantity):
@@ -279,14 +266,6 @@ def _reference(known, program, step, halvings, quantity):
     if program == "kicked":
         program = "reflected"
     return known.get((program, step, halvings, quantity))
-
-
-def compared(found, reference):
-    """Return the cells of a comparison of two independent ``Estimate``."""
-    z = (found.value - reference.value) / math.hypot(found.stderr, reference.stderr)
-    return {
-        "reference": reference.value, "reference_stderr": reference.stderr or None, "z": z,
-    }  # fmt: skip
 
 
 def exponents(counts):

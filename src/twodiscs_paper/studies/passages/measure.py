@@ -391,6 +391,15 @@ def one_ring(name, box, inertia, events, seed):
         yield from NearThreshold(name, scene, "horizontal_hop", n, seed).diffusion(events)
 
 
+def file_scene(box, discs, radius, inertia=None):
+    """Return the ``Scene`` of ``discs`` on a ring, and the unit of its times, h over v_th."""
+    scene = Scene(
+        box.width / 2 * discs, box.height, radius, discs=discs, periodic="x",
+        moment_of_inertia=inertia,
+    )  # fmt: skip
+    return scene, box.height / file.thermal_speed(scene)
+
+
 def one_long_file(name, box, radius, frictions, seed, inertia=None, replicas=LONG_REPLICAS):
     """Yield the rows of one long file, which is open at a ``radius`` below h/4, else blocked.
 
@@ -400,11 +409,7 @@ def one_long_file(name, box, radius, frictions, seed, inertia=None, replicas=LON
     """
     limit, per_disc = box.height / 4, box.width / 2
     is_open, variance = radius < limit, None
-    scene = Scene(
-        per_disc * LONG_FILE, box.height, radius, discs=LONG_FILE, periodic="x",
-        moment_of_inertia=inertia,
-    )  # fmt: skip
-    unit = box.height / file.thermal_speed(scene)
+    scene, unit = file_scene(box, LONG_FILE, radius, inertia)
     start = hop_cells(name, scene, "horizontal_hop", 1 - radius / limit)
     for friction in frictions:
         rate = start["friction"] = None if friction is None else friction / unit
@@ -597,15 +602,6 @@ def displacements(name, width, height, blocked, seed, replicas):
         yield from one_long_file(name, box, radius, frictions, seed, inertia, replicas)
 
 
-def file_scene(box, discs, halvings):
-    """Return the ``Scene`` of ``discs`` on a ring, and the unit of its times, h over v_th."""
-    scene = Scene(
-        box.width / 2 * discs, box.height, radius_at(box.height / 4, halvings), discs=discs,
-        periodic="x",
-    )  # fmt: skip
-    return scene, box.height / file.thermal_speed(scene)
-
-
 def file_counts(one, run):
     """Return the counts of a file ``one`` of a long ``run``, a list for each replica.
 
@@ -614,7 +610,7 @@ def file_counts(one, run):
     places by which a disc has moved in the order.
     """
     box, found = Box(run["width"], run["height"]), []
-    scene, unit = file_scene(box, one["discs"], one["halvings"])
+    scene, unit = file_scene(box, one["discs"], radius_at(box.height / 4, one["halvings"]))
     rate = one["friction"] / unit if "friction" in one else None
     step, number = run["step"] * unit, run["records"]
     window = run["margin"] * unit, number * step - run["margin"] * unit
@@ -635,7 +631,7 @@ def file_rows(one, run, counts):
     pair and of its neighbours in it. D/(ν ℓ²) over κ is the last row.
     """
     box = Box(run["width"], run["height"])
-    scene, unit = file_scene(box, one["discs"], one["halvings"])
+    scene, unit = file_scene(box, one["discs"], radius_at(box.height / 4, one["halvings"]))
     start = hop_cells(run["name"], scene, "horizontal_hop", 2.0 ** -one["halvings"])
     start["friction"] = one["friction"] / unit if "friction" in one else None
     hops, passed, total, moved = (np.array([count[k] for count in counts]) for k in range(4))
