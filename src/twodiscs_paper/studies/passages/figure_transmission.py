@@ -22,8 +22,9 @@ from twodiscs_paper.study import select
 #: Colour and marker of further boxes and hops of smooth discs.
 OTHERS = ((SKY, "P"), (BLACK, "D"))
 
-#: The distances that are named above the panel of smooth discs, and the end of its abscissa.
-NAMED, END = (4, 8, 12, 16, 20), 0.55
+#: The distances that are named above the panel of smooth discs, in halvings, and the end of its
+#: abscissa. The slope of its line is fitted from ``CLOSE`` on.
+NAMED, END, CLOSE = (4, 8, 12, 16, 20), 0.55, 2.0**-12
 
 #: {quantity: colour, marker, name} of residuals, each in a panel of its own.
 RESIDUAL_LOOKS = {
@@ -77,6 +78,7 @@ def _smooth(axes, rows, kept, ours):
         axes.errorbar([0], [c], [row["stderr"]], color=BLACK, marker="*", markersize=5, ls="",
                       clip_on=False, zorder=6, label=r"$c$, in the limit")  # fmt: skip
         close = select(kept, quantity="coefficient", event="horizontal_hop", scene="h/4")
+        close = [row for row in close if row["distance"] <= CLOSE]
         if close:
             x, value, error = _units(close)
             slope = np.sum((value - c) * x / error**2) / np.sum(x**2 / error**2)

@@ -564,9 +564,7 @@ def scaling_fits(rows):
     if not own:
         return
     hops = [(row_scene(row), row["event"]) for row in own]
-    x, limit = (
-        np.array([value(*hop) for hop in hops]) for value in (scaled_friction, diffusive_limit)
-    )
+    x, limit = np.array([(scaled_friction(*hop), diffusive_limit(*hop)) for hop in hops]).T
     kappa, error = np.array([(row["estimate"], row["stderr"]) for row in own]).T
     fitted, covariance = curve_fit(
         partial(scaling_law, limit=limit), x, kappa, 0.5, error, absolute_sigma=True

@@ -222,9 +222,9 @@ STUDY = Study(
                 (circles) and rough ones (squares). κ(t) starts with the exact slope −2p(0⁺)
                 (dashed, in the limit δ → 0). If hops are rare it has a plateau, which falls as
                 passages follow one another (lines). There κ is the fraction of odd clusters among
-                all hops, from independent runs, long ones where there are any. (b) Exact mean time
-                τ between hops (lines, ∝ δ⁻² close to the threshold) and mean time τ/κ between
-                passages (symbols). Error bars are one standard error.
+                all hops, from independent or long runs. (b) Exact mean time τ between hops (lines,
+                ∝ δ⁻² close to the threshold) and mean time τ/κ between passages (symbols). Error
+                bars are one standard error.
                 """
             ),
             tables=("passages",),
@@ -238,14 +238,14 @@ STUDY = Study(
                 Transmission coefficient κ near the radius r_c at which hops become blocked, w/4 or
                 h/4, at distances δ = (r_c − r)/r_c. (a) Smooth discs: 1 − κ, multiplied by the
                 range A along the hop and divided by ∛(εσ²), with σ = 2r and the room ε that the
-                discs leave in the neck. Full symbols are long runs, which stand for all runs at
-                their distances. The star is the limit c for δ → 0, which is computed in that limit.
-                The correction to it is of the relative order of δ to the power 1/6, so that a
-                straight line leads to it; the slope of the grey line is fitted to the long runs at
-                h/4. (b) Rough discs: κ falls, with local exponents that depend on their moment of
-                inertia I, in units of mr². Powers in the legend are fitted to the last distances.
-                (c), (d) Residuals z in standard errors: of the slope of κ(t) at 0 from its exact
-                value, and between two estimators of κ. Error bars are one standard error.
+                discs leave in the neck. Full symbols are long runs. The star is the limit c for δ →
+                0, which is computed in that limit. The correction to it is of the relative order of
+                δ to the power 1/6, so that a straight line leads to it; the slope of the grey line
+                is fitted to the long run at h/4, from 2⁻¹² on. (b) Rough discs: κ falls, with local
+                exponents that depend on their moment of inertia I, in units of mr². Powers in the
+                legend are fitted to the last distances. (c), (d) Residuals z in standard errors: of
+                the slope of κ(t) at 0 from its exact value, and between two estimators of κ. Error
+                bars are one standard error.
                 """
             ),
             tables=("passages",),
