@@ -146,8 +146,9 @@ def _corners(scene, i, duration):
     x, y = sigma * np.cos(middles * math.pi / 2), sigma * np.sin(middles * math.pi / 2)
     there = (x >= offset) & (x <= offset + reach_x) & (y >= offset) & (y <= offset + reach_y)
     share = np.mean(there)
-    arch = np.sqrt(np.maximum(sigma**2 - (offset + reach_x * middles) ** 2, 0.0)) - offset
-    blocked = reach_x * np.mean(np.clip(arch, 0.0, reach_y))
+    half = np.sqrt(np.maximum(sigma**2 - (offset + reach_x * middles) ** 2, 0.0))
+    low, high = (np.clip(end - offset, 0.0, reach_y) for end in (-half, half))
+    blocked = reach_x * np.mean(high - low)
     free = max(of_other - others * blocked, of_other / 2**5)
     speed = math.gamma(d / 2) / (math.sqrt(math.pi) * math.gamma((d + 1) / 2))
     flux = speed / math.sqrt(scene.masses[j]) / 2
