@@ -1,9 +1,14 @@
-"""One scene for each effect, and two that combine many of them."""
+"""One scene for each effect, two that combine many of them, and the same scene seen otherwise."""
+
+import math
+from dataclasses import replace
 
 from twodiscs.model.scene import Scene
 
+#: Of unequal discs each of the two is once the larger and lighter one.
 SCENES = {
     "unequal": Scene(1.5, 1.0, 0.15, radius_ratio=0.6, mass_ratio=3.0),
+    "larger": Scene(1.5, 1.0, 0.12, radius_ratio=1.5, mass_ratio=0.4),
     "torus": Scene(1.5, 1.0, 0.2, periodic="xy"),
     "channel": Scene(1.5, 1.0, 0.2, periodic="x"),
     "field": Scene(1.5, 1.0, 0.2, field=0.4),
@@ -19,3 +24,14 @@ SCENES = {
 ALL = Scene(
     1.5, 1.0, 0.2, periodic="x", field=0.3, radius_ratio=1.2, mass_ratio=2.0, moment_of_inertia=0.4
 )
+
+
+def exchanged(scene):
+    """Return (the same scene with disc 2 as the first, its speeds over those of ``scene``).
+
+    Its unit of mass is that of disc 2, and its energy is 1/2 as well.
+    """
+    ratio, mass = scene.radius_ratio, scene.mass_ratio
+    names = {"radius": scene.radii[1], "radius_ratio": 1 / ratio, "mass_ratio": 1 / mass}
+    names |= {"field": mass * scene.field, "friction": math.sqrt(mass) * scene.friction}
+    return replace(scene, **names), math.sqrt(mass)

@@ -6,6 +6,7 @@ cell.
 
 import doctest
 import math
+import re
 from collections import Counter
 from dataclasses import replace
 
@@ -13,11 +14,13 @@ import effect_scenes
 import mpmath
 import numpy as np
 import pytest
+from effect_scenes import exchanged
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from marks import slow
 from mpmath import mp, mpf
 
+from twodiscs.dynamics import law as event_law
 from twodiscs.dynamics import paths
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.law import (
@@ -133,6 +136,31 @@ def test_reversed_velocities_lead_back(scene):
         state = after_event(state, time, code, law)
     state = reversed_state(scene, after_event(state, times[0], END_OF_TIME, law))
     assert state == pytest.approx(first, abs=1e-7)
+
+
+#: {code: name} of events.
+CODES = {code: name for name, code in vars(event_law).items() if re.match("WALL|WRAP|DISC", name)}
+
+
+@pytest.mark.parametrize("scene", LAWS, ids=repr)
+def test_no_motion_depends_on_which_disc_and_which_axis_is_the_first(scene):
+    """Disc 2 as the first, in units of its mass; then x and y exchanged, which reverses spins."""
+    views = [(*exchanged(scene), 1, "12", "21")]
+    views += [] if scene.field else [(scene.turned(), 1.0, -1, "xyuvXY", "yxvuYX")]
+    for other, speed, turn, *letters in views:
+        renamed, laws = str.maketrans(*letters), (two_disc_law(scene), two_disc_law(other))
+        units = dict.fromkeys("xyz", 1.0) | dict.fromkeys("uvw", speed) | {"s": turn * speed}
+        one, after = start(scene, 4), None
+        for _ in range(16):
+            known = zip(components(scene), one, strict=True)
+            known = {name.translate(renamed): units[name[0]] * value for name, value in known}
+            same = tuple(known[name] for name in components(scene))
+            assert after is None or same == pytest.approx(after, abs=1e-12)
+            (time, code), (due, its_code) = map(next_event, (one, same), (math.inf,) * 2, laws)
+            assert CODES[its_code] == CODES[code].translate(renamed)
+            assert due * speed == pytest.approx(time, rel=1e-12, abs=1e-14)
+            one = after_event(one, time, code, laws[0])
+            after = after_event(same, due, its_code, laws[1])
 
 
 #: The kernel that counts the events of a scene takes some seconds to compile.

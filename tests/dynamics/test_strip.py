@@ -46,8 +46,14 @@ NECKS = {
 
 #: Each of them has another kernel, which takes seconds to compile.
 COUNTED = [slow(*neck, id=name) for name, neck in NECKS.items()]
+#: Both discs as the larger and lighter one, at both hops, in a field as weak as none.
+SIDES = [
+    (Scene(1.5, 1.0, side / (2 + 2 * ratio), field=1e-9, radius_ratio=ratio, mass_ratio=mass), hop)
+    for ratio, mass in ((0.6, 3.0), (1.5, 0.4))
+    for side, hop in ((0.98, "horizontal_hop"), (1.47, "vertical_hop"))
+]
 #: The other necks need many draws.
-DRAWN = [NECKS["field"], *(COUNTED[k] for k in (0, 3, 4))]
+DRAWN = [NECKS["field"], *SIDES, *(COUNTED[k] for k in (0, 3, 4))]
 at_places = pytest.mark.parametrize(("scene", "hop"), PLACES)
 
 
@@ -168,6 +174,15 @@ def test_intervals_cover_as_they_say(scene, hop):
         )
         covered.append(covers(time, true))
     assert 0.92 <= np.mean(covered) <= 0.98
+
+
+@pytest.mark.parametrize(("ratio", "hop"), [*product((0.6, 1.5), HOPS)])
+def test_the_widest_strip_is_within_the_smaller_disc(ratio, hop):
+    """Beyond √2 of its radius the share of a strip is not known; times are powers of two."""
+    for radius in (0.06, 0.08, 0.1, 0.13):
+        scene = Scene(1.5, 1.0, radius, radius_ratio=ratio)
+        limit = math.sqrt(2) * min(scene.radii)
+        assert 0.49 < scene.fastest * strip.widest(scene, hop) / limit < 1
 
 
 def test_only_rare_hops_of_a_neck_have_strips():

@@ -4,6 +4,7 @@ Without these tests a trajectory could leave its periodic cell, begin elsewhere 
 """
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from marks import slow
 
 from twodiscs.analysis.tables import TrajectoryTable
 from twodiscs.dynamics import paths, rows
+from twodiscs.model.checks import InputError
 from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling.initial_states import components
 from twodiscs.theory.exact import event_rate, mean_times
@@ -66,6 +68,18 @@ def test_a_trajectory_goes_on_from_its_end(scene):
     rows = follow(scene, 5, start, 1.0)
     assert tuple(map(float, rows[0][4])) == start
     np.testing.assert_allclose(rows[-1][4], whole[-1][4], rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize(("disc", "axis", "ratio"), [*product((0, 1), (0, 1), (0.5, 2.0))])
+def test_each_disc_may_start_at_its_own_walls_and_not_beyond(disc, axis, ratio):
+    scene, state = Scene(1.5, 1.0, 0.1, radius_ratio=ratio), [0.0] * 8
+    state[4] = 1.0
+    for side in (-1, 1):
+        state[2 * disc + axis] = side * (scene.sides[axis] / 2 - scene.radii[disc])
+        assert paths.check_start(scene, state) == tuple(state)
+        state[2 * disc + axis] += side * 1e-6
+        with pytest.raises(InputError, match=f"^start must have disc {disc + 1} inside the box"):
+            paths.check_start(scene, state)
 
 
 @pytest.mark.parametrize("scene", [GIVEN["ring"], GIVEN["torus"], GIVEN["combination"]], ids=repr)

@@ -10,8 +10,8 @@ from effect_scenes import SCENES
 
 import twodiscs as td
 
-KINDS = {"plain": td.Scene(1.5, 1.0, 0.2), "three": td.Scene(1.5, 1.0, 0.15, discs=3)}
-KINDS |= {"combination": SCENES["combination"]}
+KINDS = {"three": td.Scene(1.5, 1.0, 0.15, discs=3)}
+KINDS |= {name: SCENES[name] for name in ("larger", "combination")}
 
 
 @pytest.fixture(scope="module", params=KINDS)
@@ -45,7 +45,8 @@ def test_ase_reads_it(path, tmp_path):
     corner = np.array([scene.side(axis) / 2 for axis in scene.axes])
     assert np.allclose(second.positions[:, :axes] - corner, path.positions([2.5])[0], atol=1e-15)
     assert np.allclose(first.get_velocities()[:, :axes], path.velocities([0.0])[0], atol=1e-15)
-    assert [*first.cell.lengths()[:axes]] == [scene.side(axis) for axis in scene.axes]
+    sides = [scene.side(axis) for axis in scene.axes]
+    assert [*first.cell.lengths()] == [*sides, 2 * max(scene.radii)][:3]
     assert [*first.pbc] == [axis in scene.periodic for axis in "xyz"]
     assert (*first.get_masses(),) == (scene.masses if scene.discs == 2 else (1.0,) * 3)
     path.to_xyz(tmp_path / "all.xyz")

@@ -7,13 +7,14 @@ import math
 
 import numpy as np
 import pytest
-from effect_scenes import SCENES
+from effect_scenes import SCENES, exchanged
 from factory import sample_point
 from marks import slow
 from sampling.uniformity import FALSE_ALARM
 from scipy.special import bdtr
+from theory.antiderivatives import TURNED
 
-from twodiscs.model.events import EVENTS, HOPS, SHELLS
+from twodiscs.model.events import EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
@@ -141,6 +142,19 @@ def test_weighted_hits_have_their_exact_probability(scene, shell):
         event = quantity.removesuffix("_area")
         expected = exact.shell_expectation(scene, event, sampled.epsilon)
         assert_binomial(sampled.hits, samples, expected / sampled.measure)
+
+
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+def test_no_shell_depends_on_which_disc_and_which_axis_is_the_first(scene):
+    """A thickness is a length times the root of a mass, at a wall of that of disc 1."""
+    other, speed = exchanged(scene)
+    for event in scene.events:
+        thick = montecarlo.shell_thickness(scene, event, 0.02)
+        unit = 1.0 if event in WALLS else speed
+        assert montecarlo.shell_thickness(other, event, 0.02) * unit == pytest.approx(thick)
+        if not scene.field:
+            same = montecarlo.shell_thickness(scene.turned(), TURNED[event], 0.02)
+            assert same == pytest.approx(thick)
 
 
 def test_the_sampler_suits_the_scene():

@@ -15,7 +15,8 @@ from scipy.integrate import dblquad, quad
 from twodiscs.dynamics.two.event_counts import run_blocks
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
-from twodiscs.theory import clusters
+from twodiscs.theory import clusters, exact
+from twodiscs.theory.flux import flux_constant
 
 BOX = Scene(1.5, 1.0, 0.24, moment_of_inertia=0.5)
 RING = Scene(1.0, 2.0, 0.2495, moment_of_inertia=0.01, periodic="x")
@@ -139,6 +140,29 @@ def test_bursts_in_corners_scale_as_the_stays():
     right, top = (clusters.corner_variance(falling, w, 1e-3) for w in ("right_wall", "top_wall"))
     left = (1 - 2 * 0.5 * 0.6) ** 2  # the density at the top over that at the bottom
     assert top / right == pytest.approx(left / (1 + left), rel=1e-9)
+
+
+@pytest.mark.parametrize("ratio", [0.6, 1.5])
+def test_bursts_in_corners_are_those_of_disc_1_with_disc_2_where_it_has_room(ratio):
+    """Its room and its contacts with a disc in the corner, counted on a grid and on an arc."""
+    scene = replace(ROUGH, radius_ratio=ratio, mass_ratio=4.0)
+    (r1, r2), sigma = scene.radii, scene.contact_distance
+    place = (np.arange(1000) + 0.5) / 1000
+    sides = [side - 2 * r2 for side in scene.sides]
+    apart = [r2 - r1 + side * place for side in sides]
+    free = math.prod(sides) * np.mean(np.add.outer(*np.square(apart)) >= sigma**2)
+    touching = sigma * np.array([np.cos(place * math.pi / 2), np.sin(place * math.pi / 2)])
+    within = [
+        (r2 - r1 <= t) & (t <= r2 - r1 + side) for t, side in zip(touching, sides, strict=True)
+    ]
+    # Disc 2 has the mean speed 8/(15 π) · 2/√m₂ towards a surface, from each side half of it.
+    rate = flux_constant(6) / 2 / 2 * np.mean(within[0] & within[1]) * math.pi / 2 * sigma / free
+    # Corners at the bottom and at the top, ⟨v²⟩ = 3/6, and a quarter for one wall.
+    each = clusters.UNSEEN * clusters.HITS * 0.5 / 2 * (1 - math.sqrt(0.75))
+    each *= 2 * free / exact.volume(scene) * 3 / 6 * 2 / 4
+    for time, square in ((1e-3, 1e-6), (1e6, 2e6 / rate)):
+        found = clusters.corner_variance(scene, "right_wall", time)
+        assert found == pytest.approx(each * square, rel=0.01)
 
 
 @pytest.mark.slow

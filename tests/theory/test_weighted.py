@@ -16,11 +16,12 @@ from itertools import pairwise, product
 
 import numpy as np
 import pytest
+from effect_scenes import exchanged
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from marks import slow
 from mpmath import mp, mpf
-from theory.antiderivatives import relative_error
+from theory.antiderivatives import TURNED, relative_error
 
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
@@ -342,6 +343,42 @@ def test_what_is_possible(scene):
         assert 0 <= area < math.inf
         assert (area > 0) == scene.is_possible(event)
         assert (exact.mean_times(scene)[event] is None) == (area == 0)
+
+
+@given(scenes(), st.floats(0.01, 1.4))
+@settings(max_examples=60, deadline=None, derandomize=True)
+def test_no_number_depends_on_which_disc_and_which_axis_is_the_first(scene, share):
+    """Disc 2 as the first, in units of its mass, then x and y exchanged."""
+    other, speed = exchanged(scene)
+    shell = share * min(scene.radii)
+
+    def agree(found, expected, size=0.0):
+        assert found == pytest.approx(expected, rel=1e-9, abs=1e-11 * size)
+
+    agree(exact.volume(other), exact.volume(scene))
+    every = exact.rate(scene, "any_wall") + exact.rate(scene, "disc_collision")
+    for event in {*scene.events} - {*WALLS}:
+        agree(exact.rate(other, event) / speed, exact.rate(scene, event), every)
+        near = exact.shell_expectation(other, event, shell / speed) / speed
+        agree(near, exact.shell_expectation(scene, event, shell))
+    hops = [hop for hop in HOPS if hop in scene.events]
+    for hop in hops:
+        agree(exact.fraction_near(other, hop, shell), exact.fraction_near(scene, hop, shell))
+    if scene.field:
+        return
+    # Both discs hit two walls of an axis.
+    walls = [wall for wall in WALLS if wall in scene.events]
+    both = sum(exact.rate(scene, wall) + exact.rate(other, wall) / speed for wall in walls)
+    agree(2 * both, exact.rate(scene, "any_wall"))
+    turned = scene.turned()
+    agree(exact.volume(turned), exact.volume(scene))
+    for event in scene.events:
+        agree(exact.rate(turned, TURNED[event]), exact.rate(scene, event), every)
+        near = exact.shell_expectation(turned, TURNED[event], shell)
+        agree(near, exact.shell_expectation(scene, event, shell))
+    for hop in hops:
+        near = exact.fraction_near(turned, TURNED[hop], shell)
+        agree(near, exact.fraction_near(scene, hop, shell))
 
 
 @pytest.mark.parametrize("periodic", ["", "x"])
