@@ -130,7 +130,7 @@ def test_it_compiles_without_rows(paper):
     ("file", "old", "new"),
     [
         ("paper.typ", '#number("more_discs_width")', '#number("third_viral")'),
-        ("paper.typ", '#if has("pause_once")', '#if has("third_viral")'),
+        ("paper.typ", '#if has("decay_chi2")', '#if has("third_viral")'),
         ("published.yaml", "ours: third_virial", "ours: third_viral"),
     ],
 )

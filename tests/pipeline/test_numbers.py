@@ -255,16 +255,23 @@ def exponent(tables):
     return np.polyfit(np.log(x), np.log(1 - kappa), 1, w=(1 - kappa) / error)[0]
 
 
+def reach(tables):
+    """Return the last time over the one at which 2Dt of hops, with friction, is as large as F√t."""
+    rows = of(tables["displacements"], distance=2.0**-5)
+    rows = [row for row in rows if row["friction"] is not None]
+    share, rate, single = (
+        of(rows, quantity=name)[0]["estimate"] for name in ("diffusion", "rate", "single_file")
+    )
+    time = max(row["time"] for row in of(rows, quantity="displacement"))
+    return (share * rate * time / (single * np.sqrt(time))) ** 2
+
+
 #: Numbers by a second method, from {name: rows}.
 BY_HAND = {
     "tests": lambda t: sum(bool(r["passed"] is not None and r["independent"]) for r in t["check"]),
     "tests_largest": lambda t: max(scores(of(t["check"], independent=True))),
     "mean_time_largest": lambda t: max(scores(of(t["check"], comparison="mean_time"))),
-    "mean_scores_largest": lambda t: max(scores(of(t["check"], comparison="z_mean"))),
     "strips_longest": lambda t: max(r["estimate"] for r in of(t["mean_times"], starts="strip")),
-    "densities_others": lambda t: sorted(
-        scores(of(t["distributions"], quantity="density_at_zero"))
-    )[-2],
     "hazards": lambda t: len(of(t["distributions"], scene="paper", quantity="rate")),
     "rates_nearest": lambda t: min(
         scores(of(t["distributions"], scene="paper", quantity="rate"))
@@ -294,6 +301,7 @@ BY_HAND = {
     "long_files_law_error": lambda t: 100 * max(
         r["stderr"] / r["estimate"] for r in of(t["displacements"], quantity="single_file")
     ),
+    "long_files_last_reach": reach,
     "more_discs_exact": lambda t: sum(
         r["exact"] is not None and r["z"] is not None and r["event"] != "virial"
         for r in t["more_discs"]
