@@ -351,6 +351,7 @@ def test_no_number_depends_on_which_disc_and_which_axis_is_the_first(scene, shar
     """Disc 2 as the first, in units of its mass, then x and y exchanged."""
     other, speed = exchanged(scene)
     shell = share * min(scene.radii)
+    shells = [e for e in scene.events if e in SHELLS or not scene.is_plain]
 
     def agree(found, expected, size=0.0):
         assert found == pytest.approx(expected, rel=1e-9, abs=1e-11 * size)
@@ -359,8 +360,9 @@ def test_no_number_depends_on_which_disc_and_which_axis_is_the_first(scene, shar
     every = exact.rate(scene, "any_wall") + exact.rate(scene, "disc_collision")
     for event in {*scene.events} - {*WALLS}:
         agree(exact.rate(other, event) / speed, exact.rate(scene, event), every)
-        near = exact.shell_expectation(other, event, shell / speed) / speed
-        agree(near, exact.shell_expectation(scene, event, shell))
+        if event in shells:
+            near = exact.shell_expectation(other, event, shell / speed) / speed
+            agree(near, exact.shell_expectation(scene, event, shell))
     hops = [hop for hop in HOPS if hop in scene.events]
     for hop in hops:
         agree(exact.fraction_near(other, hop, shell), exact.fraction_near(scene, hop, shell))
@@ -374,8 +376,9 @@ def test_no_number_depends_on_which_disc_and_which_axis_is_the_first(scene, shar
     agree(exact.volume(turned), exact.volume(scene))
     for event in scene.events:
         agree(exact.rate(turned, TURNED[event]), exact.rate(scene, event), every)
-        near = exact.shell_expectation(turned, TURNED[event], shell)
-        agree(near, exact.shell_expectation(scene, event, shell))
+        if event in shells:
+            near = exact.shell_expectation(turned, TURNED[event], shell)
+            agree(near, exact.shell_expectation(scene, event, shell))
     for hop in hops:
         near = exact.fraction_near(turned, TURNED[hop], shell)
         agree(near, exact.fraction_near(scene, hop, shell))
