@@ -228,14 +228,14 @@ def test_a_run_is_a_line_of_snakemake(tmp_path, monkeypatch):
     words = build.command("my.yaml", ["volume", "results/check.passed"], Path("/a/Snakefile"))
     assert words == [
         *("snakemake", "--snakefile", "/a/Snakefile"),
-        *("--workflow-profile", "/a/profiles/default", "--cores", "all", "--no-hooks"),
+        *("--workflow-profile", "/a/profiles/default", "--cores", "all"),
         *("--quiet", "rules", "host"),
         *("--configfile", "my.yaml", "--", "volume", "results/check.passed"),
     ]
     monkeypatch.chdir(build.snakefile().parent)
     assert "--snakefile" not in build.command("my.yaml", [], build.snakefile())
     words = build.command("my.yaml", [], build.snakefile(), 3, True)
-    options = ["--cores", "3", "--no-hooks", "--quiet", "rules", "host", "progress", "reason"]
+    options = ["--cores", "3", "--quiet", "rules", "host", "progress", "reason"]
     assert words[1:] == [*options, "--dry-run", "--configfile", "my.yaml", "--", "report"]
     monkeypatch.setenv("SNAKEMAKE_PROFILE", "cluster")  # which chooses the cores
     assert "--cores" not in build.command("my.yaml", [], Path("Snakefile"))

@@ -37,8 +37,8 @@ def complete(tmp_path_factory):
         if not done.exists():
             shutil.rmtree(path, ignore_errors=True)  # of a build that failed
             checkout = fresh(path, QUICKER | ONE_SCENE)
-            checkout.snakemake("--cores", "2")
-            done.touch()
+            run = checkout.snakemake("--cores", "2", "--verbose")
+            done.write_text(run.stdout + run.stderr)
     return Checkout(path)
 
 

@@ -43,6 +43,11 @@ def test_everything_that_is_called_for_is_built(complete):
     assert [row["x1"] for row in path[:20]] == [*states["x1"][:20]]
 
 
+def test_the_scheduler_looks_for_jobs_when_a_job_ends_and_at_no_other_time(complete):
+    said = complete.path.with_suffix(".done").read_text()
+    assert 1 < said.count("Ready jobs: ") <= said.count("Finished jobid: ") + 1
+
+
 def test_every_file_is_made_by_a_rule(complete):
     """Each may be asked for by its path."""
     names = [f"results/{name}" for name in complete.results()]

@@ -105,7 +105,7 @@ def command(path, targets, snakefile, cores=None, dry_run=False, unlock=False):
         profile = snakefile.with_name("profiles") / "default"
         found = ["--snakefile", str(snakefile), "--workflow-profile", str(profile)]
     words = ["snakemake", *found, *(["--cores", str(cores)] if cores is not None else [])]
-    words += ["--no-hooks", "--quiet", "rules", "host"]
+    words += ["--quiet", "rules", "host"]
     words += ["progress", "reason"] if dry_run else []  # ``planned`` prints them by scene
     words += ["--dry-run"] * dry_run + ["--unlock"] * unlock + ["--configfile", str(path)]
     return [*words, "--", *(targets or [DEFAULT])]
@@ -141,7 +141,7 @@ def build(path, targets, cores=None, dry_run=False, unlock=False):
         raise InputError(*(s if str(path) in s else f"{path}: {s}" for s in sentences)) from None
     check_results(configuration.results, ".")
     check_targets(path, targets, configuration)
-    # The Snakefile prints the verdict only if it had something to do; here it is always printed.
+    # With --quiet the Snakefile prints no last lines; they are printed below in every case.
     words = command(path, targets, snakefile(), cores, dry_run, unlock)
     print(*places(path, configuration.results), shlex.join(words), sep="\n", flush=True)
     # Snakemake runs in this process. Its profile reads sys.argv, and it cleans up after Ctrl-C.
