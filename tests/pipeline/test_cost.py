@@ -3,10 +3,12 @@
 Without these tests a job could be killed at its limit, or blocks be counted twice or never.
 """
 
+from dataclasses import replace
 from itertools import pairwise
 
+import numpy as np
 import pytest
-from factory import empty
+from factory import Laws, empty, write
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -122,18 +124,40 @@ def test_the_bound_on_the_events_of_an_accuracy_is_not_below_the_plan(radius):
         events = components["all"].planned * components["all"].block_events
         assert job_cost._events(request, radius) * 1.07 + components["all"].block_events >= events
     assert job_cost._events(scene(discs=3, radii=[0.1]), 0.1) == float("inf")
+    for discs in (2, 3) if radius < 0.25 else ():
+        histogram = {"hop_histogram": {"radii": [radius], "intervals": 1e5}}
+        request = scene(radii=[radius], discs=discs, watch=histogram)
+        run = job_cost.run_at(request, "intervals", radius).components["all"]
+        work = run.planned * run.block_work
+        assert work <= job_cost._most(request, "intervals", radius) < request.shard_events
 
 
-def test_a_dry_run_says_which_accuracies_are_not_reached(blocks, monkeypatch):
+def test_a_dry_run_says_which_accuracies_are_not_reached(blocks, monkeypatch, tmp_path):
+    """Those of points that are built are measured, so no pilot runs."""
+    monkeypatch.chdir(tmp_path)
     short = scene(accuracy=1e-5, event_budget=2e9, radii=[0.2, 0.3])
-    others = [scene(accuracy=1e-2), scene(event_budget=1e12)]
-    lines = job_cost.shortfalls([short, *others])
+    others = scene(name="b", accuracy=1e-2), scene(name="c", event_budget=1e12)
+    configuration = replace(load({"scenes": [BLOCK]}), scenes=(short, *others))
+    lines = job_cost.shortfalls(configuration)
     assert [line.partition(":")[0] for line in lines] == ["a, radius 0.2", "a, radius 0.3"]
     assert all("1e-5 asked for; the budget of 2e9 events ends it at" in line for line in lines)
     assert "(horizontal_hop_time); a budget of" in lines[0]
     monkeypatch.setattr(job_cost, "SENTENCES", 1)
-    lines = job_cost.shortfalls([short, *others])
-    assert lines[1:] == ["1 more radii may stop early: see the target forecast"]
+    more = "1 more radii may stop early: see the target forecast"
+    assert job_cost.shortfalls(configuration) == [lines[0], more]
+    for radius, error in ((0.2, 1e-5), (0.3, 1e-2)):
+        point = Laws(short.box.scene(radius)).dynamics(np.random.default_rng(1), relative=1e-3)
+        path = tmp_path / f"results/a/points/dynamics/{radius}.json"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        point = replace(point, target=dict.fromkeys(point.target, error))
+        write(point, path, short.arguments("dynamics"))
+    changed = scene(accuracy=2e-5, event_budget=2e9, radii=[0.2])
+    (line,) = job_cost.shortfalls(replace(configuration, scenes=(changed,)))
+    assert "2e-5 asked for; the budget of 2e9 events ends it" in line
+    monkeypatch.setattr(job_cost, "run_at", None)
+    (line,) = job_cost.shortfalls(replace(configuration, scenes=(short,)))
+    said = "a, radius 0.2: 1e-5 asked for; the budget of 2e9 events ended it at"
+    assert line.startswith(said)
 
 
 def test_a_forecast_has_a_row_for_each_job_and_their_sum(blocks):

@@ -5,10 +5,12 @@ Without these tests an edit could leave what depends on it, or rerun what does n
 
 import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
-from checkout import REPOSITORY
+from checkout import REPOSITORY, first
 from test_layout import FILES, imported_modules, imports_of
 
 from twodiscs_paper.catalogue import STUDIES
@@ -31,9 +33,17 @@ def test_after_a_full_build_and_if_files_are_touched_there_is_nothing_to_do(comp
         if ".snakemake" not in folder:
             for name in names:
                 os.utime(os.path.join(folder, name))
-    for place in (complete, built):
-        run = place.snakemake("--dry-run")
-        assert "Nothing to be done" in run.stdout + run.stderr
+    run = built.snakemake("--dry-run")
+    assert "Nothing to be done" in run.stdout + run.stderr
+    words = sys.executable, "-X", "importtime", "-m", "snakemake", "--dry-run"
+    environment = os.environ | {"PYTHONPATH": first(str(complete.path / "src"))}
+    run = subprocess.run(
+        words, cwd=complete.path, env=environment, capture_output=True, text=True, check=True
+    )
+    assert "Nothing to be done" in run.stdout + run.stderr
+    imported = {line.rpartition(" ")[2] for line in run.stderr.splitlines()}
+    assert "twodiscs.theory.exact" in imported
+    assert not {"numba", "scipy.special", "matplotlib", "mpmath"} & imported
 
 
 def test_one_more_radius_runs_one_job_of_each_kind(built):

@@ -58,7 +58,7 @@ if workflow.is_main_process and (days := job_cost.days(CONFIGURATION.scenes)) > 
     )
 
 if any(re.fullmatch("--dry-?run|-[a-z]*n[a-z]*", word) for word in sys.argv):
-    for sentence in job_cost.shortfalls(CONFIGURATION.scenes):
+    for sentence in job_cost.shortfalls(CONFIGURATION):
         logger.warning(sentence)
 
 # The folder of the Python packages.

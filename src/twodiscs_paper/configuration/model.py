@@ -150,9 +150,7 @@ Name = text(
 class Block(BaseModel):
     """A block of keys; others are mistakes."""
 
-    model_config = ConfigDict(
-        extra="forbid", strict=True, regex_engine="python-re", use_attribute_docstrings=True
-    )
+    model_config = ConfigDict(extra="forbid", strict=True, regex_engine="python-re")
 
 
 def _effects(of_box):

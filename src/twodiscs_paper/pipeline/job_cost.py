@@ -13,10 +13,11 @@ from pathlib import Path
 
 from twodiscs.analysis.tables import CostTable, MeanTimesTable, shortfall
 from twodiscs.dynamics.stages import STAGES
+from twodiscs.model.checks import InputError
 from twodiscs.model.formats import format_number, format_seconds
 from twodiscs.theory import exact
 from twodiscs_paper.catalogue import STUDIES
-from twodiscs_paper.pipeline.points import shard_ranges
+from twodiscs_paper.pipeline.points import read_point, read_seconds, shard_ranges
 
 #: Events and samples per second of a core, and the largest factor by which effects slow it down.
 EVENTS_PER_SECOND, SAMPLES_PER_SECOND, SLOWER = 1e8, 1e8, 5.0
@@ -65,19 +66,20 @@ def _seconds(scene, stage, work):
 def _most(scene, stage, radius=None):
     """Return the most work that one radius may take, by its budgets or for its accuracy.
 
-    The work for the accuracy is an upper bound from exact rates, if a ``radius`` is given.
+    The work for the accuracy, or for the intervals of a histogram, is an upper bound from exact
+    rates, if a ``radius`` is given.
     """
     discs = scene.box.discs
     sample, event, interval = 1.0, DEAREST, 1.0
     if "discs" in scene.box.calls_for:
         sample, event = DRAW * discs, max(DEAREST, discs**2 / 2)
         interval = event
-    budget = scene.event_budget or DAY * EVENTS_PER_SECOND
-    return {
-        "monte_carlo": sample * scene.monte_carlo["samples"],
-        "dynamics": event * min(budget, math.inf if radius is None else _events(scene, radius)),
-        "intervals": interval * scene.histogram["event_budget"],
+    each, most, needed = {
+        "monte_carlo": (sample, scene.monte_carlo["samples"], None),
+        "dynamics": (event, scene.event_budget or DAY * EVENTS_PER_SECOND, _events),
+        "intervals": (interval, scene.histogram["event_budget"], _interval_events),
     }[stage]
+    return each * (min(most, needed(scene, radius)) if radius and needed else most)
 
 
 def _events(scene, radius):
@@ -91,6 +93,16 @@ def _events(scene, radius):
             rate = exact.rate(one, event) * one.multiplicity(event)
             most = max(most, (2 * every / rate + 256 / 6) / error**2)
     return most
+
+
+def _interval_events(scene, radius):
+    """Return a bound on the events of the intervals of a histogram, inf if none is known."""
+    one = scene.box.scene(radius)
+    if one.discs > 3 or exact.event_rate(one) is None:
+        return math.inf
+    # Blocks of 2^16 are full, and a window of three discs has up to twice as many intervals.
+    most = 2 * (scene.histogram["intervals"] + 2**16)
+    return most * exact.events_per_interval(one, scene.histogram["event"])
 
 
 def minutes(scene, stage):
@@ -142,7 +154,8 @@ def shards(scene, stage, radius):
     A point without shards is one job. Shards depend only on the exact rates, so they are known
     before any job runs. A smaller error adds shards to the same ones.
     """
-    if _most(scene, stage, radius) <= scene.shard_events:
+    # The bound by budgets is quick, the bound by rates is not.
+    if any(_most(scene, stage, by) <= scene.shard_events for by in (None, radius)):
         return []
     run = run_at(scene, stage, radius)
     if _work(run) <= scene.shard_events:
@@ -180,25 +193,44 @@ def forecast(scene, stage, radius):
 
 def _is_short(scene, radius):
     """Return whether the budget of dynamics at a ``radius`` may end it before its accuracy."""
-    if scene.event_budget and _events(scene, radius) <= scene.event_budget:
-        return False
     runs = run_at(scene, "dynamics", radius).components.values()
     return any(one.budget <= 1.1 * one.planned * one.block_events for one in runs)
 
 
-def shortfalls(scenes):
-    """Return sentences on the accuracies that budgets keep ``scenes`` from, from pilots."""
-    short = [
-        (scene, radius)
-        for scene in scenes
-        for radius in scene.keys["dynamics"].values()
-        if _is_short(scene, radius)
-    ]
-    found = [
-        (f"{scene.name}, radius {radius!r}", *forecast(scene, "dynamics", radius))
-        for scene, radius in short[:SENTENCES]
-    ]
-    lines = [f"{where}: {text}" for where, one, run in found if (text := one.shortfall(run))]
+def _measured_shortfall(scene, radius, path):
+    """Return a sentence on the accuracy that the point at ``path`` did not reach, "" if it did.
+
+    The result is None if there is no point of the same settings.
+    """
+    settings = scene.arguments("dynamics")
+    try:
+        point = read_point(path, STAGES["dynamics"], scene.box.scene(radius), settings)
+    except (InputError, OSError):
+        return None
+    rows = MeanTimesTable.rows([point])
+    return shortfall(rows, scene.event_budget, point.work, read_seconds(path)) or ""
+
+
+def shortfalls(configuration):
+    """Return sentences on the accuracies that budgets keep the scenes from.
+
+    They are about the points that are built, and from pilots about the others. Only pilots import
+    kernels.
+    """
+    short, lines = [], []
+    for scene in configuration.scenes:
+        paths = configuration.points(scene.name, "mean_times")["dynamics"]
+        for radius, path in zip(scene.keys["dynamics"].values(), paths, strict=True):
+            if not scene.event_budget or _events(scene, radius) > scene.event_budget:
+                text = _measured_shortfall(scene, radius, path)
+                if text or (text is None and _is_short(scene, radius)):
+                    short.append((scene, radius, text))
+    for scene, radius, text in short[:SENTENCES]:
+        if text is None:
+            one, run = forecast(scene, "dynamics", radius)
+            text = one.shortfall(run)
+        if text:
+            lines.append(f"{scene.name}, radius {radius!r}: {text}")
     if len(short) > SENTENCES:
         lines.append(f"{len(short) - SENTENCES} more radii may stop early: see the target forecast")
     return lines
