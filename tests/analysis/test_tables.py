@@ -167,8 +167,16 @@ SLOW = ("numba", "pandas", "matplotlib")
     ("code", "absent"),
     [
         ("import twodiscs as t; t.exact(t.Scene(1.5, 1, 0.2))", ("scipy.special", "mpmath", *SLOW)),
-        ("import twodiscs.analysis.tables", ("scipy.special", *SLOW)),
+        (
+            "import tempfile, twodiscs as t; from twodiscs.analysis.tables import GridTable as T; "
+            "p = tempfile.mkdtemp() + '/x.csv'; T.write(p, T.rows(t.Box(2, 1), [0.1])); T.read(p)",
+            ("scipy.special", *SLOW),
+        ),
         ("import twodiscs_paper.catalogue", ("scipy.special", "mpmath", *SLOW)),
+        (
+            "import twodiscs.dynamics.runs, twodiscs_paper.pipeline.points",
+            ("scipy.special", "mpmath", "pydantic", *SLOW[1:]),
+        ),
     ],
 )
 def test_imports_stay_light(code, absent):

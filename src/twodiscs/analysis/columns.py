@@ -49,7 +49,10 @@ TEST = TEXT(
 ERGODIC_COMPONENTS = COUNT("disjoint parts of configuration space")
 
 #: The types of pandas that have an empty cell.
-PANDAS = {float: "float64", bool: "boolean", str: "string"}
+PANDAS = {float: "float64", int: "Int64", bool: "boolean", str: "string"}
+
+#: The truth values of a file.
+TRUTHS = {"true": True, "false": False}
 
 #: The values that a cell of each type takes.
 TAKEN = {float: Real, int: Integral, bool: bool, str: str}
@@ -85,16 +88,16 @@ class Table:
         Raises ``ValueError`` for an unknown column, a value of another type, and NaN, before
         anything is written.
         """
-        import pandas as pd  # which takes long to import, and the Snakefile reads this module
-
         rows = list(rows)
         columns = cls.present_columns(rows[0] if rows else ())
         for row in rows:
             if odd := sorted(row.keys() - columns.keys()):
                 names = ", ".join(odd)
                 raise ValueError(f"rows must have the columns of {cls.name()}.csv, but see {names}")
-        cells = {n: [_cell(n, column, row.get(n)) for row in rows] for n, column in columns.items()}
-        pd.DataFrame(cells, dtype=object).to_csv(path, index=False, lineterminator="\n")
+        cells = ([_cell(n, column, row.get(n)) for n, column in columns.items()] for row in rows)
+        lines = [[*columns], *cells]
+        with open(path, "w", encoding="utf-8", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows(lines)
 
     @classmethod
     def write_and_log(cls, path, rows):
@@ -106,39 +109,50 @@ class Table:
 
     @classmethod
     def frame(cls, path):
-        """Return the CSV file at ``path`` as a ``DataFrame``.
+        """Return the CSV file at ``path`` as a ``DataFrame``, see ``read``."""
+        import pandas as pd  # which takes long to import, and few jobs need it
+
+        columns, found = cls._columns(path), {}
+        for name, (column, values) in columns.items():
+            # N! parts of configuration space may be more than 64 bits hold.
+            wide = column.type is int and any(n and n.bit_length() > 63 for n in values)
+            found[name] = pd.Series(values, dtype=object if wide else PANDAS[column.type])
+        return pd.DataFrame(found)
+
+    @classmethod
+    def read(cls, path):
+        """Return the rows of the CSV file at ``path`` as a list of dicts.
 
         The file may have columns that the table does not know, which are left out. Raises
         ``InputError`` if it lacks a column, a cell is not of its type, or the job that wrote it
         logged another digest.
         """
-        import pandas as pd
+        columns = cls._columns(path)
+        rows = zip(*(values for _, values in columns.values()), strict=True)
+        return [dict(zip(columns, row, strict=True)) for row in rows]
 
+    @classmethod
+    def _columns(cls, path):
+        """Return {name: (``Column``, values)} of the CSV file at ``path``."""
         from twodiscs.points.base import require_logged
 
         require_logged(path)
         try:
-            # pandas cuts a line that is too long, and fills up one that is too short.
             with open(path, encoding="utf-8-sig", newline="") as file:
-                lines = [line for line in csv.reader(file) if line]
-            header = lines[0] if lines else []
+                header, *lines = [line for line in csv.reader(file) if line] or [[]]
             for line in lines:
                 if len(line) != len(header):
                     raise ValueError(f"a line has {len(line)} cells for {len(header)} columns")
-            texts = pd.DataFrame(lines[1:], columns=header, dtype=str)
-            columns = cls.present_columns(texts)
-            return pd.DataFrame({n: _values(texts[n], column) for n, column in columns.items()})
+            texts = {name: [line[place] for line in lines] for place, name in enumerate(header)}
+            return {
+                name: (column, [_value(name, column, text) for text in texts[name]])
+                for name, column in cls.present_columns(header).items()
+            }
         except KeyError as missing:
             why = f"has no column {missing}"
         except ValueError as error:
             why = " ".join(str(error).split())
         raise InputError(f"{path} must be a table {cls.name()}, but {why}")
-
-    @classmethod
-    def read(cls, path):
-        """Return the rows of the CSV file at ``path``, as ``frame`` does, as a list of dicts."""
-        frame = cls.frame(path)
-        return frame.astype(object).where(frame.notna(), None).to_dict("records")
 
 
 def _cell(name, column, value):
@@ -151,21 +165,11 @@ def _cell(name, column, value):
     return str(value).lower() if column.type is bool else column.type(value)
 
 
-def _values(texts, column):
-    """Return the cells of a column as its type; raise ``ValueError`` if a cell is of another."""
-    import pandas as pd
-
-    empty = texts == ""
-    if column.type is int:
-        numbers = [int(text) if text else None for text in texts]
-        # N! parts of configuration space may be more than 64 bits hold.
-        wide = any(number is not None and number.bit_length() > 63 for number in numbers)
-        return pd.Series(numbers, dtype=object if wide else "Int64")
-    values = texts.mask(empty)
-    if column.type is bool:
-        values = values.map({"true": True, "false": False})
-    values = values.astype(PANDAS[column.type])
-    if (values.isna() != empty).any():
-        wrong = texts[values.isna() != empty].iloc[0]
-        raise ValueError(f"{texts.name} has {wrong!r}, which is no {column.type.__name__}")
-    return values
+def _value(name, column, text):
+    """Return the value of the ``text`` of a cell; raise ``ValueError`` if it is of another type."""
+    if not text:
+        return None
+    value = TRUTHS.get(text) if column.type is bool else column.type(text)
+    if value is None or value != value:
+        raise ValueError(f"{name} has {text!r}, which is no {column.type.__name__}")
+    return value
