@@ -3,6 +3,7 @@
 Without these tests a script could join wrong shards, or take an edited file for a result.
 """
 
+import gc
 import json
 import re
 import runpy
@@ -20,6 +21,8 @@ from twodiscs.model.checks import InputError
 from twodiscs.points.base import digest, read_json, write_json
 from twodiscs_paper.pipeline import job
 from twodiscs_paper.pipeline.points import read_point
+
+gc.enable()  # a job begins without
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "workflow" / "scripts"
 PARAMETERS = BOX.parameters()

@@ -2,11 +2,12 @@
 
 import time
 
+from twodiscs_paper.pipeline.job import start  # isort: split
+
 import twodiscs.sampling.jit  # noqa: F401 - numba is imported before start, which saves 0.12 s
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.scene import Scene
 from twodiscs.points.base import file_content, write_json
-from twodiscs_paper.pipeline.job import start
 from twodiscs_paper.pipeline.points import check_coverage, read_seconds, read_shards
 
 start(snakemake.log[0])

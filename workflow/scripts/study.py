@@ -2,9 +2,10 @@
 
 import inspect
 
+from twodiscs_paper.pipeline.job import start  # isort: split
+
 from twodiscs.model.scene import Box
 from twodiscs_paper.catalogue import STUDY_TABLES, read_table
-from twodiscs_paper.pipeline.job import start
 
 start(snakemake.log[0])
 is_part = snakemake.wildcards.get("part") is not None

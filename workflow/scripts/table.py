@@ -3,10 +3,11 @@
 import inspect
 from pathlib import Path
 
+from twodiscs_paper.pipeline.job import start  # isort: split
+
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.scene import Box
-from twodiscs_paper.pipeline.job import start
 from twodiscs_paper.pipeline.points import read_point, read_seconds
 
 start(snakemake.log[0])

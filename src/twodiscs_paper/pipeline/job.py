@@ -13,6 +13,10 @@ PERIOD = 0.5
 # notebook sets it to its own backend, for its child processes too, and jobs may not have that.
 os.environ["MPLBACKEND"] = "agg"
 
+# What a script imports stays, so no collection reads it: a twelfth of the start of a job. Scripts
+# of short jobs import this module first.
+gc.disable()
+
 
 def start(log):
     """Write what this process prints to the file ``log``, and end it with Snakemake.
@@ -25,7 +29,8 @@ def start(log):
     os.dup2(file, 2)
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     threading.Thread(target=_end_after, args=(os.getppid(),), daemon=True).start()
-    gc.freeze()  # what is imported stays, so no collection reads it
+    gc.freeze()
+    gc.enable()
 
 
 def _end_after(parent):
