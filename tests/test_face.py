@@ -27,6 +27,7 @@ from twodiscs.dynamics.paths import check_start
 from twodiscs.figures import style
 from twodiscs.measure.measurements import Measurement, measurement
 from twodiscs.model.effects import EFFECTS
+from twodiscs.model.formats import texts_with_error
 from twodiscs.model.seeds import job_seed
 from twodiscs.points.monte_carlo_point import InsertionPoint
 from twodiscs.sampling.initial_states import components
@@ -154,6 +155,21 @@ def test_measurements_know_their_errors_and_print_themselves(simulated, sampled)
     assert len({line.index("time", 24) for line in table}) == 1
     assert sampled.frame().loc["volume", "estimate"] == sampled["volume"].value
     assert "length⁴" in str(sampled["volume"])
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "texts"),
+    [
+        (1.33704985, 0.0015016, ("1.3370", "0.0015")), (0.356541, 7.49e-5, ("0.356541", "7.5e-05")),
+        (0.3351, 0.0996, ("0.34", "0.10")), (9.9996, 0.0012, ("9.9996", "0.0012")),
+        (9.9999, 0.012, ("10.000", "0.012")), (1e-4, 0.053, ("0.000", "0.053")),
+        (-0.0018, 0.0037, ("-0.0018", "0.0037")), (1237.0, 120.0, ("1.24e+03", "1.2e+02")),
+        (0.4, 12.0, ("0", "12")), (123.4, 12.0, ("123", "12")), (0.5, None, ("0.5", "")),
+        (1 / 3, 0.0, ("0.33333333", "")), (None, None, ("–", "")), (0.0, 0.1, ("0.00", "0.10")),
+    ],
+)  # fmt: skip
+def test_a_value_has_the_digits_of_its_error(value, error, texts):
+    assert texts_with_error(value, error) == texts
 
 
 def test_a_measurement_without_an_honest_error_has_no_interval_and_no_score():
@@ -305,6 +321,15 @@ def test_what_changes_with_time_is_drawn_with_its_errors(tmp_path):
         half = [np.ptp(bar[:, 1]) / 2 for bar in bars.get_segments()]
         assert np.allclose(half, averages.stderr[:, k], rtol=1e-9)
     assert len(axes.containers) == len(axes.get_legend().texts) == 2
+    moved = td.diffusion(td.Scene(1.5, 1.0, 0.2, periodic="x"), [1, 2], 1)
+    for k, panel in enumerate(td.plot(moved).axes):
+        (drawn,) = panel.containers
+        assert panel.get_ylabel() == moved.names[k].replace("_", " ")
+        assert np.array_equal(drawn.lines[0].get_xydata().T, [[1, 2], moved.mean[:, k]])
+    for small in (moved, averages.more(5000)):
+        for panel in td.plot(small).axes:
+            panel.figure.draw_without_rendering()
+            assert panel.yaxis.get_offset_text().get_text() == ""
     eight = td.observe(SCENE, lambda a, b: np.stack([b["x1"]] * 8, axis=1), [1], replicas=1)
     symbols = [drawn.lines[0] for drawn in td.plot(eight).axes[0].containers]
     looks = {(s.get_color(), s.get_marker(), s.get_markerfacecolor()) for s in symbols}

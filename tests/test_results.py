@@ -23,6 +23,7 @@ import twodiscs as td
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.measure import result as progress_module
 from twodiscs.model.checks import PRESETS
+from twodiscs.model.formats import texts_with_error
 from twodiscs.points.base import file_content, reached, read_json, restore_arrays, write_json
 from twodiscs.sampling import rounds
 from twodiscs_paper.pipeline.points import check_coverage
@@ -31,6 +32,11 @@ SCENE = td.Scene(1.5, 1.0, 0.2)
 NARROW = td.Scene(1.5, 1.0, 0.249)
 THREE = td.Scene(1.5, 1.0, 0.15, discs=3)
 RING = replace(THREE, periodic="x")
+
+
+def seen(start, now):
+    return {"x": now["x1"], "same": start["u1"] * now["u1"]}
+
 
 #: {name: (less, more of it, what says more)}; the hop of ``NARROW`` is counted from strips as well,
 #: and one radius of the scan does not fit.
@@ -49,6 +55,12 @@ MADE = {
     "scan with a budget": (
         lambda **o: td.scan(1.5, 1, [0.2], 1e-3, seed=5, events="any_wall", **{"budget": 1e5} | o),
         "budget", 2e7,
+    ),
+    "observe": (
+        lambda replicas=5e3: td.observe(SCENE, seen, [0, 1], replicas, seed=5), "replicas", 2e4,
+    ),
+    "diffusion": (
+        lambda replicas=1: td.diffusion(RING, [1, 3], replicas, seed=5), "replicas", 2e4,
     ),
 }  # fmt: skip
 
@@ -72,8 +84,16 @@ def test_results_go_on_and_come_back(name, tmp_path, monkeypatch):
     assert (read.kind, read.version) == (name.partition(" ")[0], td.__version__)
     assert read.settings == less.settings
     assert read.settings["seed"] == 5
-    more = less.more(**{setting: value})
-    assert bits(more) == bits(read.more(**{setting: value}, cores=2))
+    more, again = less.more(**{setting: value}), {"cores": 2}
+    if name == "observe":
+        with pytest.raises(td.InputError, match="function must be given again to go on from a fi"):
+            read.more(value)
+        with pytest.raises(td.InputError, match="as many numbers each time, with the same names"):
+            read.more(value, function=lambda start, now: now["x1"])
+        again["function"] = seen
+    assert bits(more) == bits(read.more(**{setting: value}, **again))
+    if setting == "replicas":  # their sums are no integers
+        assert bits(more) == bits(make(value))
     assert bits(more) != bits(less)
     assert more != less
     assert bits(more.more(**{setting: less.settings[setting]})) == bits(less)
@@ -205,8 +225,11 @@ def test_a_file_of_another_content_is_one_sentence_and_no_work(name, tmp_path, m
         except td.InputError as error:
             assert re.match(r"(path|the result) must be .*[^\n]*$", str(error))  # noqa: PT017
         else:
-            assert "sums" not in keys or type(wrong) is int, keys
-            assert {"sums", "settings", "results", "refused"} & {*keys}, (keys, wrong)
+            averages = found.kind in ("observe", "diffusion")
+            assert "sums" not in keys or type(wrong) in (int, float)[: 1 + averages], keys
+            names = ["names"] * averages  # of the user
+            known = {"sums", "settings", "results", "refused", *names}
+            assert known & {*keys}, (keys, wrong)
             bits(found)
 
 
@@ -353,6 +376,31 @@ def test_averages_over_states_have_honest_errors():
     assert again == found
     assert again != td.observe(SCENE, seen, [0, 1, 7.5], 20000, seed=4)
     assert list(found.frame().columns) == [f"{n}_{k}" for n in ("mean", "stderr") for k in range(3)]
+
+
+def test_what_is_observed_has_names():
+    """A dict of functions, and what returns a dict, are the columns of an array; as a tuple is."""
+    parts = {"x": lambda start, now: now["x1"], "u²": lambda start, now: now["u1"] ** 2}
+    columns, listed, packed, made, named = (
+        td.observe(SCENE, form, [0, 1], 1)
+        for form in (
+            lambda *of: np.stack([part(*of) for part in parts.values()], axis=1),
+            lambda *of: [part(*of) for part in parts.values()],
+            lambda *of: tuple(part(*of) for part in parts.values()),
+            lambda *of: {name: part(*of) for name, part in parts.items()},
+            parts,
+        )
+    )
+    for found, names in ((listed, ()), (packed, ()), (made, (*parts,)), (named, (*parts,))):
+        assert np.array_equal(found.mean, columns.mean)
+        assert np.array_equal(found.stderr, columns.stderr)
+        assert found.names == names
+    assert list(named.frame().columns) == ["x", "u²", "x_stderr", "u²_stderr"]
+    assert np.array_equal(named.frame().to_numpy(), np.hstack([columns.mean, columns.stderr]))
+    pairs = zip(columns.mean[0], columns.stderr[0], strict=True)
+    texts = [text for pair in pairs for text in texts_with_error(*pair)]
+    assert str(named).splitlines()[3].split() == ["0", *texts]
+    assert "± error" in named._repr_html_()
 
 
 @pytest.mark.parametrize(

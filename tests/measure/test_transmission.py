@@ -19,6 +19,7 @@ from twodiscs.dynamics.two.hop_clusters import (
     hop_sums,
 )
 from twodiscs.measure import transmission
+from twodiscs.model.formats import texts_with_error
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling import rounds
 from twodiscs_paper.studies.passages.measure import coefficients_at_times, order_correlation
@@ -99,7 +100,10 @@ def test_the_face_has_the_coefficient_and_the_curve():
     assert sum(found.clusters.values()) == 2**14
     left, _ = transmission.odd_clusters_per_passage(found.gap / passage.value)
     assert found.uncorrected == pytest.approx(kappa.value * left)
-    assert f"{found.uncorrected:.6g}" in str(found)
+    for number in (kappa, passage):
+        value, error = texts_with_error(number.value, number.stderr)
+        assert f" {value} ± {error}\n" in f"{found}\n"
+    assert texts_with_error(found.uncorrected, kappa.stderr)[0] in str(found)
     again = td.transmission(scene, "horizontal_hop", hops=2**14, seed=1)
     assert again.coefficient == kappa
     assert td.transmission(scene, "horizontal_hop", hops=2**14, seed=2).coefficient != kappa

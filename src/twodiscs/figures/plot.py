@@ -324,11 +324,11 @@ def animate(trajectory: pd.DataFrame, path: str | PathLike[str]) -> None:
 HEIGHT = 2.5
 
 
-def _panel(scene, more=""):
-    """Return (figure, axes); the heading has the box, the radius, ``more`` and effects."""
-    figure = new_figure(HEIGHT, layout="constrained")
-    axes = figure.subplots()
-    panels.title(axes, "", scene, panels.radius_text(scene.radius) + more)
+def _panels(scene, more="", rows=1):
+    """Return (figure, [axes]); the heading has the box, the radius, ``more`` and effects."""
+    figure = new_figure(HEIGHT * (1 + rows) / 2, layout="constrained")
+    axes = figure.subplots(rows, sharex=True, squeeze=False)[:, 0]
+    panels.title(axes[0], "", scene, panels.radius_text(scene.radius) + more)
     return figure, axes
 
 
@@ -338,26 +338,26 @@ def _points(axes, times, values, errors, look, label=None, full=False):
 
 
 def _draw_observed(result):
-    """Draw the averages of an ``Observed``, numbered as in its frame, with their errors.
+    """Draw the averages of an ``Observed`` with their errors, those of ``diffusion`` in two panels.
 
     Raises ``InputError`` for more averages than there are different symbols, open and full.
     """
-    flat = (values.reshape(result.times.size, -1).T for values in (result.mean, result.stderr))
-    series, most = [*zip(*flat, strict=True)], 2 * len(SERIES)
+    series, most = result.series, 2 * len(SERIES)
     if len(series) > most:
         raise InputError(
             f"result must have at most {most} averages at a time to be drawn, not {len(series)}; "
             "frame() has all of them"
         )
-    figure, axes = _panel(result.scene)
-    for k, (mean, error) in enumerate(series):
+    apart = result.kind == "diffusion"
+    figure, rows = _panels(result.scene, rows=len(series) if apart else 1)
+    for k, (name, mean, error) in enumerate(series):
         full, look = divmod(k, len(SERIES))
-        name = result.names[k].replace("_", " ") if result.names else f"mean {k}"
+        name, axes = name.replace("_", " "), rows[k if apart else 0]
         _points(axes, result.times, mean, error, SERIES[look], name, full)
-    if len(series) > 1:
+        axes.set_ylabel(name if apart or (len(series) == 1 and result.names) else "average")
+    if len(series) > 1 and not apart:
         axes.legend()
-    axes.set(xlabel="time $t$", ylabel="average")
-    axes.ticklabel_format(axis="y", scilimits=(-1, 3))  # short numbers leave space for the label
+    rows[-1].set_xlabel("time $t$")
     return figure
 
 
@@ -369,7 +369,7 @@ def _draw_transmission(result):
     two neighbours.
     """
     scene, hop = result.scene, result.hop
-    figure, axes = _panel(scene, f",  {event_name(hop)}")
+    figure, (axes,) = _panels(scene, f",  {event_name(hop)}")
     times, values, errors = result.frame().reset_index().to_numpy().T
     known = np.isfinite(errors)
     _points(axes, times[known], values[known], errors[known], LOOKS[hop])

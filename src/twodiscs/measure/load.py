@@ -137,16 +137,16 @@ def from_dict(content):
         is_right = len(kinds) == 1 and found[0].kind == "simulate"
         known = {"results": content["results"]}
     else:
-        if content["kind"] == "intervals":
-            from twodiscs.measure.intervals import run_intervals as make
-        elif content["kind"] == "transmission":
-            from twodiscs.measure.transmission import run_transmission as make
-        else:
-            from twodiscs.measure.measurements import MAKERS
+        from twodiscs.measure import intervals, measurements, observe, transmission
 
-            make = MAKERS[content["kind"]]
-        settings, components = content["settings"], Ended(restore_arrays(content["parts"]))
-        found = make(Scene(**content["scene"]), **settings, resume_from=components)
+        makers = measurements.MAKERS | {
+            "intervals": intervals.run_intervals, "transmission": transmission.run_transmission,
+            "observe": observe.run_observe, "diffusion": observe.run_diffusion,
+        }  # fmt: skip
+        kind, settings = content["kind"], content["settings"]
+        numbers = float if kind in ("observe", "diffusion") else int
+        components = Ended(restore_arrays(content["parts"], numbers))
+        found = makers[kind](Scene(**content["scene"]), **settings, resume_from=components)
         # A point of a build has some of the settings, maybe in another order.
         is_right, known = settings.keys() <= found.settings.keys(), {"settings": settings}
     made = found.to_dict() | known | {"twodiscs": content["twodiscs"]}
@@ -166,8 +166,9 @@ def load_result(path: str | PathLike[str]) -> Measurements | Any:
 
     Returns
     -------
-    Measurements, Intervals, Transmission or Scan
-        The result.
+    Measurements, Intervals, Transmission, Observed or Scan
+        The result. One of ``observe`` has its averages, not its function, which no file holds:
+        ``more`` takes it again.
 
     Raises
     ------

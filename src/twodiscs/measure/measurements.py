@@ -34,7 +34,7 @@ from twodiscs.model.checks import (
     check_integer,
     check_length,
 )
-from twodiscs.model.formats import did_you_mean, quote, round_up
+from twodiscs.model.formats import did_you_mean, quote, round_up, texts_with_error
 from twodiscs.model.scene import Scene, check_scene, why_absent
 from twodiscs.points.estimates import Estimate
 from twodiscs.points.monte_carlo_point import WALL_AREAS, wall_weights
@@ -200,13 +200,13 @@ class Measurement(Immutable):
         >>> td.sample(scene, 1e6, seed=1)["volume"].cells()
         ('volume', '0.23605', '0.00021', '0.23611', 'length⁴', '-0.31', '568219', 'sampled')
         """
-        value, error = _with_error(self.value, self.stderr)
+        value, error = texts_with_error(self.value, self.stderr)
         if self.value is None and self.bound is not None:
             value = f"> {self.bound:.4g}"
         if self.exact is None:
             exact = "–" if self.status == "impossible" else "not known"
         else:
-            exact = _with_error(self.exact, self.stderr)[0]
+            exact = texts_with_error(self.exact, self.stderr)[0]
         z = "–" if self.z is None else f"{self.z:+.2f}"
         return self.quantity, value, error, exact, self.unit, z, str(self.count), self.status
 
@@ -224,23 +224,6 @@ def derived(quantity, u, exact, unit, count):
     error = None if math.isnan(u.std_dev) else u.std_dev
     z = (u.nominal_value - exact) / error if error and exact is not None else None
     return Measurement(quantity, u.nominal_value, error, exact, z, count, "derived", unit, source=u)
-
-
-def _with_error(value, error):
-    """Return the texts of a value and its error; both end at the second digit of the error."""
-    if value is None:
-        return "–", ""
-    if not error:
-        return f"{value:.8g}", ""
-    digits = 2
-    if value:
-        digits += math.floor(math.log10(abs(value))) - math.floor(math.log10(error))
-    return _to_digits(value, min(max(digits, 2), 17)), _to_digits(error, 2)
-
-
-def _to_digits(x, n):
-    """Return ``x`` to ``n`` significant digits, zeros at the end among them: 1.3380."""
-    return f"{x:#.{n}g}".rstrip(".")
 
 
 def text_table(measurements):

@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
 from itertools import islice
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import open_block_kicks
 from twodiscs.dynamics.paths import MOST_EVENTS
-from twodiscs.measure.result import Immutable, note_of_number, progress_bar
+from twodiscs.measure.result import Result, note_of_number, progress_bar
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import InputError, check_count, make_list
-from twodiscs.model.formats import format_number, quote
+from twodiscs.model.formats import format_number, quote, texts_with_error
 from twodiscs.model.many_geometry import LARGE
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.model.seeds import job_seed
+from twodiscs.points.base import reached
 from twodiscs.sampling.initial_states import MOST_NUMBERS, components, make_records, states
+from twodiscs.sampling.rounds import Ended
 from twodiscs.sampling.threads import map_in_threads
 
 if TYPE_CHECKING:
@@ -27,11 +29,16 @@ if TYPE_CHECKING:
 
     from twodiscs import Axis
 
+    Function = Callable[[np.ndarray, np.ndarray], Any]
+
 #: Replicas with one random stream. ``LARGE`` numbers of discs have the blocks of ``simulate``.
 BLOCK = 4096
 
 #: The most numbers of the states of a block at several times that are in memory together.
 KEPT = 2**22
+
+#: Values of a function are smaller, so that their squares can be added.
+LARGEST = 1e140
 
 
 @checked_call
@@ -83,14 +90,16 @@ def starts(
         return make_records(scene, states(scene, number, seed, progress=progress))
 
 
-@dataclass(frozen=True, eq=False)
-class Observed(Immutable):
+@dataclass(frozen=True, eq=False, repr=False)
+class Observed(Result):
     """Averages over independent replicas of the invariant measure of one scene.
 
     ``observe`` and ``diffusion`` return one.
 
     Parameters
     ----------
+    kind : str
+        "observe" or "diffusion".
     scene : Scene
         The scene.
     times : array, shape (times,)
@@ -101,35 +110,53 @@ class Observed(Immutable):
     replicas : int
         The number of independent trajectories.
     settings : dict
-        {argument: value} with the replicas, the seed and the name.
+        {argument: value}; of a function its name.
+    components : dict
+        The sums of its run, from which it goes on.
     note : str, optional
         The number of replicas that was asked for, if more were simulated.
     names : tuple of str, optional
-        The names of averages, for ``frame()``.
+        The names of the averages, in the order of ``mean``.
+    function : callable or dict, optional
+        The function that was observed; None for a result from a file, which does not hold it.
 
     Examples
     --------
-    >>> found = td.observe(scene, lambda start, now: now["x1"], [0, 1], 4096, seed=1)
-    >>> found.frame().shape
-    (2, 2)
+    >>> found = td.observe(scene, {"x": lambda start, now: now["x1"]}, [0, 1], 4096, seed=1)
+    >>> found.frame().columns.to_list()
+    ['x', 'x_stderr']
     """
 
+    kind: str
     scene: Scene
     times: np.ndarray
     mean: np.ndarray
     stderr: np.ndarray
     replicas: int
     settings: dict[str, object]
+    components: dict[str, dict]
     note: str | None = None
     names: tuple[str, ...] = ()
+    function: Callable | Mapping[str, Callable] | None = None
 
-    def __eq__(self, other):
-        if type(other) is not type(self):
-            return NotImplemented
-        same = (self.scene, self.settings) == (other.scene, other.settings)
-        return same and self.frame().equals(other.frame())
+    def _again(self, settings, options):
+        if self.kind == "diffusion":
+            return run_diffusion(self.scene, **settings, **options, resume_from=self.components)
+        function = settings.pop("function")
+        function = self.function if function == self.settings["function"] else function
+        return run_observe(self.scene, function, **settings, **options, resume_from=self.components)
 
-    __hash__ = None
+    @property
+    def rows(self) -> list[dict[str, object]]:
+        """The rows of ``frame()``."""
+        return self.frame().reset_index().to_dict("records")
+
+    @property
+    def series(self) -> list[tuple[str, np.ndarray, np.ndarray]]:
+        """(name, averages, errors) of each number over the times; without names it is numbered."""
+        mean, stderr = (values.reshape(len(values), -1).T for values in (self.mean, self.stderr))
+        numbers = [f"mean_{k}" for k in range(len(mean))] if len(mean) > 1 else ["mean"]
+        return [*zip(self.names or numbers, mean, stderr, strict=True)]
 
     def frame(self) -> pd.DataFrame:
         """Return a table of the averages.
@@ -137,8 +164,8 @@ class Observed(Immutable):
         Returns
         -------
         DataFrame
-            One row per time. The columns are mean and stderr, numbered if there are several, or
-            <name> and <name>_stderr for each of ``names``.
+            One row per time. The columns are <name> and <name>_stderr for each of ``names``;
+            without names mean and stderr, numbered if there are several.
 
         Examples
         --------
@@ -148,21 +175,25 @@ class Observed(Immutable):
         """
         import pandas as pd
 
-        mean, stderr = (values.reshape(len(values), -1) for values in (self.mean, self.stderr))
-        names = [*self.names, *(f"{name}_stderr" for name in self.names)]
-        if not names:
-            numbers = [f"_{k}" for k in range(mean.shape[1])] if mean.shape[1] > 1 else [""]
-            names = [f"{name}{number}" for name in ("mean", "stderr") for number in numbers]
-        return pd.DataFrame(np.hstack([mean, stderr]), pd.Index(self.times, name="time"), names)
+        columns = {name: mean for name, mean, _ in self.series}
+        for name, _, stderr in self.series:
+            columns[f"{name}_stderr" if self.names else name.replace("mean", "stderr")] = stderr
+        return pd.DataFrame(columns, pd.Index(self.times, name="time"))
 
-    def __str__(self) -> str:
-        note = f"\n\n{self.note}" if self.note else ""
-        return f"{self.scene}, {self.replicas} replicas\n\n{self.frame().to_string()}{note}"
+    @property
+    def _heading(self) -> str:
+        return f"{self.scene}, {self.replicas} replicas"
 
-    __repr__ = __str__
+    def _texts(self) -> pd.DataFrame:
+        """Return the texts of the printed table, one row for each time."""
+        import pandas as pd
 
-    def _repr_html_(self) -> str:
-        return self.frame().to_html()
+        columns = [("time", [format_number(time, ".12g") for time in self.times])]
+        for name, mean, stderr in self.series:
+            texts = zip(*map(texts_with_error, mean, stderr), strict=True)
+            columns += zip((name, "± error"), texts, strict=True)
+        names, texts = zip(*columns, strict=True)
+        return pd.DataFrame(zip(*texts, strict=True), columns=names)
 
 
 def _times(times):
@@ -179,17 +210,25 @@ def _times(times):
 
 
 def _values(function, start, now):
-    """Return the values of the ``function``, an array with a row for each replica."""
+    """Return (names, values) of the ``function``: an array with a row for each replica.
+
+    A dict has names; its values, and those of a tuple or list of arrays, are columns.
+    """
     # The same start is used for all times. A function that changes it would spoil later times.
     start.flags.writeable = now.flags.writeable = False
     returned = function(start, now)
+    names = tuple(returned) if isinstance(returned, Mapping) else ()
+    columns = [*returned.values()] if names else returned
     try:
-        values = np.ma.asarray(returned)  # a list may hold masked arrays
+        if isinstance(columns, list | tuple) and all(np.shape(c) == start.shape for c in columns):
+            columns = np.ma.stack(columns, axis=1)
+        values = np.ma.asarray(columns)  # a list may hold masked arrays
     except (TypeError, ValueError):  # lists of several lengths
         values = None
     is_real = values is not None and values.dtype.kind in "biuf"
     masked = is_real and np.ma.is_masked(values)
-    if not is_real or masked or values.shape[:1] != start.shape:
+    shape = start.shape + ((len(names),) if names else ())
+    if not is_real or masked or values.shape[: len(shape)] != shape:
         allowed = (
             "function must return a real number, or the same number of them, for each of the "
             f"{start.size} replicas"
@@ -198,7 +237,7 @@ def _values(function, start, now):
             what = "None: is its return missing?"
         elif masked:
             what = "an array with masked values, which have to be filled or left out of the average"
-        elif values is None or not values.shape:
+        elif values is None or not values.shape or names:
             what = quote(returned)
         elif values.dtype.names:
             what = f"an array with the fields {', '.join(values.dtype.names)}: choose one of them"
@@ -210,24 +249,36 @@ def _values(function, start, now):
         else:
             what = f"an array of shape {values.shape} and kind {values.dtype}"
         raise InputError(f"{allowed}, not {what}")
-    return values.data.astype(float)
+    _check_names(names)
+    return names, values.data.astype(float)
+
+
+def _check_names(names):
+    """Raise ``InputError`` unless these are different texts, with those of their errors too."""
+    texts = all(isinstance(name, str) for name in names)
+    if not texts or len({*names, *(f"{name}_stderr" for name in names)}) < 2 * len(names):
+        raise InputError(
+            "names of what function returns must be texts, none of them another one with _stderr, "
+            f"not {quote([*names])}"
+        )
 
 
 def _check_finite(values, times, first):
-    """Raise ``InputError`` for NaN and infinity in ``values``, from the replica ``first`` on."""
-    if not np.isfinite(values).all():
-        replica, time, *_ = np.argwhere(~np.isfinite(values))[0]
-        value = values[replica, time][~np.isfinite(values[replica, time])].flat[0]
-        raise InputError(
-            f"function must return finite numbers, not {value} at the time {times[time]:g} of the "
-            f"replica {first + replica}"
-        )
+    """Raise ``InputError`` for NaN and large ``values``, from the replica ``first`` on."""
+    if not (wrong := ~(np.abs(values) < LARGEST)).any():
+        return
+    replica, time, *_ = np.argwhere(wrong)[0]
+    value = values[replica, time][wrong[replica, time]].flat[0]
+    raise InputError(
+        f"function must return finite numbers, below {format_number(LARGEST, 'g')}, not {value} at "
+        f"the time {times[time]:g} of the replica {first + replica}"
+    )
 
 
 @checked_call
 def observe(
     scene: Scene,
-    function: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    function: Function | Mapping[str, Function],
     times: float | Iterable[float],
     replicas: float = 2**16,
     *,
@@ -242,10 +293,11 @@ def observe(
     ----------
     scene : Scene
         The box, the discs and their effects.
-    function : callable
+    function : callable or dict
         ``function(start, now)`` takes two read-only arrays of states in the form of ``starts``, at
         time 0 and at one of the ``times``. It returns an array with a number, or an array, for each
-        of the states. On periodic axes positions go on beyond the cell.
+        of the states, or several numbers: a tuple of arrays, or a dict {name: array}. A dict {name:
+        function} is the same. On periodic axes positions go on beyond the cell.
     times : float or iterable of float
         Ascending, from 0 on, in time.
     replicas : float, default 2¹⁶
@@ -259,7 +311,7 @@ def observe(
     Observed
         ``mean`` and ``stderr`` at each time, arrays of shape (times, …). The error comes from the
         spread between the replicas, which are independent. All times have the same replicas, so
-        their averages are correlated.
+        their averages are correlated. ``more(replicas=…)`` goes on from it.
 
     Raises
     ------
@@ -272,26 +324,58 @@ def observe(
     >>> bool(abs(found.mean[0] - 1 / 4) < 5 * found.stderr[0])  # ⟨u₁²⟩ of four components
     True
     """
-    return averages(scene, function, times, replicas, seed, name, cores, progress)
+    return run_observe(scene, function, times, replicas, seed, name, cores, progress)
+
+
+def run_observe(
+    scene, function, times, replicas, seed, name, cores=1, progress=None, resume_from=None
+):
+    """Return the ``Observed`` of ``observe``, which goes on from ``resume_from``.
+
+    For a result from a file the ``function`` is its name, a text.
+    """
+    settings = {"times": times, "replicas": replicas, "seed": seed, "name": name}
+    if isinstance(resume_from, Ended):
+        settings["function"] = function
+        return averages("observe", scene, None, settings, cores, progress, resume_from)
+    if function is None and resume_from is not None:
+        raise InputError(
+            "function must be given again to go on from a file, which does not hold it: "
+            "more(replicas, function=…)"
+        )
+    by_name = isinstance(function, Mapping)
+    functions = dict(function) if by_name else {getattr(function, "__name__", "function"): function}
+    if not functions or not all(map(callable, functions.values())):
+        raise InputError(f"function must take two arrays of states, not be {quote(function)}")
+
+    def called(start, now):
+        return {name: one(start, now) for name, one in functions.items()}
+
+    settings["function"] = ", ".join(map(str, functions))
+    taken = called if by_name else function
+    found = averages("observe", scene, taken, settings, cores, progress, resume_from)
+    return replace(found, function=function)
 
 
 def averages(
-    scene, function, times, replicas, seed, name, cores=1, progress=None, names=(),
-    over_times=lambda values, before, steps: values,
-):  # fmt: skip
+    kind, scene, function, settings, cores, progress, resume_from, names=(), over_times=None
+):
     """Return the averages of a user's ``function`` as ``Observed``.
 
-    ``over_times(values, before, steps)`` is applied to the values of the replicas of a block at
-    some of the times, (replicas, times, …), before they are averaged. ``before`` are the values at
-    the time before these, None at first. ``steps`` are the times since the time before each.
-    ``names`` are the names of the averages.
+    ``over_times(values, before, steps)``, if given, is applied to the values of the replicas of a
+    block at some of the times, (replicas, times, …), before they are averaged. ``before`` are the
+    values at the time before these, None at first. ``steps`` are the times since the time before
+    each. ``names`` are then the names of the averages. The components ``resume_from`` are not done
+    again: their sums are the mean and the sum of squared deviations over the first blocks.
     """
-    stream, times = job_seed(check_scene(scene), "observe", seed, name), _times(times)
-    if not callable(function):
-        raise InputError(f"function must take two arrays of states, not be {quote(function)}")
+    stream = job_seed(check_scene(scene), "observe", settings["seed"], settings["name"])
+    times, asked = (
+        _times(settings["times"]),
+        check_count("replicas", settings["replicas"], most=10**9),
+    )
     engine = find_engine(scene)
     each = BLOCK if scene.discs < LARGE else engine.block_replicas(scene)
-    blocks = -(-check_count("replicas", replicas, most=10**9) // each)
+    blocks = -(-asked // each)
     rate = engine.expected_event_rate(scene) + scene.friction
     if times[-1] * rate > MOST_EVENTS:
         raise InputError(
@@ -315,18 +399,37 @@ def averages(
 
     def moments(block, first, pairs, before):
         """Return the last values of a block, and the means and sums of squares at some times."""
-        values = np.stack([_values(function, start, now) for start, now in pairs], axis=1)
+        found = [_values(function, start, now) for start, now in pairs]
+        for own, values in found:
+            if (form := forms.setdefault("of", (own, values.shape[1:]))) != (own, values.shape[1:]):
+                raise InputError(
+                    "function must return as many numbers each time, with the same names: "
+                    f"{quote(form)}, not {quote((own, values.shape[1:]))}"
+                )
+        values = np.stack([values for _, values in found], axis=1)
         _check_finite(values, times[first:], block * each)
-        last, values = values[:, -1], over_times(values, before, steps[first : first + len(pairs)])
+        last = values[:, -1]
+        if over_times:
+            values = over_times(values, before, steps[first : first + len(pairs)])
         return last, values.mean(axis=0), ((values - values.mean(axis=0)) ** 2).sum(axis=0)
 
     # If the states of a block at all times are too many, one block a core goes on piece by piece.
     together = max(1, KEPT // (each * len(components(scene))))
     in_pieces = times.size > together
     abreast = cores if in_pieces else blocks
-    total, mean, square = 0, 0.0, 0.0
+    old = {"names": [], "sums": {}} if resume_from is None else resume_from["all"]
+    sums, done = reached(old["sums"], blocks)
+    mean, square = sums or (0.0, 0.0)
+    total, forms = done * each, {}
+    if done and not over_times:
+        forms["of"] = tuple(old["names"]), mean.shape[1:]
+    if isinstance(resume_from, Ended):
+        _check_names(old["names"])
+        shape = times.shape + (mean.shape[1:] if not old["names"] else (len(old["names"]),))
+        if done < blocks or not shape == mean.shape == square.shape or not np.all(square >= 0):
+            raise InputError("sums must be those of all replicas, times and names")
     with progress_bar(progress, f"observe r = {scene.radius:g}") as progress:
-        for low in range(0, blocks, abreast):
+        for low in range(done, blocks, abreast):
             numbers = range(low, min(low + abreast, blocks))
             series = [*map(snapshots, numbers)] if in_pieces else map(snapshots, numbers)
             parts = {}
@@ -346,10 +449,12 @@ def averages(
                     mean, total = mean + apart * (each / n), n
                     if progress is not None:
                         progress(block + 1, blocks)
+    names = names or forms["of"][0]
     stderr = np.sqrt(square / (total - 1) / total)
-    settings = {"replicas": total, "seed": int(seed), "name": name}
-    note = note_of_number("replicas", int(replicas), total)
-    return Observed(scene, times, mean, stderr, total, settings, note, names)
+    settings |= {"times": times.tolist(), "replicas": asked, "seed": int(settings["seed"])}
+    made = {"names": [*names], "stream": stream, "sums": {(0, blocks): [mean, square]}}
+    note = note_of_number("replicas", asked, total)
+    return Observed(kind, scene, times, mean, stderr, total, settings, {"all": made}, note, names)
 
 
 @checked_call
@@ -389,7 +494,7 @@ def diffusion(
         ``mean`` and ``stderr``, shape (times, 2), have two columns, which ``frame()`` names:
         squared_displacement ⟨Δx²⟩(t), in length², and diffusion, in length²/time. The latter is
         half of the slope since the previous time, or since 0 for the first. The error of a slope
-        includes the correlation of its two ends.
+        includes the correlation of its two ends. ``more(replicas=…)`` goes on from it.
 
     Raises
     ------
@@ -410,6 +515,13 @@ def diffusion(
     >>> bool(0.02 < found.frame()["diffusion"].iloc[-1] < 0.05)
     True
     """
+    return run_diffusion(scene, times, replicas, axis, seed, name, cores, progress)
+
+
+def run_diffusion(
+    scene, times, replicas, axis, seed, name, cores=1, progress=None, resume_from=None
+):
+    """Return the ``Observed`` of ``diffusion``, which goes on from ``resume_from``."""
     periodic = check_scene(scene).periodic
     if not periodic or (axis is not None and not (isinstance(axis, str) and axis in [*periodic])):
         allowed = f"one of {', '.join(periodic)}" if periodic else "periodic in the scene"
@@ -430,5 +542,6 @@ def diffusion(
         slopes = np.diff(values, axis=1, prepend=before[:, None]) / (2 * steps)
         return np.stack([values, slopes], axis=2)
 
-    more = cores, progress, ("squared_displacement", "diffusion"), with_slopes
-    return averages(scene, squared, times, replicas, seed, name, *more)
+    settings = {"times": times, "replicas": replicas, "axis": axis, "seed": seed, "name": name}
+    names, more = ("squared_displacement", "diffusion"), (cores, progress, resume_from)
+    return averages("diffusion", scene, squared, settings, *more, names, with_slopes)

@@ -49,8 +49,12 @@ class Printed(Immutable):
     scene: Scene
     note: str | None = None
 
+    @property
+    def _heading(self) -> str:
+        return str(self.scene)
+
     def __str__(self) -> str:
-        parts = self.scene, self._texts().to_string(index=False), self.note
+        parts = self._heading, self._texts().to_string(index=False), self.note
         return "\n\n".join(str(part) for part in parts if part)
 
     def __repr__(self) -> str:
@@ -58,7 +62,7 @@ class Printed(Immutable):
 
     def _repr_html_(self) -> str:
         note = f"<p>{escape(self.note)}</p>" if self.note else ""
-        return f"<p>{escape(str(self.scene))}</p>{self._texts().to_html(index=False)}{note}"
+        return f"<p>{escape(self._heading)}</p>{self._texts().to_html(index=False)}{note}"
 
 
 class Result(Printed):
@@ -95,18 +99,20 @@ class Result(Printed):
         Parameters
         ----------
         amount : optional
-            The argument that says how much work there is: a smaller error of ``simulate`` and
-            ``scan``, more samples, intervals (``number``) or hops.
+            The argument that says how much work there is: a smaller error, more samples, intervals
+            (``number``), hops or replicas.
         cores : int, default 1
             Cores to work on.
         progress : bool, optional
             Whether to show a progress bar; if left out, only in a terminal or a notebook.
         **larger
-            The same by name, or a larger ``budget`` or ``duration``. A smaller one gives less.
+            The same by name, or a larger ``budget`` or ``duration``. A smaller one gives less. A
+            result of ``observe`` from a file also takes its ``function`` again: the same one, which
+            no file holds.
 
         Returns
         -------
-        Measurements, Intervals, Transmission or Scan
+        Measurements, Intervals, Transmission, Observed or Scan
             The result, which includes the work of this one.
 
         Raises
@@ -177,7 +183,7 @@ def note_of_number(what, asked, done, fewer="within the budget"):
 
 
 #: Settings that can grow when a result goes on; the first one of a kind is its amount.
-MORE = ("error", "samples", "number", "hops", "duration", "budget")
+MORE = ("error", "samples", "number", "hops", "replicas", "duration", "budget", "function")
 
 
 #: Seconds before a bar appears: shorter work needs none.

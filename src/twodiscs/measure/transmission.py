@@ -16,6 +16,7 @@ from twodiscs.measure.result import Result, note_of_number, progress_bar
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import check_choice, check_count, check_integer
 from twodiscs.model.events import AXIS, HOPS
+from twodiscs.model.formats import texts_with_error
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.model.seeds import key, stream_name, stream_seed
 from twodiscs.points.base import reached
@@ -252,27 +253,23 @@ class Transmission(Result):
         """Return the texts of the printed table, one row for each quantity."""
         import pandas as pd
 
-        name = self.hop.replace("_", " ")
-        if self.coefficient is None:
+        name, kappa, passage = self.hop.replace("_", " "), self.coefficient, self.passage_time
+        if kappa is None:
             why = f"too frequent, with a mean time of {self.neighbour_mean:.4g}; .frame() has κ(t)"
             lines = [(f"{name}s", why)]
         else:
+            merged = texts_with_error(self.uncorrected, kappa.stderr)[0]
             lines = [
-                (f"fraction of {name}s that are passages", _text_of(self.coefficient)),
-                (f"if passages within {self.gap:.4g} are merged", f"{self.uncorrected:.6g}"),
+                (f"fraction of {name}s that are passages", str(kappa)),
+                (f"if passages within {self.gap:.4g} are merged", merged),
             ]
-        if self.passage_time is not None:
+        if passage is not None:
+            exact = texts_with_error(self.exact_mean, passage.stderr)[0]
             lines += [
-                ("mean time between hops, exact", f"{self.exact_mean:.6g}"),
-                ("mean time between passages", _text_of(self.passage_time)),
+                ("mean time between hops, exact", exact),
+                ("mean time between passages", str(passage)),
             ]
         return pd.DataFrame(lines, columns=["quantity", "value"])
-
-
-def _text_of(estimate):
-    if estimate.stderr is None:
-        return f"{estimate.value:.6g}, too few events for an error"
-    return f"{estimate.value:.6g} ± {estimate.stderr:.2g}"
 
 
 def component_runs(scene, hop, mean, gap, times, blocks, name, seed):

@@ -39,6 +39,32 @@ def format_number(value, form=""):
     return re.sub(r"e\+?(-?)0*(\d)", r"e\1\2", format(value, form))
 
 
+def texts_with_error(value, error):
+    """Return the texts of a value and its error; both end at the second digit of the error.
+
+    Without an error, its text is empty. The value None is "–".
+    """
+    if value is None:
+        return "–", ""
+    if not error:
+        return f"{value:.8g}", ""
+    error = float(f"{error:.1e}")
+    place = _exponent(error) - 1
+    if not (value := round(float(value), -place)):
+        return f"{0:.{max(-place, 0)}f}", _to_digits(error, 2)
+    return _to_digits(value, min(_exponent(value) - place + 1, 17)), _to_digits(error, 2)
+
+
+def _exponent(x):
+    """Return the power of ten of the first digit of ``x``."""
+    return int(f"{x:e}".partition("e")[2])
+
+
+def _to_digits(x, n):
+    """Return ``x`` to ``n`` significant digits, zeros at the end among them: 1.3380."""
+    return f"{x:#.{n}g}".rstrip(".")
+
+
 def round_up(events):
     """Return the text of the next number of ``events`` with two digits, for a user to type."""
     if events < 1:

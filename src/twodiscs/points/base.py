@@ -136,10 +136,10 @@ def added(sums, more):
     return [_narrow(np.add(a, b, dtype=object)) for a, b in zip(sums, more, strict=True)]
 
 
-def _narrow(values):
-    """Return integers as an array of 64 bits, if they fit."""
+def _narrow(values, kind=np.int64):
+    """Return numbers of a ``kind`` as an array, integers of 64 bits if they fit."""
     try:
-        return np.array(values, np.int64)
+        return np.array(values, kind)
     except OverflowError:
         return np.frompyfunc(operator.index, 1, 1)(np.array(values, object))
 
@@ -164,13 +164,16 @@ def file_content(kind, scene, settings, components):
     return {"twodiscs": twodiscs.__version__} | content
 
 
-def restore_arrays(components):
-    """Return the ``components`` of a run from those of ``file_content``."""
+def restore_arrays(components, kind=np.int64):
+    """Return the ``components`` of a run from those of ``file_content``.
+
+    Sums are of this ``kind`` of numbers.
+    """
     return {
         name: component
         | {
             "sums": {
-                tuple(map(int, blocks.split("-"))): [_narrow(entry) for entry in sums]
+                tuple(map(int, blocks.split("-"))): [_narrow(entry, kind) for entry in sums]
                 for blocks, sums in component["sums"].items()
             }
         }

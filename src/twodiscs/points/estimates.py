@@ -19,6 +19,7 @@ import numpy as np
 
 from twodiscs.model.checks import check_fraction
 from twodiscs.model.events import EVENTS
+from twodiscs.model.formats import texts_with_error
 from twodiscs.theory.plain import RULE
 
 #: The least number of independent events, and of replicas, for an error bar. At 100 the error
@@ -45,6 +46,10 @@ class Estimate:
     value: float
     stderr: float | None
     n: int
+
+    def __str__(self) -> str:
+        value, error = texts_with_error(self.value, self.stderr)
+        return f"{value} ± {error}" if error else f"{value}, too few events for an error"
 
     @property
     def relative_stderr(self) -> float | None:
