@@ -128,7 +128,24 @@ td.scan(1.5, 1, [0.1], gravity=1) → got an unexpected keyword argument 'gravit
 td.exact_table(1.5, 1, [0.1], feild=1) → argument 'feild'; did you mean field?
 Scene(300, 1.3, 0.33, discs=64) → 1e-150 and 1e150, not 300.0 and 1.3
 Scene(300, 1.3, 0.33, discs=64, periodic='x') → 1e-150 and 1e150, not 300.0 and 1.3
-td.scan(1.5, 1, [0.2, 0.2]) → radii must differ, because one radius has the same
+td.scan(1.5, 1, [0.2, 0.2]) → radii must differ, because one scene, … time, not [0.2, 0.2]; to
+td.scan(1.5, 1, 0.2, field=[0, None, 1]) → radii and field must differ, … and [0, None, 1]; to
+td.scan(1.5, 1, 0.2, field=[]) → field must have at least one value, but has none
+td.scan(1.5, 1, 0.2, field=[1, 'x']) → field must be a positive number, or 0, not 'x'
+td.scan(1.5, [1, -1], 0.2) → height must be a positive, finite number, not -1.0
+td.scan(1.5, 1, 0.2, field=[0, 1], name='a') → field must differ, because one scene, or one name
+td.scan(1.5, 1, 0.2, 0.1, measure=td.volume) → measure must be without error, duration, seed
+td.scan(1.5, 1, 0.2, measure='volume') → measure must be a function of a scene, not 'volume'
+td.scan(1.5, 1, 0.2, measure=td.volume) → measure must return a result of its scene, of one function
+td.scan(1.5, 1, [0.1, 0.2], measure=lambda s: td.sample(PAPER, 1)) → of its scene, of one function
+td.sample(PAPER, 1, error=0.1) → samples and error must not both be given: leave out one of them
+td.sample(PAPER, budget=1) → budget must be left out without an error: samples is the number to draw
+td.sample(PAPER, error={'volum': 0.1}) → quantity must be one of volume, …; did you mean volume?
+td.sample(PAPER, error=0.1, budget=0) → budget must be an integer from 1 to 2^63 - 1, not 0
+td.sample(PAPER, 1, method='rejecton') → conditioned, not 'rejecton'; did you mean rejection?
+td.sample(FIELD, 1, method='conditioned') → method must be one of rejection, not 'conditioned'
+td.simulate(PAPER, 1, method='strips') → method must be one of dynamics, not 'strips'
+td.simulate(PAPER, duration=1, method='strips') → method must be one of dynamics, not 'strips'
 td.sample(PAPER, 1).more(budget=1e7) → to go on, give samples=
 td.simulate(PAPER, 0.5, budget=1).more(duration=10) → duration must be left out for a result of …
 td.trajectory(RING, start=ROUND_THE_RING) → must have the discs apart
@@ -210,6 +227,8 @@ exact --mass_ratio=2 → =2; did you mean --mass-ratio?
 exact volume → unrecognized arguments: volume
 simulate --error rough → error must be a number above 0 and at most 1, or one of draft, paper
 simulate --error 2 → error must be a number above 0 and at most 1
+sample --error rough → error must be a number above 0 and at most 1, or one of draft, paper
+sample --method x → method must be one of rejection, conditioned, not 'x'
 simulate --budget 1.5 → budget must be an integer of at least 1, not 1.5
 simulate --events hop → event must be one of vertical_hop
 sample --quantities mass → quantity must be one of volume
@@ -400,7 +419,7 @@ RIGHT = [
     (td.exact_table, {"width": 1.5, "height": 1.0, "radii": [0.2]}),
     (td.scan, {"width": 1.5, "height": 1.0, "radii": [0.2], "error": 0.5, **COUNTED}),
     (td.simulate, {"scene": PAPER, "error": 0.5, **COUNTED, **NAMED}),
-    (td.sample, POINT | NAMED),
+    (td.sample, POINT | NAMED | {"method": "rejection"}),
     (td.intervals, {"scene": PAPER, "hop": "vertical_hop", "number": 1, **NAMED}),
     (td.transmission, {"scene": PAPER, "hop": "vertical_hop", "hops": 1, **NAMED}),
     (td.starts, {"scene": PAPER, "number": 1, **NAMED}),

@@ -70,11 +70,23 @@ def test_every_form_of_exact_numbers_holds_every_digit(shell):
 @pytest.mark.parametrize(
     ("name", "given"),
     [
-        ("simulate", {"error": 0.1, "duration": 5.0, "budget": 10**6, "events": ["any_wall"]}),
-        ("sample", {"samples": 10**6, "quantities": ["volume"], "shell": 0.1}),
+        (
+            "simulate",
+            {
+                "error": 0.1, "duration": 5.0, "budget": 10**6, "events": ["any_wall"],
+                "method": "dynamics",
+            },
+        ),
+        (
+            "sample",
+            {
+                "samples": 10**6, "error": 0.1, "budget": 10**7, "quantities": ["volume"],
+                "shell": 0.1, "method": "rejection",
+            },
+        ),
         ("trajectory", {"duration": 5.0, "start": [0.0, 1.0]}),
     ],
-)
+)  # fmt: skip
 def test_every_option_reaches_the_function(name, given, monkeypatch):
     given |= {"seed": 7, "name": "a"} | ({} if name == "trajectory" else {"cores": 2})
     taken = {}

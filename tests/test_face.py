@@ -83,8 +83,10 @@ def test_every_name_is_there_with_its_types_where_an_editor_looks_for_it():
         for alias in node.names
     }
     assert {*typed} == {*td.__all__}
-    (effects,) = (n for n in tree.body if isinstance(n, ast.ClassDef))
-    assert [part.target.id for part in effects.body[1:]] == [*EFFECTS, "discs"]
+    effects = [node for node in tree.body if isinstance(node, ast.ClassDef)]
+    for one in effects:
+        assert [part.target.id for part in one.body[1:]] == [*EFFECTS, "discs"]
+    assert len(effects) == 2  # of a scene, and of a scan
     for name in td.__all__:
         home = getattr(td, name)
         if callable(home):
@@ -361,10 +363,60 @@ def test_tables_come_back_with_units_and_provenance(simulated, sampled, tmp_path
         td.load(folder)
 
 
+@pytest.mark.parametrize(
+    ("scene", "error", "method"),
+    [
+        (SCENE, {"vertical_hop_area": 2e-3, "volume": 5e-5}, "rejection"),
+        (td.Scene(1.5, 1.0, 0.37), {"volume": 1e-4, "disc_collision_area": 0.01}, "conditioned"),
+        (td.Scene(1.5, 1.0, 0.2, field=0.5), {"volume": 1e-3}, "rejection"),
+        (td.Scene(1.5, 1.0, 0.2, discs=3), 0.02, "insertions"),
+    ],
+    ids=str,
+)  # fmt: skip
+def test_samples_are_drawn_until_their_errors_are_reached(scene, error, method):
+    """Scores at five sigma; the sums are those of as many samples that were asked for."""
+    found = td.sample(scene, error=error, seed=2, method=method)
+    frame = found.frame()
+    assert {*frame["status"]} <= {"reached", "impossible"}
+    reached = frame[frame["status"] == "reached"]
+    assert (reached["stderr"] / reached["estimate"] <= reached["target"]).all()
+    assert np.allclose(reached["relative_stderr"], reached["stderr"] / reached["estimate"])
+    assert all(abs(one.z) < 5 for one in found.values() if one.z is not None)
+    assert {*found} == {*(error if isinstance(error, dict) else td.sample(scene, 1))}
+    each = 64 if method == "conditioned" else 1
+    drawn, same = int(frame["samples"].iloc[0]), {"seed": 2, "method": method}
+    again = td.sample(scene, drawn * each, quantities=[*found], **same)
+    columns = ["estimate", "stderr", "hits", "samples"]
+    pd.testing.assert_frame_equal(again.frame()[columns], frame[columns])
+    with pytest.warns(
+        td.AccuracyWarning, match=r"of 1 samples ended it .*; a budget of .* is enou"
+    ):
+        short = td.sample(scene, error=1e-5, budget=1, quantities="volume", method=method)
+    assert short["volume"].status == "budget"
+
+
+def test_a_method_whose_price_was_printed_can_be_taken():
+    """The prices of a rare hop and of the volume; the default is the first or the fastest one."""
+    near = td.Scene(1.5, 1.0, 0.249)
+    printed = {price.method for price in td.cost(near, 0.1).prices if "hop_time" in price.quantity}
+    assert printed == {"dynamics", "strips"}
+    asked = {"events": "horizontal_hop", "budget": 1e6}
+    starts = {
+        method: td.simulate(near, 1, method=method, **asked).frame()["starts"].iloc[0]
+        for method in (None, *sorted(printed))
+    }
+    assert starts == {None: "strip", "strips": "strip", "dynamics": "invariant"}
+    made = {m: td.sample(near, 1, method=m).frame()["method"].iloc[0] for m in (None, "rejection")}
+    assert made == dict.fromkeys(made, "monte_carlo")
+    assert td.sample(near, 1, method="conditioned").frame()["method"].iloc[0] == "conditioned"
+
+
 NOTES = """
 td.sample(SCENE, 10) → 10 samples asked for, 1048576 done: whole blocks
 td.sample(SCENE, 2**20) →
 td.sample(td.Scene(1.5, 1, 0.38), 1e7) → 10000000 samples asked for, 196608 done: conditioned ones
+td.sample(SCENE, error=0.5) → error 0.5 asked for, 0.01 reached: the first round is 3.4e7 samples
+td.sample(SCENE, error=0.5, budget=10) → budget 10 asked for: the minimum, one block, is 1.1e6 sam
 td.intervals(SCENE, "vertical_hop", 10) → 10 intervals asked for, 65536 done
 td.observe(SCENE, lambda a, b: b["x1"], [1], 10) → 10 replicas asked for, 4096
 td.observe(SCENE, lambda a, b: b["x1"], [1], 8192) →

@@ -56,6 +56,16 @@ MADE = {
         lambda **o: td.scan(1.5, 1, [0.2], 1e-3, seed=5, events="any_wall", **{"budget": 1e5} | o),
         "budget", 2e7,
     ),
+    "scan of effects": (
+        lambda **o: td.scan(1.5, 1, [0.2, 0.9], 0.3, seed=5, events="any_wall", field=[1, 0], **o),
+        "error", 0.002,
+    ),
+    "scan of averages": (
+        lambda: td.scan([1.5, 2], 1, 0.2, measure=lambda s: td.diffusion(s, [1], 1, seed=5),
+                        periodic="x"),
+        "replicas", 2e4,
+    ),
+    "sample to an error": (lambda **o: td.sample(SCENE, error=0.1, seed=5, **o), "error", 1e-3),
     "observe": (
         lambda replicas=5e3: td.observe(SCENE, seen, [0, 1], replicas, seed=5), "replicas", 2e4,
     ),
@@ -92,7 +102,7 @@ def test_results_go_on_and_come_back(name, tmp_path, monkeypatch):
             read.more(value, function=lambda start, now: now["x1"])
         again["function"] = seen
     assert bits(more) == bits(read.more(**{setting: value}, **again))
-    if setting == "replicas":  # their sums are no integers
+    if name in ("observe", "diffusion"):  # their sums are no integers
         assert bits(more) == bits(make(value))
     assert bits(more) != bits(less)
     assert more != less
@@ -225,7 +235,7 @@ def test_a_file_of_another_content_is_one_sentence_and_no_work(name, tmp_path, m
         except td.InputError as error:
             assert re.match(r"(path|the result) must be .*[^\n]*$", str(error))  # noqa: PT017
         else:
-            averages = found.kind in ("observe", "diffusion")
+            averages = name in ("observe", "diffusion", "scan of averages")
             assert "sums" not in keys or type(wrong) in (int, float)[: 1 + averages], keys
             names = ["names"] * averages  # of the user
             known = {"sums", "settings", "results", "refused", *names}
@@ -274,6 +284,27 @@ def test_a_scan_is_a_sequence_a_table_and_a_figure(tmp_path):
     assert scan.frame().loc[(0.1, "any_wall_time"), "estimate"] == scan[0]["any_wall_time"].value
     td.plot(scan, tmp_path / "scan.png")
     assert (tmp_path / "scan.png").stat().st_size > 5000
+
+
+def test_a_scan_is_over_any_number_of_a_scene():
+    """All combinations, each with its own random numbers; what does not fit has a row."""
+    asked = {"error": 0.3, "events": "any_wall", "budget": 1}
+    scan = td.scan([1.5, 2.0], 1.0, [0.2, 0.7], mass_ratio=(m for m in (2, 1)), **asked)
+    assert (scan.parameters, scan.radii) == (("radius", "width", "mass_ratio"), [0.2] * 4)
+    frame = scan.frame()
+    assert frame.index.names == ["radius", "width", "mass_ratio", "quantity"]
+    for width in (1.5, 2.0):
+        for mass in (1.0, 2.0):
+            alone = td.simulate(td.Scene(width, 1.0, 0.2, mass_ratio=mass), **asked)
+            row = frame.loc[(0.2, width, mass, "any_wall_time")]
+            assert (row["estimate"], row["exact"]) == (
+                alone["any_wall_time"].value, alone["any_wall_time"].exact,
+            )  # fmt: skip
+            assert frame.loc[(0.7, width, mass, ""), "status"].startswith("radius 0.7 does not fit")
+    assert frame["estimate"].nunique() == 4
+    times = td.scan(1.5, 1, 0.2, measure=lambda s: td.transmission(s, "vertical_hop", 1), discs=[2])
+    assert times.frame().index.names == ["radius", "discs", "time"]
+    assert times[0].frame().equals(times.frame().loc[(0.2, 2)])
 
 
 def test_a_window_opens_at_a_plain_prompt_alone(monkeypatch):

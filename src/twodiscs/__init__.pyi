@@ -47,6 +47,20 @@ class Effects(typing.TypedDict, total=False):
     friction: float
     discs: int
 
+Some = float | collections.abc.Iterable[float]
+
+class Scanned(typing.TypedDict, total=False):
+    """The same for ``scan``, which takes lists of numbers."""
+
+    depth: Some | None
+    radius_ratio: Some
+    mass_ratio: Some
+    periodic: str | collections.abc.Sequence[Axis]
+    field: Some
+    moment_of_inertia: Some | None
+    friction: Some
+    discs: int | collections.abc.Iterable[int]
+
 # Names that an editor completes; python docs/make/pages.py renews them.
 Event = typing.Literal[
     "vertical_hop", "horizontal_hop", "disc_collision", "right_wall", "top_wall", "any_wall",

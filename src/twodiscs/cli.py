@@ -166,6 +166,7 @@ SHARED = {
     "--seed": {"type": value, "default": 1, "help": "of the random numbers (1)"},
     "--name": {"help": "of a scene in a configuration, for its numbers"},
     "--cores": {"type": value, "default": 1, "help": "to work on (1)"},
+    "--method": {"help": "as twodiscs cost names it (the fastest)"},
     "--shell": {"type": value, "default": 0.02, "help": "thickness, a fraction (0.02)"},
 }
 
@@ -226,14 +227,17 @@ def _parser():
     add("--budget", type=value, help="events at most (those of a day)")
     text = f"of {', '.join(EVENTS)} (all)"
     add("--events", nargs="+", metavar="EVENT", help=text, completer=ChoicesCompleter(EVENTS))
-    _add_shared(add, "--seed", "--name", "--cores")
+    _add_shared(add, "--method", "--seed", "--name", "--cores")
     text = "volume and areas by Monte Carlo, beside the exact ones"
     add = of_scene("sample", _sample, text)
-    add("--samples", type=value, default=10**7, help="to draw, rounded up to whole blocks (1e7)")
+    add("--samples", type=value, help="to draw, rounded up to whole blocks (1e7)")
+    text = f"relative, or {', '.join(PRESETS)}, instead of samples"
+    add("--error", type=value, help=text, completer=ChoicesCompleter(PRESETS))
+    add("--budget", type=value, help="samples at most, for an error (those of a day)")
     known = ChoicesCompleter(("volume", *(f"{event}_area" for event in EVENTS)))
     text = "volume, <event>_area"
     add("--quantities", nargs="+", metavar="QUANTITY", help=text, completer=known)
-    _add_shared(add, "--shell", "--seed", "--name", "--cores")
+    _add_shared(add, "--shell", "--method", "--seed", "--name", "--cores")
     text = "the processor time of relative errors, by each method"
     add = of_scene("cost", _cost, text)
     add("--errors", type=value, nargs="+", help="relative (1e-2 1e-3 1e-4 1e-5 1e-6)")
@@ -317,12 +321,13 @@ def _exact(scene, options):
 
 def _simulate(scene, options):
     simplefilter("ignore", twodiscs.AccuracyWarning)  # the note has the same sentence
-    names = "error", "duration", "seed", "budget", "events", "name", "cores"
+    names = "error", "duration", "seed", "budget", "events", "method", "name", "cores"
     _print_measured(twodiscs.simulate(scene, **_arguments(options, names)), options)
 
 
 def _sample(scene, options):
-    names = "samples", "seed", "quantities", "shell", "name", "cores"
+    simplefilter("ignore", twodiscs.AccuracyWarning)  # the note has the same sentence
+    names = "samples", "error", "budget", "quantities", "shell", "method", "seed", "name", "cores"
     _print_measured(twodiscs.sample(scene, **_arguments(options, names)), options)
 
 

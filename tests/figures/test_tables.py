@@ -11,6 +11,7 @@ from factory import empty
 from figure_cases import PAPER, bars, draw, points
 from matplotlib.patches import StepPatch
 
+import twodiscs as td
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.figures import style
 from twodiscs.figures.scene_figures import FIGURES
@@ -272,6 +273,30 @@ def test_symbols_and_error_bars_are_those_of_the_table(name, panel, look, due):
     shown = bars(drawn(name)[panel], *look)
     assert len(shown) == len(due)
     np.testing.assert_allclose(shown, sorted(due), rtol=1e-7)
+
+
+@pytest.mark.parametrize("name", ["tails", "thresholds", "friction", "stability_of_runs"])
+def test_a_loaded_table_is_drawn_with_those_that_lie_beside_it(name):
+    """As the job of the figure draws it: the same lines in every panel."""
+    frame = td.load(EXPECTED)[STUDY_FIGURES[name].tables[0]]
+    panels = td.plot(frame, figure=name).axes
+    for axes, due in zip(panels, drawn(name).values(), strict=True):
+        for line, other in zip(axes.lines, due.lines, strict=True):
+            np.testing.assert_array_equal(line.get_xydata(), other.get_xydata())
+
+
+def test_a_table_without_a_figure_or_alone_is_one_sentence(tmp_path):
+    tables = td.load(EXPECTED)
+    for name, said in (
+        ("errata", "a table with a figure, but 'errata' has none"),
+        ("effects", r"other tables of the figure effects, but .*effects_cost\.csv c"),
+    ):
+        with pytest.raises(td.InputError, match=f"^result must .*{said}"):
+            td.plot(tables[name])
+    (tmp_path / "distributions.csv").write_bytes((EXPECTED / "distributions.csv").read_bytes())
+    alone = td.load(tmp_path)["distributions"]
+    with pytest.raises(td.InputError, match="a build with a scene of two plain discs for the fig"):
+        td.plot(alone, figure="thresholds")
 
 
 def test_every_figure_of_a_study_is_compared():

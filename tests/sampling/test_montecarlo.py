@@ -160,6 +160,6 @@ def test_no_shell_depends_on_which_disc_and_which_axis_is_the_first(scene):
 def test_the_sampler_suits_the_scene():
     scene = Scene(1.5, 1.0, 0.38, mass_ratio=2.0)
     samples = 2 * montecarlo.BLOCK
-    assert montecarlo.plan(scene, samples - 1) == (montecarlo.weighted, samples)
+    assert montecarlo.samplers(scene) == {"rejection": montecarlo.weighted}
     arguments = scene, everything(scene), samples, 0.1, 5
     assert montecarlo.MonteCarloRun(*arguments).run() == sample_point(*arguments)

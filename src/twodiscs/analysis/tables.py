@@ -367,11 +367,12 @@ def _mean_time_row(point, event, count):
     }
 
 
-def shortfall(rows, budget, events=None, seconds=None, ends="ended"):
+def shortfall(rows, budget, events=None, seconds=None, ends="ended", what="events"):
     """Return a sentence on the largest error that was not reached, None if all were.
 
-    ``rows`` are of mean_times.csv, or have its event, target, relative_stderr and status. The run
-    had a number of ``events`` within its ``budget``, None for a day, and took some ``seconds``.
+    ``rows`` are of mean_times.csv, or have its event, target, relative_stderr and status, or those
+    of a quantity. The run had a number of ``events`` (or ``what`` else) within its ``budget``, None
+    for a day, and took some ``seconds``.
     """
     missed = [
         row
@@ -384,15 +385,15 @@ def shortfall(rows, budget, events=None, seconds=None, ends="ended"):
     ]
     if not missed:
         return None
-    excess = {row["event"]: (row["relative_stderr"] or math.inf) / row["target"] for row in missed}
-    worst = max(missed, key=lambda row: excess[row["event"]])
-    limit = f"budget of {format_number(budget, '.3g')} events" if budget else "limit of a day"
-    event, more = worst["event"], excess[worst["event"]] ** 2
+    worst = max(missed, key=lambda row: (row["relative_stderr"] or math.inf) / row["target"])
+    limit = f"budget of {format_number(budget, '.3g')} {what}" if budget else "limit of a day"
+    more = ((worst["relative_stderr"] or math.inf) / worst["target"]) ** 2
     text = f"{format_number(worst['target'], 'g')} asked for; the {limit} {ends} it "
     if not math.isfinite(more):
-        return f"{text}before there are enough events {event} for an error"
+        seen = f"events {worst['event']}" if "event" in worst else f"hits for {worst['quantity']}"
+        return f"{text}before there are enough {seen} for an error"
     reached = format_number(worst["relative_stderr"], ".2g")
-    text = f"{text}at {reached} ({event}_time)"
+    text = f"{text}at {reached} ({row_quantity(worst)})"
     if not events:
         return text
     # Other components may not use their shares of a budget. An error has an error: a fifth more.

@@ -14,7 +14,7 @@ mean interval.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -22,7 +22,7 @@ import numpy as np
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import RETURNS, nearest_power_of_two
 from twodiscs.dynamics.two import strip
-from twodiscs.model.checks import InputError
+from twodiscs.model.checks import InputError, check_choice
 from twodiscs.model.events import EVENTS
 from twodiscs.model.formats import format_number
 from twodiscs.model.scene import Scene, why_absent
@@ -52,28 +52,32 @@ class DynamicsRun(Run):
     and disc events to simulate, None for the work of a day; the minimum is one block of replicas.
     Work goes in rounds (see ``sampling.rounds``).
 
-    Hops that are rare because of a neck are also counted in strips (``strip``). The budget is
-    divided in proportion to the events that each error needs.
+    Hops that are rare because of a neck are also counted in strips (``strip``), unless the
+    ``method`` is "dynamics". The budget is divided in proportion to the events that each error
+    needs.
     """
 
     scene: Scene
     target: dict
     budget: int | None
     seed: int
+    method: str | None = field(default=None, kw_only=True)
 
     @classmethod
     def of(cls, scene, settings):
         """Return the run of ``settings`` of ``simulate``, a ``TimedRun`` for a duration."""
         seed = job_seed(scene, DynamicsPoint.stage, settings["seed"], settings["name"])
-        error, budget = settings["error"], settings["budget"]
+        error, budget, method = settings["error"], settings["budget"], settings.get("method")
         if error is None:  # 1 is the largest error that a run takes
             target = dict.fromkeys(settings["events"], 1.0)
-            return TimedRun(scene, target, budget, seed, settings["duration"])
+            return TimedRun(scene, target, budget, seed, settings["duration"], method=method)
         target = error if isinstance(error, dict) else dict.fromkeys(settings["events"], error)
-        return cls(scene, target, budget, seed)
+        return cls(scene, target, budget, seed, method=method)
 
     def __post_init__(self):
         require_initial_states(self.scene)
+        if self.method is not None:
+            check_choice("method", self.method, ["dynamics", *["strips"] * bool(self._rare)])
 
     @property
     def most_events(self):
@@ -86,7 +90,8 @@ class DynamicsRun(Run):
 
     @cached_property
     def _rare(self):
-        return [hop for hop in strip.rare_hops(self.scene) if hop in self.target]
+        rare = () if self.method == "dynamics" else strip.rare_hops(self.scene)
+        return [hop for hop in rare if hop in self.target]
 
     @property
     def _waited(self):

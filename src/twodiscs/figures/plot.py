@@ -19,6 +19,7 @@ from twodiscs.figures.radius import CURVES, add
 from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.figures.style import BLACK, LOOKS, SERIES, event_name, new_figure
 from twodiscs.measure.intervals import Intervals
+from twodiscs.measure.load import plugin
 from twodiscs.measure.measurements import Measurements
 from twodiscs.measure.observe import Observed
 from twodiscs.measure.scan import Scan
@@ -61,7 +62,7 @@ def plot(
     ----------
     result : object
         A trajectory, a ``Scan``, a result of ``simulate``, ``sample``, ``intervals``,
-        ``transmission``, ``observe`` or ``diffusion``, or a table of a scene from ``load``. A list
+        ``transmission``, ``observe`` or ``diffusion``, or a table from ``load``. A list
         of results of ``simulate``, ``sample`` or ``intervals`` at several radii of one box is drawn
         beside the exact curves. A table of ``exact_table`` gives the exact curves alone, over all
         radii of its box. A scene or box of two plain discs has drawings of its geometry.
@@ -121,11 +122,13 @@ def _draw(result, figure):
     if isinstance(result, Transmission):
         check_choice("figure", figure or "transmission", ["transmission"])
         return _draw_transmission(result)
+    table = getattr(result, "attrs", {}).get("table")
+    if table is not None and table not in SCENE_TABLES:
+        if (draw_study := plugin("draw_study")) is None:
+            raise InputError(f"result must be a table of a scene, not the study {table!r}")
+        return draw_study(result, figure)
     box, rows, fitting, radius = _read(result)
     if not fitting:
-        table = getattr(result, "attrs", {}).get("table")
-        if table is not None and table not in SCENE_TABLES:
-            raise InputError(f"result must be a table of a scene, not the study {table!r}")
         if table is not None and "box" not in result.attrs:
             raise InputError(
                 f"result must be a table beside the configuration.json of its build, but "

@@ -211,22 +211,13 @@ def _prices_of_times(scene, pilots):
                 yield Price(f"{event}_time", method, c, least * pilot.seconds)
 
 
-def _samplers(scene):
-    """Return {method: function that makes a ``Sampler``} of volume and areas."""
-    from twodiscs.sampling import montecarlo
-    from twodiscs.sampling.many.insertions import insertion_sampler
-
-    if scene.discs > 2:
-        return {"insertions": insertion_sampler} if scene.discs <= MOST_WITH_VOLUME else {}
-    if scene.is_plain:
-        return {"rejection": montecarlo.prism_sampler, "conditioned": montecarlo.conditioned}
-    return {"rejection": montecarlo.weighted}
-
-
 def _prices_of_samples(scene, shell):
     """Yield the prices of the volume and of areas by each sampler."""
+    from twodiscs.sampling.montecarlo import samplers
+
     wanted = ["volume", *(f"{event}_area" for event in scene.events if scene.is_possible(event))]
-    for method, make in _samplers(scene).items():
+    makers = samplers(scene) if scene.discs <= MOST_WITH_VOLUME else {}
+    for method, make in makers.items():
         sampler = make(scene, wanted, shell, 0)
         sums, blocks, each = timed(sampler.count, OF_SPEED)
         known = variances(scene, sampler, sums, blocks)

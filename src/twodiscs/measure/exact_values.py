@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from itertools import product
 from typing import TYPE_CHECKING, Any, Unpack
 
 from twodiscs.analysis.tables import TheoryTable
@@ -125,7 +126,7 @@ def exact(scene: Scene) -> Exact:
 
 @checked_call
 def exact_table(
-    width: float, height: float, radii: Iterable[float], **effects: Unpack[Effects]
+    width: float, height: float, radii: float | Iterable[float], **effects: Unpack[Effects]
 ) -> pd.DataFrame:
     """Return the exact numbers of a box over ``radii``, one row per radius.
 
@@ -133,7 +134,7 @@ def exact_table(
     ----------
     width, height : float
         Sides of the box, in length, from 1e-60 to 1e60.
-    radii : iterable of float
+    radii : float or iterable of float
         Radii of disc 1, in length, each of which must fit.
     **effects
         The effects and ``discs`` of ``Scene``.
@@ -161,7 +162,7 @@ def exact_table(
     import pandas as pd
 
     box = Box(width, height, **effects)
-    scenes, refused = fitting_scenes(box, radii)
+    scenes, refused = fitting_scenes([box], radii)
     rows = [
         {
             "radius": scene.radius,
@@ -171,7 +172,7 @@ def exact_table(
         }
         for scene in scenes
     ]
-    rows += [{"radius": radius, "regime": why} for radius, why in refused.items()]
+    rows += [{"radius": of["radius"], "regime": why} for of, why in refused]
     frame = pd.DataFrame(rows).set_index("radius")
     parts = [row.get("ergodic_components") for row in rows]
     if any(part is None or part.bit_length() > 63 for part in parts):
@@ -183,21 +184,26 @@ def exact_table(
     return frame
 
 
-def fitting_scenes(box, radii):
-    """Return the scenes of a ``Box`` at some ``radii``, and {radius: why it does not fit}.
+def as_list(values):
+    """Return some values as a list, or None for a single one, a text or a dict."""
+    single = isinstance(values, str | bytes | Mapping) or not isinstance(values, Iterable)
+    return None if single or getattr(values, "ndim", 1) == 0 else [*values]
+
+
+def fitting_scenes(boxes, radii):
+    """Return the scenes of ``boxes`` at some ``radii``, and [(parameters, why it does not fit)].
 
     Raises ``InputError`` if none of them fits.
     """
-    if isinstance(radii, str | bytes | Mapping) or not isinstance(radii, Iterable):
+    if isinstance(radii, str | bytes | Mapping):
         raise InputError(f"radii must be a list of numbers, not {quote(radii)}")
-    scenes, refused = [], {}
-    for radius in radii:
-        radius = check_length("radius", radius)
+    radii = as_list(radii) or ([] if isinstance(radii, Iterable) else [radii])
+    scenes, refused = [], []
+    for box, radius in product(boxes, [check_length("radius", radius) for radius in radii]):
         try:
             scenes.append(box.scene(radius))
         except InputError as error:
-            refused[radius] = str(error)
+            refused.append((vars(box) | {"radius": radius}, str(error)))
     if not scenes:
-        why = [*refused.values(), "radii must have at least one radius, but has none"]
-        raise InputError(why[0])
+        raise InputError(refused[0][1] if refused else "radii must have one radius, but has none")
     return scenes, refused

@@ -89,12 +89,12 @@ def read(path, table):
         "sha256": digest(path),
         "configuration": configuration,
     }
-    if (box := _box(configuration)) is not None:
+    if (box := read_box(configuration)) is not None:
         frame.attrs["box"] = box.parameters()
     return frame
 
 
-def _box(configuration):
+def read_box(configuration):
     """Return the ``Box`` of the only scene of a configuration; None if there is none."""
     scenes = configuration.get("scenes", []) if isinstance(configuration, Mapping) else []
     try:
@@ -131,10 +131,14 @@ def from_dict(content):
     if content["kind"] == "scan":
         from twodiscs.measure.scan import Scan
 
-        refused = {float(radius): "".join(why) for radius, why in content["refused"]}
-        found = Scan(map(from_dict, content["results"]), refused)
-        kinds = {(one.kind, repr(one.scene.box), repr(one.settings)) for one in found}
-        is_right = len(kinds) == 1 and found[0].kind == "simulate"
+        names = content["parameters"]
+        refused = {tuple(values): "".join(why) for values, why in content["refused"]}
+        found = Scan(map(from_dict, content["results"]), refused, names)
+        rest = {
+            repr({**one.scene.parameters(), **dict.fromkeys(names), "": one.kind}) for one in found
+        }
+        is_right = len(rest) == 1 and {"radius"} <= {*names} <= {*vars(found[0].scene)}
+        is_right = is_right and {*map(len, refused)} <= {len(names)} and found[0].kind != "scan"
         known = {"results": content["results"]}
     else:
         from twodiscs.measure import intervals, measurements, observe, transmission

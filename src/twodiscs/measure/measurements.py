@@ -327,7 +327,8 @@ class Measurements(Result, Mapping[str, Measurement]):
         >>> table.loc["vertical_hop_time", ["estimate", "stderr", "exact"]].round(3).to_list()
         [1.328, 0.008, 1.338]
         """
-        return indexed_frame(rows_by_quantity(self.rows), index="quantity")
+        rows = [{"quantity": row_quantity(row)} | row for row in self.rows]
+        return indexed_frame(rows, index="quantity")
 
 
 def measurement(scene, row, source=None):
@@ -341,11 +342,6 @@ def measurement(scene, row, source=None):
         row["count"] if "count" in row else row["hits"], row["status"], scene.unit(quantity),
         row.get("expectation"), row.get("bound"), source,
     )  # fmt: skip
-
-
-def rows_by_quantity(rows):
-    """Return the ``rows`` with their quantity as a column."""
-    return [{"quantity": row_quantity(row)} | row for row in rows]
 
 
 def indexed_frame(rows, index):
@@ -382,6 +378,7 @@ def simulate(
     duration: float | None = None,
     budget: float | None = None,
     events: Event | Iterable[Event] | Iterable[str] | None = None,
+    method: str | None = None,
     seed: int = 1,
     name: str | None = None,
     cores: int = 1,
@@ -416,6 +413,9 @@ def simulate(
         reached unless it takes about a day.
     events : str or iterable of str, optional
         Events to count, some of ``EVENTS``; if left out, all that exist in the scene.
+    method : str, optional
+        As ``cost`` names it: "strips" for rare hops where it has them, which is the default there,
+        or "dynamics" for all events.
     seed, name, cores, progress : optional
         See ``help(twodiscs)``.
 
@@ -450,34 +450,27 @@ def simulate(
     """
     if error is None and duration is None:
         error = 1e-3
-    return run_simulation(scene, error, duration, seed, budget, events, name, cores, progress)
+    asked = error, duration, seed, budget, events, name, cores, progress
+    return run_simulation(scene, *asked, method=method)
 
 
 def run_simulation(
     scene, error, duration=None, seed=1, budget=None, events=None, name=None, cores=1,
-    progress=None, resume_from=None,
+    progress=None, resume_from=None, method=None,
 ):  # fmt: skip
     """Return the ``Measurements`` of ``simulate``, which goes on from ``resume_from``."""
     possible, timed = check_scene(scene).events, duration is not None
     if timed and error is not None:
         raise InputError("error and duration must not both be given: leave out one of them")
-    if isinstance(error, Mapping) and not error:
-        raise InputError(f"error must hold some of {', '.join(possible)}, not {{}}")
-    errors = error if isinstance(error, Mapping) else dict.fromkeys(possible, error)
-    if isinstance(error, Mapping) and events is None:
-        events = [*error]
-    tracked = _named("events", "event", events, possible, scene)
-    if missing := [event for event in tracked if event not in errors]:
-        raise InputError(f"error must have a value for every event, but has none for {missing[0]}")
-    target = {e: None if timed else check_error("error", errors[e]) for e in tracked}
+    tracked, target = _targets(error, "events", "event", events, possible, scene)
     budget = None if budget is None else check_count("budget", budget)
     seed = check_integer("seed", seed, 0)
-    settings = {"seed": seed, "budget": budget, "events": tracked, "name": name}
+    settings = {"seed": seed, "budget": budget, "events": tracked, "name": name, "method": method}
     if timed:
         duration = check_length("duration", duration)
         settings |= {"error": None, "duration": duration}
     else:
-        settings["error"] = target if errors is error else check_error("error", error)
+        settings["error"] = target if isinstance(error, Mapping) else check_error("error", error)
     from twodiscs.dynamics.runs import DynamicsRun
 
     run = DynamicsRun.of(scene, settings)
@@ -490,37 +483,62 @@ def run_simulation(
             f"{point.replicas} trajectories of {point.duration:g} each"
         )
     else:
-        note = _note_of_error(rows, target, budget, point.events)
-        if missed := shortfall(rows, budget, point.events):
-            warnings.warn(missed, AccuracyWarning, stacklevel=4)
-            note = note or missed
+        note = _note_of_error(
+            rows, rows, budget, point.events, "events", "wall hits and collisions"
+        )
     return Measurements("simulate", scene, rows, settings, point, note)
 
 
-def _note_of_error(rows, target, budget, events):
-    """Return the note of a run whose minimum work is far more than was asked for, else None."""
-    minimum = f"{round_up(events)} wall hits and collisions"
-    if budget and events > 2 * budget:
-        return f"budget {budget:g} asked for: the minimum, one block, is {minimum}"
+def _targets(error, key, what, names, allowed, scene):
+    """Return (the ``names`` that are asked for, {name: relative error, None without one}).
+
+    The ``error`` is one for all or {name: error}; ``key`` is the argument that has the names, and
+    ``what`` each of them is.
+    """
+    if isinstance(error, Mapping) and not error:
+        raise InputError(f"error must hold some of {', '.join(allowed)}, not {{}}")
+    errors = error if isinstance(error, Mapping) else dict.fromkeys(allowed, error)
+    if isinstance(error, Mapping) and names is None:
+        names = [*error]
+    names = _named(key, what, names, allowed, scene)
+    if missing := [name for name in names if name not in errors]:
+        raise InputError(f"error must have a value for every {what}, but has none for {missing[0]}")
+    return names, {n: None if error is None else check_error("error", errors[n]) for n in names}
+
+
+def _note_of_error(rows, short, budget, work, what, named):
+    """Return the note of a run to an error, None if there is nothing to say.
+
+    A warning has the error of ``short`` rows that the ``budget`` kept it from. Otherwise the note
+    says that the minimum work is far more than was asked for. The run did ``work``, a number of
+    ``what``; a note has them ``named`` exactly.
+    """
+    minimum, note = f"{round_up(work)} {named}", None
     possible = [row for row in rows if row["status"] != "impossible"]
-    if possible and all(
-        row["relative_stderr"] and row["relative_stderr"] < target[row["event"]] / 2
-        for row in possible
+    if budget and work > 2 * budget:
+        note = f"budget {budget:g} asked for: the minimum, one block, is {minimum}"
+    elif possible and all(
+        row["relative_stderr"] and row["relative_stderr"] < row["target"] / 2 for row in possible
     ):
         reached = max(row["relative_stderr"] for row in possible)
-        asked = min(target[row["event"]] for row in possible)
+        asked = min(row["target"] for row in possible)
         done = f"error {asked:g} asked for, {reached:.2g} reached"
-        return f"{done}: the first round is {minimum}; a smaller budget shortens it"
-    return None
+        note = f"{done}: the first round is {minimum}; a smaller budget shortens it"
+    if missed := shortfall(short, budget, work, what=what):
+        warnings.warn(missed, AccuracyWarning, stacklevel=5)
+    return note or missed
 
 
 @checked_call
 def sample(
     scene: Scene,
-    samples: float = 10**7,
+    samples: float | None = None,
     *,
+    error: float | str | Mapping[Quantity, float | str] | None = None,
+    budget: float | None = None,
     quantities: Quantity | Iterable[Quantity] | Iterable[str] | None = None,
     shell: float = 0.02,
+    method: str | None = None,
     seed: int = 1,
     name: str | None = None,
     cores: int = 1,
@@ -528,21 +546,32 @@ def sample(
 ) -> Measurements:
     """Measure volume and areas of configuration space by Monte Carlo: {quantity: ``Measurement``}.
 
-    Areas are estimated by shells: z compares with the exact expectation of the shell.
+    Areas are estimated by shells: z compares with the exact expectation of the shell. Samples are
+    of a given number, or as many as an ``error`` needs, in rounds as in ``simulate``.
 
     Parameters
     ----------
     scene : Scene
         The box, the discs and their effects.
-    samples : float, default 1e7
-        Configurations to draw, an integer from 1 on. It is rounded up to whole blocks, of 2²⁰ for
-        two plain discs. If these hardly fit, conditioned samples take their place, each for 64.
-        ``note`` of the result has the number that was drawn.
+    samples : float, optional
+        Configurations to draw, an integer from 1 on; 1e7 if neither ``samples`` nor ``error`` is
+        given. It is rounded up to whole blocks, of 2²⁰ for two plain discs. If these hardly fit,
+        conditioned samples take their place, each for 64. ``note`` of the result has the number
+        that was drawn.
+    error : float, str or dict, optional
+        The relative standard error instead, as in ``simulate``: one for all, or {quantity: error}.
+        The minimum is 32 blocks, or fewer within the ``budget``.
+    budget : float, optional
+        With an ``error``, the most samples, an integer from 1 on. If left out, the error is reached
+        unless it takes about a day.
     quantities : str or iterable of str, optional
         Some of "volume" and "<event>_area"; all if left out.
     shell : float, default 0.02
         The thickness of a shell, between 1e-6 and 1, as a fraction of the radius or, if that is
         smaller, of the distance to the radius at which the surface vanishes.
+    method : str, optional
+        As ``cost`` names it: "rejection" or, for plain discs, "conditioned"; "insertions" for more
+        than two. If left out, the fastest one. Compare methods with different seeds.
     seed, name, cores, progress : optional
         See ``help(twodiscs)``.
 
@@ -550,12 +579,19 @@ def sample(
     -------
     Measurements
         {quantity: ``Measurement``}, for two discs in length⁴ and length³, for balls in length⁶ and
-        length⁵, for N discs in length²ᴺ and length²ᴺ⁻¹; ``more(samples=…)`` goes on from it.
+        length⁵, for N discs in length²ᴺ and length²ᴺ⁻¹; ``more(samples=…)``, or ``more(error=…)``,
+        goes on from it.
 
     Raises
     ------
     InputError
-        For an unknown quantity or a number out of range.
+        For an unknown quantity or method, for a number out of range, for both ``samples`` and
+        ``error``, and for a ``budget`` without an ``error``.
+
+    Warns
+    -----
+    AccuracyWarning
+        If the budget ended it before the error was reached.
 
     Examples
     --------
@@ -563,19 +599,30 @@ def sample(
     >>> abs(volume.value - td.volume(scene)) < 5 * volume.stderr
     True
     """
-    return run_sampling(scene, samples, seed, quantities, shell, name, cores, progress)
+    given = samples, seed, quantities, shell, name, cores, progress
+    return run_sampling(scene, *given, error=error, budget=budget, method=method)
 
 
 def run_sampling(
-    scene, samples, seed, quantities, shell, name, cores=1, progress=None, resume_from=None
-):
+    scene, samples=None, seed=1, quantities=None, shell=0.02, name=None, cores=1, progress=None,
+    resume_from=None, error=None, budget=None, method=None,
+):  # fmt: skip
     """Return the ``Measurements`` of ``sample``, which goes on from ``resume_from``."""
+    if error is not None and samples is not None:
+        raise InputError("samples and error must not both be given: leave out one of them")
+    if error is None and budget is not None:
+        raise InputError("budget must be left out without an error: samples is the number to draw")
     allowed = ("volume", *(f"{event}_area" for event in check_scene(scene).events))
-    quantities = _named("quantities", "quantity", quantities, allowed, scene)
-    samples = check_count("samples", samples)
-    settings = {"samples": samples, "seed": check_integer("seed", seed, 0)}
-    settings |= {"quantities": quantities, "name": name}
-    settings["shell"] = check_fraction("shell", shell, THINNEST)
+    key = "quantities", "quantity"
+    quantities, target = _targets(error, *key, quantities, allowed, scene)
+    settings = {"seed": check_integer("seed", seed, 0), "quantities": quantities, "name": name}
+    settings |= {"shell": check_fraction("shell", shell, THINNEST), "method": method}
+    if error is None:
+        samples = check_count("samples", 10**7 if samples is None else samples)
+        settings["samples"] = samples
+    else:
+        settings["error"] = target if isinstance(error, Mapping) else check_error("error", error)
+        settings["budget"] = None if budget is None else check_count("budget", budget)
     from twodiscs.sampling.initial_states import require_free_fraction
     from twodiscs.sampling.montecarlo import COST_RATIO, MonteCarloRun
 
@@ -586,8 +633,20 @@ def run_sampling(
     rows = VolumeTable.rows([point]) + AreasTable.rows([point])
     # Insertions always have the volume.
     rows = [row for row in rows if row["quantity"] in quantities]
-    fewer = f"conditioned ones, each as much work as {COST_RATIO} of the prism"
-    note = note_of_number("samples", samples, point.samples, fewer)
+    if error is None:
+        fewer = f"conditioned ones, each as much work as {COST_RATIO} of the prism"
+        note = note_of_number("samples", samples, point.samples, fewer)
+    else:
+        excess = run.excess(point)
+        for row in rows:
+            of = excess.get(row["quantity"])
+            row["target"], row["relative_stderr"] = target[row["quantity"]], None
+            if row["status"] == "sampled":
+                row["relative_stderr"] = of * row["target"]
+                row["status"] = "reached" if of <= 1 else "budget"
+        short = [row for row in rows if excess.get(row["quantity"], 0) > 1]
+        drawn, budget = point.samples * run.weight, settings["budget"]
+        note = _note_of_error(rows, short, budget, drawn, "samples", "samples")
     return Measurements("sample", scene, rows, settings, point, note)
 
 

@@ -369,10 +369,8 @@ def averages(
     again: their sums are the mean and the sum of squared deviations over the first blocks.
     """
     stream = job_seed(check_scene(scene), "observe", settings["seed"], settings["name"])
-    times, asked = (
-        _times(settings["times"]),
-        check_count("replicas", settings["replicas"], most=10**9),
-    )
+    times = _times(settings["times"])
+    asked = check_count("replicas", settings["replicas"], most=10**9)
     engine = find_engine(scene)
     each = BLOCK if scene.discs < LARGE else engine.block_replicas(scene)
     blocks = -(-asked // each)

@@ -1,42 +1,45 @@
-"""Mean times at several radii of one box, in one object."""
+"""Results in several scenes, in one object: at several radii, with several effects."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Unpack, overload
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import product
+from typing import TYPE_CHECKING, Any, Unpack, overload
 
-from twodiscs.measure.exact_values import fitting_scenes
-from twodiscs.measure.measurements import Measurements, rows_by_quantity, run_simulation
+from twodiscs.measure.exact_values import as_list, fitting_scenes
+from twodiscs.measure.measurements import run_simulation
 from twodiscs.measure.result import Result
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import InputError
 from twodiscs.model.formats import quote
-from twodiscs.model.scene import Box
+from twodiscs.model.scene import Box, Scene
+from twodiscs.model.seeds import job_seed
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from twodiscs import Effects, Event
+    from twodiscs import Event, Scanned
 
 
-class Scan(Result, Sequence[Measurements]):
-    """A sequence of the mean times at several radii of one box, in the order of radii.
+class Scan(Result, Sequence[Result]):
+    """A sequence of results of one function in several scenes, in the order of radii.
 
     ``scan`` returns one.
 
     Parameters
     ----------
-    results : list of Measurements
-        One for each radius.
+    results : list of Measurements, or of other results
+        One for each scene.
     refused : dict, optional
-        {radius: why it has no result}, of radii that do not fit.
+        {values of the ``parameters``: why it has no result}, of scenes that do not fit.
+    parameters : tuple of str, optional
+        The names of what is scanned: the radius, and others.
 
     Attributes
     ----------
-    box : Box
-        The box.
     settings : dict
-        {argument: value}, the same for each of them.
+        {argument: value} of the first of them.
 
     Examples
     --------
@@ -47,20 +50,20 @@ class Scan(Result, Sequence[Measurements]):
 
     kind = "scan"
 
-    def __init__(self, results, refused=None):
+    def __init__(self, results, refused=None, parameters=("radius",)):
         self.results = sorted(results, key=lambda result: result.scene.radius)
-        self.box, self.settings = self.results[0].scene.box, self.results[0].settings
+        self.settings, self.parameters = self.results[0].settings, tuple(parameters)
         self.refused = dict(refused or {})
 
     @property
     def radii(self) -> list[float]:
-        """The radii, ascending."""
+        """The radii of the results, ascending."""
         return [result.scene.radius for result in self.results]
 
     @overload
-    def __getitem__(self, index: int) -> Measurements: ...
+    def __getitem__(self, index: int) -> Any: ...
     @overload
-    def __getitem__(self, index: slice) -> list[Measurements]: ...
+    def __getitem__(self, index: slice) -> list[Any]: ...
     def __getitem__(self, index):
         return self.results[index]
 
@@ -71,10 +74,12 @@ class Scan(Result, Sequence[Measurements]):
         return self.results == other.results if isinstance(other, Scan) else NotImplemented
 
     def __hash__(self):
-        return hash((self.box, *self.radii))
+        return hash(tuple(result.scene for result in self))
 
     def _again(self, settings, options):
-        return Scan([result._again(settings, options) for result in self], self.refused)
+        new = {name: value for name, value in settings.items() if value != self.settings[name]}
+        results = [result._again(result.settings | new, options) for result in self]
+        return Scan(results, self.refused, self.parameters)
 
     def to_dict(self) -> dict[str, object]:
         """Return the scan as ``save`` writes it.
@@ -92,29 +97,37 @@ class Scan(Result, Sequence[Measurements]):
         return {
             "twodiscs": self.version,
             "kind": self.kind,
+            "parameters": [*self.parameters],
             "results": [result.to_dict() for result in self],
-            "refused": [*self.refused.items()],
+            "refused": [[[*values], why] for values, why in self.refused.items()],
         }
 
     def frame(self) -> pd.DataFrame:
-        """Return a table of all measurements.
+        """Return a table of all results.
 
         Returns
         -------
         DataFrame
-            One row per radius and quantity, the index, with the columns of mean_times.csv. A radius
-            that does not fit has one row, whose ``status`` says why.
+            The rows of ``frame()`` of each result. Its index has the radius, each other parameter
+            that is scanned, and the index of a result, such as the quantity; ``reset_index()``
+            makes columns of them. A scene that does not fit has one row, whose ``status`` says why.
 
         Examples
         --------
-        >>> td.scan(1.5, 1.0, [0.1, 0.2], duration=1e3, events="any_wall").frame().index.names
-        FrozenList(['radius', 'quantity'])
+        >>> found = td.scan(1.5, 1.0, 0.2, duration=1e3, events="any_wall", field=[0, 0.5])
+        >>> found.frame().index.names
+        FrozenList(['radius', 'field', 'quantity'])
         """
         import pandas as pd
 
-        rows = [row for result in self for row in rows_by_quantity(result.rows)]
-        rows += [{"radius": r, "quantity": "", "status": why} for r, why in self.refused.items()]
-        return pd.DataFrame(rows).set_index(["radius", "quantity"])
+        rows, index = [], self[0].frame().index.name
+        for result in self:
+            known = {name: getattr(result.scene, name) for name in self.parameters}
+            rows += [known | row for row in result.frame().reset_index().to_dict("records")]
+        for values, why in self.refused.items():
+            row = {index: "" if index == "quantity" else math.nan, "status": why}
+            rows.append(dict(zip(self.parameters, values, strict=True)) | row)
+        return pd.DataFrame(rows).set_index([*self.parameters, index])
 
     def __str__(self) -> str:
         return "\n\n".join([*map(str, self), *self.refused.values()])
@@ -125,11 +138,12 @@ class Scan(Result, Sequence[Measurements]):
 
 @checked_call
 def scan(
-    width: float,
-    height: float,
-    radii: Iterable[float],
+    width: float | Iterable[float],
+    height: float | Iterable[float],
+    radii: float | Iterable[float],
     error: float | str | Mapping[Event, float | str] | None = None,
     *,
+    measure: Callable[[Scene], Result] | None = None,
     duration: float | None = None,
     seed: int = 1,
     budget: float | None = None,
@@ -137,41 +151,50 @@ def scan(
     name: str | None = None,
     cores: int = 1,
     progress: bool | None = None,
-    **effects: Unpack[Effects],
+    **effects: Unpack[Scanned],
 ) -> Scan:
-    """Measure mean times by molecular dynamics at several ``radii`` of a box.
+    """Measure mean times, or anything else, in several scenes: radii, sides and effects.
+
+    Each number of a ``Scene`` may be a list: all combinations are measured.
 
     Parameters
     ----------
-    width, height : float
+    width, height : float or iterable of float
         Sides of the box, in length, from 1e-60 to 1e60.
-    radii : iterable of float
+    radii : float or iterable of float
         Radii of disc 1, in length, all different.
     error : float, str or dict, optional
         As in ``simulate``, but 1e-2 if neither ``error`` nor ``duration`` is given.
+    measure : callable, optional
+        ``measure(scene)`` returns a result of another function, such as ``lambda scene:
+        td.diffusion(scene, [1, 2])``. The arguments from ``error`` to ``progress`` are then left
+        out.
     duration : float, optional
-        The simulated time at each radius, as in ``simulate``.
+        The simulated time in each scene, as in ``simulate``.
     seed : int, default 1
-        Seed of the random numbers, from 0 to 2⁶³ − 1. Each radius has different random numbers.
+        Seed of the random numbers, from 0 to 2⁶³ − 1. Each scene has different random numbers.
     budget : float, optional
-        The most wall hits and disc collisions at each radius, as in ``simulate``.
+        The most wall hits and disc collisions in each scene, as in ``simulate``.
     events : str or iterable of str, optional
         Events to count, some of ``EVENTS``; if left out, all that exist in the scene.
-    name, cores, progress : optional
+    name : str, optional
+        The name of a scene in a configuration, which has one box.
+    cores, progress : optional
         See ``help(twodiscs)``.
     **effects
-        The effects and ``discs`` of ``Scene``.
+        The effects and ``discs`` of ``Scene``; each number of them may be a list.
 
     Returns
     -------
     Scan
-        A sequence of ``Measurements`` in the order of radii, whose errors are independent. ``plot``
-        draws it beside the exact curves, and ``frame()`` is a table.
+        A sequence of ``Measurements``, or of other results, in the order of radii, whose errors are
+        independent. ``plot`` draws those of one box beside the exact curves; ``frame()`` is a
+        table.
 
     Raises
     ------
     InputError
-        As ``simulate``, for equal radii, and for an unknown effect.
+        As ``simulate``, for equal values of a parameter, and for an unknown effect.
 
     Examples
     --------
@@ -179,14 +202,38 @@ def scan(
     >>> [abs(part["any_wall_time"].z) < 5 for part in found]
     [True, True]
     """
-    box = Box(width, height, **effects)
-    scenes, refused = fitting_scenes(box, radii)
-    if len({scene.radius for scene in scenes}) < len(scenes):
+    box = {"width": width, "height": height, **effects}
+    scanned = {n: found for n in box if n != "periodic" and (found := as_list(box[n])) is not None}
+    if empty := [key for key, values in scanned.items() if not values]:
+        raise InputError(f"{empty[0]} must have at least one value, but has none")
+    boxes = [Box(**box | dict(zip(scanned, v, strict=True))) for v in product(*scanned.values())]
+    scenes, refused = fitting_scenes(boxes, radii)
+    if len({job_seed(scene, "dynamics", seed, name) for scene in scenes}) < len(scenes):
+        values = map(quote, [[scene.radius for scene in scenes], *scanned.values()])
         raise InputError(
-            "radii must differ, because one radius has the same random numbers each time, not "
-            f"{quote([scene.radius for scene in scenes])}; to repeat a radius, give another seed"
+            f"{' and '.join(['radii', *scanned])} must differ, because one scene, or one name with "
+            f"one radius, has the same random numbers each time, not {' and '.join(values)}; to "
+            "repeat one, give another seed"
         )
-    if error is None and duration is None:
-        error = 1e-2
     asked = error, duration, seed, budget, events, name, cores, progress
-    return Scan([run_simulation(scene, *asked) for scene in scenes], refused)
+    if measure is None:
+        asked = 1e-2 if error is None and duration is None else error, *asked[1:]
+    elif asked != (None, None, 1, None, None, None, 1, None):
+        raise InputError(
+            "measure must be without error, duration, seed, budget, events, name, cores and "
+            "progress: give them to the function that it calls"
+        )
+    elif not callable(measure):
+        raise InputError(f"measure must be a function of a scene, not {quote(measure)}")
+    results = []
+    for scene in scenes:
+        result = measure(scene) if measure else run_simulation(scene, *asked)
+        known = isinstance(result, Result) and not isinstance(result, Scan)
+        if not known or (result.scene, result.kind) != (scene, (results or [result])[0].kind):
+            raise InputError(
+                "measure must return a result of its scene, of one function such as diffusion or "
+                f"sample, not {quote(result)}"
+            )
+        results.append(result)
+    names = ("radius", *scanned)
+    return Scan(results, {tuple(of[n] for n in names): why for of, why in refused}, names)

@@ -27,6 +27,7 @@ from functools import cached_property
 
 import numpy as np
 
+from twodiscs.model.checks import check_choice
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
 from twodiscs.model.scene import Scene
 from twodiscs.model.seeds import job_seed
@@ -39,7 +40,7 @@ from twodiscs.sampling.rejection import (
     propose_in_prism,
     rejection_sampler,
 )
-from twodiscs.sampling.rounds import Run, Sampler, fixed
+from twodiscs.sampling.rounds import FIRST_ROUND, Run, Sampler, SequentialRun, fixed
 from twodiscs.sampling.streams import GOLDEN, next_bits, open_stream, splitmix, uniform
 from twodiscs.theory import exact
 
@@ -59,6 +60,9 @@ PROPOSALS = 1 << 16
 #: prism, roughly.
 COST_RATIO = 64
 WEIGHTED_COST_RATIO = 40
+
+#: Samples of the prism in about a day, the most without a budget.
+DAY = 86400 * 10**9
 
 
 # Plain scenes -----------------------------------------------------------------------------------
@@ -496,63 +500,91 @@ def weighted(scene, quantities, shell, seed):
 # The choice -------------------------------------------------------------------------------------
 
 
-def plan(scene, samples):
-    """Return the function that makes the ``Sampler`` of a ``Scene``, and the number of samples.
-
-    ``samples`` are samples of the prism, or insertions for more than two discs. In a plain scene
-    rejection is used if it accepts at least one in ``COST_RATIO``.
-    """
+def samplers(scene):
+    """Return {method, as ``cost`` names it: function that makes a ``Sampler``} of a ``Scene``."""
     if scene.discs > 2:
-        from twodiscs.sampling.many import insertions
+        from twodiscs.sampling.many.insertions import insertion_sampler
 
-        sampler, block = insertions.insertion_sampler, insertions.BLOCK
-    elif scene.has_effects:
-        sampler, block = weighted, BLOCK
-    elif exact.free_fraction(scene) >= 1 / COST_RATIO:
-        sampler, block = prism_sampler, BLOCK
-    else:
-        blocks = -(-samples // (COST_RATIO * PROPOSALS))
-        return conditioned, blocks * PROPOSALS
-    return sampler, -(-samples // block) * block
+        return {"insertions": insertion_sampler}
+    if scene.has_effects:
+        return {"rejection": weighted}
+    return {"rejection": prism_sampler, "conditioned": conditioned}
 
 
 @dataclass(frozen=True)
 class MonteCarloRun(Run):
-    """An estimate of the volume and areas of a ``Scene`` by the best sampler for it, in blocks.
+    """An estimate of the volume and areas of a ``Scene`` by a sampler for it, in blocks.
 
-    The sampler is ``weighted`` for effects, and ``prism_sampler`` if a sample of the prism has no
-    overlap with a probability of at least 1/``COST_RATIO``. Otherwise it is ``conditioned``, with
-    the number of samples that takes the same time. For more than two discs it is
+    The sampler is that of a ``method``, one of ``samplers``, or the best one for the scene. It is
+    ``weighted`` for effects, and ``prism_sampler`` if a sample of the prism has no overlap with a
+    probability of at least 1/``COST_RATIO``. Otherwise it is ``conditioned``, with the number of
+    samples that takes the same time. For more than two discs it is
     ``many.insertions.insertion_sampler``, which has no shells.
 
     ``quantities``, ``shell`` and ``seed`` are the arguments of ``prism_sampler``, ``samples`` those
-    of the prism.
+    of the prism. If a ``target`` is given, {quantity: relative error}, there are as many samples as
+    the errors need, within a ``budget`` of samples of the prism, None for the work of a day.
     """
 
     scene: Scene
     quantities: tuple
-    samples: int
+    samples: int | None
     shell: float
     seed: int
+    target: dict | None = None
+    budget: int | None = None
+    method: str | None = None
 
     @classmethod
     def of(cls, scene, settings):
         """Return the run of the ``settings`` of ``sample``."""
         seed = job_seed(scene, MonteCarloPoint.stage, settings["seed"], settings["name"])
-        return cls(scene, settings["quantities"], settings["samples"], settings["shell"], seed)
+        samples, error = settings.get("samples"), settings.get("error")
+        target = error if isinstance(error, dict) else dict.fromkeys(settings["quantities"], error)
+        more = None if error is None else target, settings.get("budget"), settings.get("method")
+        return cls(scene, settings["quantities"], samples, settings["shell"], seed, *more)
 
     @cached_property
     def sampler(self):
-        """The best ``Sampler`` for the scene."""
-        make, _ = plan(self.scene, self.samples)
-        return make(self.scene, self.quantities, self.shell, self.seed)
+        """The ``Sampler`` of the method."""
+        makers = samplers(self.scene)
+        few = "conditioned" in makers and exact.free_fraction(self.scene) < 1 / COST_RATIO
+        best = [*makers][few]
+        method = best if self.method is None else check_choice("method", self.method, makers)
+        return makers[method](self.scene, self.quantities, self.shell, self.seed)
+
+    @property
+    def weight(self):
+        """The samples of the prism for which each sample counts."""
+        return COST_RATIO if self.sampler.constants["method"] == "conditioned" else 1
+
+    def excess(self, point):
+        """Return {quantity: its relative error over the one that was asked for}, if possible."""
+        sampled = {q: point.sampled(q) or point.all_walls() for q in self.target or ()}
+        return {
+            q: one.estimate.relative_stderr / self.target[q] if one.estimate else math.inf
+            for q, one in sampled.items()
+            if q == "volume" or self.scene.is_possible(q.removesuffix("_area"))
+        }
 
     @cached_property
     def components(self):
         """The ``SequentialRun`` of all samples, {"all": run}."""
         _, block, count, _, ratio = self.sampler
-        blocks = plan(self.scene, self.samples)[1] // block
-        return {"all": fixed(lambda first, stop: (count(first, stop),), blocks, block, ratio)}
+
+        def work(first, stop):
+            return (count(first, stop),)
+
+        def error_over_target(sums, blocks):
+            return np.array([*self.excess(self.sampler.point({(0, blocks): sums})).values()])
+
+        each = block * self.weight
+        if self.target is None:
+            return {"all": fixed(work, -(-self.samples // each), block, ratio)}
+        ratio /= self.weight
+        budget = self.budget or DAY / ratio
+        run = SequentialRun(work, error_over_target, None, each, budget, FIRST_ROUND, ratio)
+        return {"all": run}
 
     def point(self, ranges):
         """Return the point, given {"all": {(first, stop): sums}}."""

@@ -43,7 +43,8 @@ class SequentialRun:
 
     ``work(first, stop)`` returns the sums of a range of blocks, a tuple of integer arrays.
     ``error_over_target(sums, blocks)`` returns the array of their errors over the errors asked for;
-    if it is empty, one round is enough. ``simulated_in(sums)`` returns the number of events.
+    if it is empty, one round is enough. ``simulated_in(sums)`` returns the number of events; it is
+    None if all blocks have the same number.
     ``block_events`` is the approximate number of events in a block, ``budget`` the largest number
     of events. ``planned`` is the number of blocks for many processes, known before anything runs.
     ``cost_ratio`` is the time of an event over the time of an event in the plain ensemble, and
@@ -52,7 +53,7 @@ class SequentialRun:
 
     work: Callable
     error_over_target: Callable
-    simulated_in: Callable
+    simulated_in: Callable | None
     block_events: float
     budget: float
     planned: int
@@ -68,7 +69,7 @@ class SequentialRun:
 def fixed(work, blocks, block_events, cost_ratio=1.0):
     """Return the ``SequentialRun`` of exactly this number of ``blocks``."""
     return SequentialRun(
-        work, lambda sums, done: np.array([]), lambda sums: 1, block_events, math.inf, blocks,
+        work, lambda sums, done: np.array([]), None, block_events, math.inf, blocks,
         cost_ratio, blocks,
     )  # fmt: skip
 
@@ -112,7 +113,8 @@ def run_in_rounds(run, progress=None, cores=1, resume_from=None):
     while True:
         done += blocks
         sums = _done(run, done, ranges, cores, report)
-        excess, simulated = run.error_over_target(sums, done), run.simulated_in(sums)
+        excess = run.error_over_target(sums, done)
+        simulated = run.simulated_in(sums) if run.simulated_in else done * run.block_events
         if not excess.size:
             break
         worst = float(np.max(excess))

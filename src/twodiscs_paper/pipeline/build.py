@@ -18,8 +18,9 @@ from pathlib import Path
 
 import twodiscs
 from twodiscs.figures.scene_figures import FIGURES
-from twodiscs.model.checks import InputError, check_integer
-from twodiscs_paper.catalogue import STUDIES
+from twodiscs.measure.load import read_box
+from twodiscs.model.checks import InputError, check_choice, check_integer
+from twodiscs_paper.catalogue import STUDIES, STUDY_FIGURES, read_table
 from twodiscs_paper.configuration.yaml_files import ConfigError, check_results, load, read
 from twodiscs_paper.pipeline.job_cost import missed
 
@@ -290,3 +291,37 @@ def closing(results, dag, configured, scenes=()):
         if f"{results}/{scene['name']}/mean_times.csv" in made:
             lines += missed(results, scene)
     return "".join(f"{line}\n" for line in lines)
+
+
+def draw_study(frame, figure=None):
+    """Return a ``figure`` of a study that shows a loaded table, the first one without a name.
+
+    The other tables of the figure lie beside it, as a build writes them.
+    """
+    table, folder = frame.attrs["table"], Path(frame.attrs["path"]).parent
+    fitting = [n for n, one in STUDY_FIGURES.items() if table in (*one.tables, *one.long_runs)]
+    if not fitting:
+        raise InputError(f"result must be a table with a figure, but {table!r} has none")
+    name = fitting[0] if figure is None else check_choice("figure", figure, fitting)
+    entry, scenes = STUDY_FIGURES[name], (frame.attrs["configuration"] or {}).get("scenes", [])
+    boxes = {scene["name"]: read_box({"scenes": [scene]}) for scene in scenes}
+    main = next((scene for scene, box in boxes.items() if box and box.is_plain), None)
+    if main is None and entry.main_tables:
+        raise InputError(
+            f"result must be of a build with a scene of two plain discs for the figure {name}"
+        )
+    paths = {one: folder / main / f"{one}.csv" for one in entry.main_tables}
+    paths |= {one: folder / f"{one}.csv" for one in entry.tables}
+    paths |= {one: snakefile().parent / path for one, path in entry.long_runs.items()}
+    del paths[table]
+    try:
+        tables = {one: read_table(path) for one, path in paths.items()}
+    except OSError as error:
+        raise InputError(
+            f"result must lie beside the other tables of the figure {name}, but {error.filename} "
+            "cannot be read"
+        ) from None
+    from twodiscs_paper.draw import DRAW  # which imports what studies measure with
+
+    rows = frame.astype(object).where(frame.notna(), None).to_dict("records")
+    return DRAW[name](boxes.get(main), tables | {table: rows})
