@@ -6,16 +6,19 @@ Without it a wrong theory, count or error bar could pass, or a right one fail.
 import math
 from collections import Counter
 from dataclasses import replace
+from itertools import combinations_with_replacement
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from effect_scenes import SCENES
-from factory import BOX, RADII, Laws, as_theory, exact_values, scenes
+from factory import BOX, RADII, Laws, as_theory, counts_point, empty, exact_values, scenes
 
 from twodiscs.analysis import check, scores
 from twodiscs.analysis.tables import AreasTable, HopHistogramTable, MeanTimesTable, VolumeTable
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
+from twodiscs.points.estimates import Estimate
 from twodiscs.theory import exact
 
 SCENE = BOX.scene(0.2)
@@ -133,6 +136,34 @@ def test_the_sum_rule_sees_collisions_that_were_missed(laws, theory):
     point = law.dynamics(np.random.default_rng(3))
     found = text_table({"dynamics": [point]}, theory)
     assert ("sum_rule", "mean_times", 0.2) in failed(found)
+
+
+@pytest.mark.parametrize("dynamics", [0.031, 0.032])
+@pytest.mark.parametrize("samples", [0.031, 0.032])
+def test_a_flux_has_a_score_if_neither_of_its_errors_is_coarse(dynamics, samples, monkeypatch):
+    """Both are to be below 1/√1000."""
+    monkeypatch.setattr(check, "flux_time", lambda *_: Estimate(2.0, 2.0 * samples, 9))
+    row = empty(MeanTimesTable, radius=0.1, event="top_wall", starts="invariant", status="counted")
+    row |= {"estimate": 2.1, "stderr": 2.1 * dynamics, "relative_stderr": dynamics}
+    point = SimpleNamespace(radius=0.1, stage="monte_carlo", method="insertion")
+    _, flux = check.comparisons([], [], [row], [], [point])
+    assert (flux["comparison"], flux["estimate"]) == ("flux", 1.05)
+    assert flux["stderr"] == pytest.approx(1.05 * math.hypot(dynamics, samples))
+    fine = max(dynamics, samples) == 0.031
+    assert flux["z"] == (pytest.approx(0.05 / flux["stderr"]) if fine else None)
+    assert flux["status"] == ("counted" if fine else "too-few")
+
+
+@pytest.mark.parametrize("rare", check.SUM_RULE)
+@pytest.mark.parametrize(("number", "status"), [(999, "too-few"), (1000, "counted")])
+def test_the_sum_rule_needs_a_thousand_of_each_of_its_events(rare, number, status):
+    counts = dict.fromkeys(check.SUM_RULE, 50 * 2048) | {rare: number}
+    pairs = combinations_with_replacement(counts, 2)  # of independent events
+    products = {f"{a}*{b}": counts[a] * counts[b] // 2048 + counts[a] * (a == b) for a, b in pairs}
+    target = dict.fromkeys(counts, 1.0)
+    point = counts_point(0.2, counts=counts, products=products, target=target)
+    (row,) = check.comparisons([], [], [], [], [point])
+    assert (row["status"], row["z"] is None) == (status, status == "too-few")
 
 
 @pytest.mark.parametrize(("replicas", "status"), [(2**15, "too-few"), (2**16, "counted")])

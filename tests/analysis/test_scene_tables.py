@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from factory import BOX, RADII, Laws, as_theory, counts_point, hits_point, scenes
+from factory import BOX, RADII, Laws, as_theory, bins_point, counts_point, hits_point, scenes
 from scipy.special import ndtri, stdtr
 
 import twodiscs as td
@@ -21,6 +21,7 @@ from twodiscs.analysis.tables import (
 )
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.many import many_rates
+from twodiscs.measure.intervals import Intervals
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Box, Scene
 from twodiscs.points import estimates
@@ -205,6 +206,15 @@ def test_rows_of_the_histogram(laws):
     assert second["stderr"] > 0
     few = HopHistogramTable.rows([laws[2].intervals(rng, chains=99)])
     assert few[0]["z"] is few[0]["mean_stderr"] is None
+
+
+@pytest.mark.parametrize("counts", [(100, 100, 9), (99, 100, 9), (100, 99, 9)])
+def test_a_density_at_zero_has_an_error_if_neither_of_its_bins_has_too_few(counts):
+    point = bins_point(0.1, counts, bin_width=2.0**-5)
+    found = Intervals(point.scene, point, {"number": sum(counts)}).at_zero
+    assert found.value
+    assert (found.status, found.stderr is None) in {("too-few", True), ("extrapolated", False)}
+    assert (found.stderr is None) == (min(counts[:2]) < 100)
 
 
 # Units ------------------------------------------------------------------------------------------

@@ -90,6 +90,18 @@ def test_two_shells_that_overlap_have_a_normal_sum():
     assert abs(scores.z_spread(z)) < 5
 
 
+@pytest.mark.parametrize("order", [1, -1])
+@pytest.mark.parametrize(
+    ("probabilities", "due"),
+    [((0.01, 0.01), "normal"), ((0.01, 1e-5), "exact-tail"), ((0.01, 0.0), "exact-tail"),
+     ((0.0, 0.0), "certain")],
+)  # fmt: skip
+def test_a_sum_of_two_shells_is_as_normal_as_the_rarer_one(probabilities, due, order):
+    hits = [round(10**6 * p) for p in probabilities]
+    given = hits[::order], 0, 10**6, (3.0, 5.0), probabilities[::order]
+    assert scores.shells_z(*given)[1] == due
+
+
 def test_union_never_rejects_more_often_than_it_says():
     rng = np.random.default_rng(5)
     first, noise = rng.standard_normal((2, 20_000))

@@ -9,9 +9,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from effect_scenes import SCENES
+from factory import Laws
 from marks import slow
 
 import twodiscs as td
+from twodiscs.analysis.tables import MeanTimesTable
+from twodiscs.measure.measurements import Measurements
+from twodiscs.model.events import WALLS
 
 PAPER = td.Scene(1.5, 1.0, 0.2)
 THREE = td.Scene(1.5, 1.0, 0.15, discs=3)
@@ -73,6 +77,19 @@ def test_measured_pressures_are_the_exact_ones(name):
         if quantity != "ideal_pressure":
             assert one.stderr < 0.02 * one.value
             assert abs(one.z) < 5, quantity
+
+
+@pytest.mark.parametrize("rare", WALLS)
+def test_a_pressure_has_an_error_if_none_of_its_times_is_too_rare_for_one(rare):
+    point = Laws(PAPER).dynamics(np.random.default_rng(1), 1024, 1e-2)
+    products = point.products | {f"{rare}*{rare}": 20}
+    point = replace(point, counts=point.counts | {rare: 20}, products=products)
+    rows = MeanTimesTable.rows([point])
+    found = td.pressure(Measurements("simulate", PAPER, rows, {}, point))
+    known = {name for name, one in found.items() if one.stderr}
+    other = {*WALLS} - {rare}
+    assert known == {"virial_pressure", *(f"{wall}_pressure" for wall in other)}
+    assert {name for name, one in found.items() if one.z is not None} == known
 
 
 def test_errors_of_pressures_are_those_of_independent_runs():

@@ -7,6 +7,7 @@ import json
 import math
 import re
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -149,6 +150,25 @@ def test_the_error_of_a_ratio_of_insertions_is_that_of_its_samples():
     relative = (area / area.mean() - volume / volume.mean()).std() / math.sqrt(samples)
     assert found.value == pytest.approx(ratio)
     assert found.relative_stderr == pytest.approx(relative)
+
+
+@pytest.mark.parametrize("coarse", ["volume", "right_wall_area", "top_wall_area", None])
+def test_a_ratio_has_an_error_if_none_of_its_parts_is_coarse(coarse):
+    """A hundred samples of one weight each; the areas of two walls are one area, too."""
+    scene, names = SCENES["three"], ("volume", "right_wall_area", "top_wall_area")
+    number = {name: (99 if name == coarse else 100) << 20 for name in names}
+    parts = {name: Weights(number[name], number[name], 1.0) for name in names}
+    joint = {f"{a}*{b}": 9 << 20 for a, b in combinations(names, 2)}
+    point = InsertionPoint(scene, "insertion", 10**6, 2**20, parts, joint)
+    walls = names[1:]
+    assert (point.ratio(dict.fromkeys(walls, 1.0)) is None) == (coarse is not None)
+    assert point.all_walls().enough == (99 if coarse in walls else 100)
+    for wall in walls:
+        assert (point.ratio({wall: 1.0}) is None) == (coarse in ("volume", wall))
+    # As many misses, and one fewer.
+    most = {name: Weights(*[(301 << 20) - total] * 2, 1.0) for name, total in number.items()}
+    most = replace(point, samples=301, quantities=most)
+    assert most.all_walls().enough == pytest.approx(100 if coarse in (None, "volume") else 99)
 
 
 def test_all_samples_in_a_shell_are_samples_of_the_volume():
