@@ -172,7 +172,6 @@ SLOW = ("numba", "pandas", "matplotlib")
             "p = tempfile.mkdtemp() + '/x.csv'; T.write(p, T.rows(t.Box(2, 1), [0.1])); T.read(p)",
             ("scipy.special", *SLOW),
         ),
-        ("import twodiscs_paper.catalogue", ("scipy.special", "mpmath", *SLOW)),
         (
             "import twodiscs.dynamics.runs, twodiscs_paper.pipeline.points",
             ("scipy.special", "mpmath", "pydantic", *SLOW[1:]),

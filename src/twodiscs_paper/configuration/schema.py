@@ -18,21 +18,18 @@ def schema():
     found, texts = model.Model.model_json_schema(), _texts()
     for node in (found, *found["$defs"].values()):
         for name, child in node["properties"].items():
-            child.setdefault("description", texts.get(node["title"], {}).get(name))
+            child.setdefault("description", texts.get((node["title"], name)))
     return found
 
 
 def _texts():
-    """Return {block: {key: the text below it}}; some blocks add keys to a class _Block."""
-    classes = ast.parse(inspect.getsource(model)).body
+    """Return {(block, key): the text below the key}; some blocks add keys to a class _Block."""
+    classes = (n for n in ast.parse(inspect.getsource(model)).body if isinstance(n, ast.ClassDef))
     return {
-        block.name.lstrip("_"): {
-            key.target.id: inspect.cleandoc(text.value.value)
-            for key, text in pairwise(block.body)
-            if isinstance(key, ast.AnnAssign) and isinstance(text, ast.Expr)
-        }
+        (block.name.lstrip("_"), key.target.id): inspect.cleandoc(text.value.value)
         for block in classes
-        if isinstance(block, ast.ClassDef)
+        for key, text in pairwise(block.body)
+        if isinstance(key, ast.AnnAssign) and isinstance(text, ast.Expr)
     }
 
 
