@@ -20,7 +20,6 @@ from twodiscs.dynamics.law import WALL_Y1, WALL_Y2
 from twodiscs.dynamics.two import event_counts
 from twodiscs.model.events import EVENTS, HOPS, WALLS
 from twodiscs.model.scene import Box, Scene
-from twodiscs.theory.exact import mean_times
 
 PAPER = Scene(1.5, 1.0, 0.2)
 
@@ -71,14 +70,7 @@ def test_what_is_not_watched_is_not_detected():
         assert not found[np.isin(EVENTS, (*HOPS, *WALLS)) & ~kept].any()
 
 
-def test_accuracy_is_reached_or_the_budget_is_spent():
-    point = runs.DynamicsRun(PAPER, {"vertical_hop": 2e-3, "any_wall": 0.01}, 10**9, 1).run()
-    assert all_reached(point)
-    assert point.products.keys() == {
-        "vertical_hop*vertical_hop", "vertical_hop*any_wall", "any_wall*any_wall"
-    }  # fmt: skip
-    mean = point.duration * point.replicas / point.counts["vertical_hop"]
-    assert abs(mean / mean_times(PAPER)["vertical_hop"] - 1) <= 5 * 2e-3
+def test_a_budget_is_spent():
     spent = runs.DynamicsRun(PAPER, {"horizontal_hop": 1e-6}, 2 * 10**7, 1).run()
     assert not all_reached(spent)
     # The last round may run over the budget by the scatter of the events in it, not by more.

@@ -23,10 +23,16 @@ GOOD = Scene(*PAPER, 0.3)
 
 
 @pytest.mark.parametrize(
-    ("radius", "right", "top"), [(0.2, 1, 1), (0.3, 0.5, 1), (0.375, 0.5, 0.5), (0.38, 0.5, 0.5)]
+    ("scene", "right", "top"),
+    [
+        *((Scene(*PAPER, r), *shares) for r, *shares in ((0.2, 1, 1), (0.3, 0.5, 1))),
+        *((Scene(*PAPER, r), 0.5, 0.5) for r in (0.375, 0.38)),
+        # A large disc may hit a wall with the small one in the corner behind it.
+        (Scene(1.5, 0.66, 0.3, radius_ratio=0.2), 1, 1),
+    ],
+    ids=repr,
 )
-def test_rates_average_over_all_components_and_times_over_those_that_meet(radius, right, top):
-    scene = Scene(*PAPER, radius)
+def test_rates_average_over_all_components_and_times_over_those_that_meet(scene, right, top):
     share = {wall: {"x": right, "y": top}[AXIS[wall]] for wall in WALLS}
     for event, time in exact.mean_times(scene).items():
         if time is not None:

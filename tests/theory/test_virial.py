@@ -8,23 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from effect_scenes import SCENES
+from effect_scenes import SCENES, exchanged
 
 from twodiscs.model.scene import Scene
 from twodiscs.theory import equation_of_state, exact, flux, virial
 from twodiscs_paper.studies.more_discs.measure import known_derivatives, virial_sum, virial_weights
 
 PAPER = Scene(1.5, 1.0, 0.2)
-
-
-def swapped(scene):
-    """Return the same scene with disc 2 as the first: in units of its mass, at the same energy."""
-    return replace(
-        scene,
-        radius=scene.radii[1],
-        radius_ratio=scene.radii[0] / scene.radii[1],
-        mass_ratio=1 / scene.mass_ratio,
-    )
 
 
 def turned(scene, axis):
@@ -52,7 +42,7 @@ def test_virials_of_all_forces_add_up_to_twice_the_kinetic_energy(scene):
     virials = []
     for axis in scene.axes:
         here = turned(scene, axis)
-        for one in (here, swapped(here)):
+        for one in (here, exchanged(here)[0]):
             # A momentum times a rate is an energy over a length, in any unit of mass.
             force = virial.momentum_per_hit(one, "right_wall") * exact.rate(one, "right_wall")
             virials.append((one.width - 2 * one.radius) * force)

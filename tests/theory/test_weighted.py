@@ -393,17 +393,6 @@ def test_weak_field(periodic):
         assert_close(numbers(scene), without, 1e-14)
 
 
-def test_larger_disc_reaches_both_walls():
-    """A large disc may hit a wall with the small one in the corner behind it: no factor of 2."""
-    scene = Scene(1.5, 0.66, 0.3, radius_ratio=0.2)
-    assert not scene.horizontal_hops
-    assert scene.confined == (False, False)
-    assert exact.mean_times(scene)["right_wall"] == 1 / exact.rate(scene, "right_wall")
-    equal = Scene(1.5, 1.0, 0.3)
-    assert equal.confined == (True, False)
-    assert exact.mean_times(equal)["right_wall"] == 0.5 / exact.rate(equal, "right_wall")
-
-
 # The meaning of areas and shells ------------------------------------------------------------------
 
 
