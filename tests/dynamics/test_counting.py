@@ -5,6 +5,7 @@ enough.
 """
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
@@ -16,9 +17,9 @@ from marks import slow
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import nearest_power_of_two
-from twodiscs.dynamics.law import WALL_Y1, WALL_Y2
+from twodiscs.dynamics.law import WALL_X1, WALL_X2, WALL_Y1, WALL_Y2
 from twodiscs.dynamics.two import event_counts
-from twodiscs.model.events import EVENTS, HOPS, WALLS
+from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, WALLS
 from twodiscs.model.scene import Box, Scene
 
 PAPER = Scene(1.5, 1.0, 0.2)
@@ -40,12 +41,22 @@ def test_counts_have_the_exact_rates(scene):
     check_rates(scene, seed=1, blocks=16)
 
 
-def test_in_a_field_a_disc_at_the_floor_does_not_hit_the_top():
-    for code, y in ((WALL_Y1, 1), (WALL_Y2, 3)):
-        for height in (-0.3, 0.3):
-            after = [0.0, -height, 0.0, -height]
-            after[y] = height
-            assert event_counts.SEEN["top_wall"](code, None, after, True, 0.4) == (height > 0)
+@pytest.mark.parametrize("event", [*HOPS, *WALLS])
+@pytest.mark.parametrize(("identical", "field"), [*product((True, None), (None, 0.4))])
+def test_an_event_is_seen_by_its_disc_its_axis_and_its_side(event, identical, field):
+    """Symmetry makes walls equal: of identical discs, and of both sides but for y in a field."""
+    codes, axis = (WALL_X1, WALL_Y1, WALL_X2, WALL_Y2), "xy".index(AXIS[event])
+    for (number, code), side in product(enumerate(codes), (-1, 1)):
+        before, after = [0.1, 0.1, 0.0, 0.0], [-0.3 * side] * 4
+        after[number] = 0.3 * side  # with the other disc on the other side
+        due = number % 2 == axis
+        if event in HOPS:
+            due &= after[axis] < after[axis + 2]
+        else:
+            due &= (number < 2 or identical is True) and (
+                axis == 0 or not field or side == DECLARED[event].side
+            )
+        assert event_counts.SEEN[event](code, before, after, identical, field) == due
 
 
 def test_packed_counts_do_not_run_over():
