@@ -153,8 +153,8 @@ STUDY = Study(
                 right. Symbols are quantities of one scene: plain discs (circles), discs with
                 effects (squares) and more than two discs (triangles). The grey band is five
                 standard deviations of the mean square of as many normal scores. Symbols of the
-                shortest runs that the call accepts are open; long runs, with fewer seeds, are left
-                out. All symbols are from a long run.
+                shortest runs that the call accepts are open; longer ones, with fewer seeds, are
+                left out. No build repeats these counts.
                 """
             ),
             long_runs={"calibration": "paper/long_run/calibration/calibration.csv"},
