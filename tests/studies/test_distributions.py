@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from factory import written
 
+from twodiscs.analysis.scores import student_deviate
 from twodiscs.model.scene import Box, Scene
 from twodiscs.theory import laws
 from twodiscs_paper.studies.distributions import measure as distributions
@@ -144,13 +145,15 @@ def test_what_is_measured_meets_what_is_exact(box, radius, hop):
     rows = measured(scene, hop, 4, 2**20)
     by_name = {(row["quantity"], row["last"] is None): row for row in rows}
     assert abs(by_name["mean", True]["z"]) < 5
-    assert abs(by_name["first_passage", False]["z"]) < 5
     room = min(box) - 4 * radius if hop == "horizontal_hop" and box[0] > box[1] else 1
     if room > 0.5:
         zero = by_name["density_at_zero", False]
         assert zero["reference"] == laws.density_at_zero(scene, hop)
         assert abs(zero["z"]) < 5
     passage, cut = by_name["first_passage", True], by_name["first_passage", False]
+    off = (cut["estimate"] - cut["reference"]) / math.hypot(cut["stderr"], cut["reference_stderr"])
+    assert abs(cut["z"]) < 5
+    assert cut["z"] == pytest.approx(student_deviate(off, distributions.BLOCKS - 1))
     assert cut["estimate"] <= passage["estimate"]
     cubic = tail_constant(scene, hop) > 0
     assert (passage["z"] is None) == cubic
