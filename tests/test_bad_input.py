@@ -134,8 +134,8 @@ td.scan(1.5, 1, 0.2, field=[]) → field must have at least one value, but has n
 td.scan(1.5, 1, 0.2, field=[1, 'x']) → field must be a positive number, or 0, not 'x'
 td.scan(1.5, [1, -1], 0.2) → height must be a positive, finite number, not -1.0
 td.scan(1.5, 1, 0.2, field=[0, 1], name='a') → field must differ, because one scene, or one name
-td.scan(1.5, 1, 0.2, 0.1, measure=td.volume) → measure must be without error, duration, seed
-td.scan(1.5, 1, 0.2, measure='volume') → measure must be a function of a scene, not 'volume'
+td.scan(1.5, 1, 0.2, 0.1, measure=td.volume) → measure must be a function of a scene, without
+td.scan(1.5, 1, 0.2, measure='volume') → measure must be a function … calls, not 'volume'
 td.scan(1.5, 1, 0.2, measure=td.volume) → measure must return a result of its scene, of one function
 td.scan(1.5, 1, [0.1, 0.2], measure=lambda s: td.sample(PAPER, 1)) → of its scene, of one function
 td.sample(PAPER, 1, error=0.1) → samples and error must not both be given: leave out one of them

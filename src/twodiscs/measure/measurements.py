@@ -36,7 +36,7 @@ from twodiscs.model.checks import (
 )
 from twodiscs.model.formats import did_you_mean, quote, round_up, texts_with_error
 from twodiscs.model.scene import Scene, check_scene, why_absent
-from twodiscs.points.estimates import Estimate
+from twodiscs.points.estimates import MIN_EVENTS, Estimate
 from twodiscs.points.monte_carlo_point import WALL_AREAS, wall_weights
 
 if TYPE_CHECKING:
@@ -637,14 +637,13 @@ def run_sampling(
         fewer = f"conditioned ones, each as much work as {COST_RATIO} of the prism"
         note = note_of_number("samples", samples, point.samples, fewer)
     else:
-        excess = run.excess(point)
         for row in rows:
-            of = excess.get(row["quantity"])
-            row["target"], row["relative_stderr"] = target[row["quantity"]], None
+            known = row["stderr"] and row["stderr"] / row["estimate"]
+            row["target"], row["relative_stderr"] = target[row["quantity"]], known
             if row["status"] == "sampled":
-                row["relative_stderr"] = of * row["target"]
-                row["status"] = "reached" if of <= 1 else "budget"
-        short = [row for row in rows if excess.get(row["quantity"], 0) > 1]
+                row["status"] = "reached" if known <= row["target"] else "budget"
+        # No budget ended a run with too few misses, whose binomial error is small.
+        short = [row for row in rows if row["status"] != "too-few" or row["hits"] < MIN_EVENTS]
         drawn, budget = point.samples * run.weight, settings["budget"]
         note = _note_of_error(rows, short, budget, drawn, "samples", "samples")
     return Measurements("sample", scene, rows, settings, point, note)

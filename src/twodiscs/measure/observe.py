@@ -180,10 +180,6 @@ class Observed(Result):
             columns[f"{name}_stderr" if self.names else name.replace("mean", "stderr")] = stderr
         return pd.DataFrame(columns, pd.Index(self.times, name="time"))
 
-    @property
-    def _heading(self) -> str:
-        return f"{self.scene}, {self.replicas} replicas"
-
     def _texts(self) -> pd.DataFrame:
         """Return the texts of the printed table, one row for each time."""
         import pandas as pd
@@ -398,12 +394,12 @@ def averages(
     def moments(block, first, pairs, before):
         """Return the last values of a block, and the means and sums of squares at some times."""
         found = [_values(function, start, now) for start, now in pairs]
-        for own, values in found:
-            if (form := forms.setdefault("of", (own, values.shape[1:]))) != (own, values.shape[1:]):
-                raise InputError(
-                    "function must return as many numbers each time, with the same names: "
-                    f"{quote(form)}, not {quote((own, values.shape[1:]))}"
-                )
+        forms.update((own, values.shape[1:]) for own, values in found)
+        if len(forms) > 1:
+            raise InputError(
+                "function must return as many numbers each time, with the same names, not "
+                f"{' and '.join(map(quote, forms))}"
+            )
         values = np.stack([values for _, values in found], axis=1)
         _check_finite(values, times[first:], block * each)
         last = values[:, -1]
@@ -418,9 +414,8 @@ def averages(
     old = {"names": [], "sums": {}} if resume_from is None else resume_from["all"]
     sums, done = reached(old["sums"], blocks)
     mean, square = sums or (0.0, 0.0)
-    total, forms = done * each, {}
-    if done and not over_times:
-        forms["of"] = tuple(old["names"]), mean.shape[1:]
+    total = done * each
+    forms = {(tuple(old["names"]), mean.shape[1:])} if done and not over_times else set()
     if isinstance(resume_from, Ended):
         _check_names(old["names"])
         shape = times.shape + (mean.shape[1:] if not old["names"] else (len(old["names"]),))
@@ -447,7 +442,7 @@ def averages(
                     mean, total = mean + apart * (each / n), n
                     if progress is not None:
                         progress(block + 1, blocks)
-    names = names or forms["of"][0]
+    names = names or next(iter(forms))[0]
     stderr = np.sqrt(square / (total - 1) / total)
     settings |= {"times": times.tolist(), "replicas": asked, "seed": int(settings["seed"])}
     made = {"names": [*names], "stream": stream, "sums": {(0, blocks): [mean, square]}}

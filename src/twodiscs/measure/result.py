@@ -49,12 +49,8 @@ class Printed(Immutable):
     scene: Scene
     note: str | None = None
 
-    @property
-    def _heading(self) -> str:
-        return str(self.scene)
-
     def __str__(self) -> str:
-        parts = self._heading, self._texts().to_string(index=False), self.note
+        parts = self.scene, self._texts().to_string(index=False), self.note
         return "\n\n".join(str(part) for part in parts if part)
 
     def __repr__(self) -> str:
@@ -62,7 +58,7 @@ class Printed(Immutable):
 
     def _repr_html_(self) -> str:
         note = f"<p>{escape(self.note)}</p>" if self.note else ""
-        return f"<p>{escape(self._heading)}</p>{self._texts().to_html(index=False)}{note}"
+        return f"<p>{escape(str(self.scene))}</p>{self._texts().to_html(index=False)}{note}"
 
 
 class Result(Printed):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import product
-from typing import TYPE_CHECKING, Any, Unpack, overload
+from typing import TYPE_CHECKING, Any, Unpack
 
 from twodiscs.measure.exact_values import as_list, fitting_scenes
 from twodiscs.measure.measurements import run_simulation
@@ -60,11 +60,7 @@ class Scan(Result, Sequence[Result]):
         """The radii of the results, ascending."""
         return [result.scene.radius for result in self.results]
 
-    @overload
-    def __getitem__(self, index: int) -> Any: ...
-    @overload
-    def __getitem__(self, index: slice) -> list[Any]: ...
-    def __getitem__(self, index):
+    def __getitem__(self, index: Any) -> Any:
         return self.results[index]
 
     def __len__(self) -> int:
@@ -218,13 +214,11 @@ def scan(
     asked = error, duration, seed, budget, events, name, cores, progress
     if measure is None:
         asked = 1e-2 if error is None and duration is None else error, *asked[1:]
-    elif asked != (None, None, 1, None, None, None, 1, None):
+    elif asked != (None, None, 1, None, None, None, 1, None) or not callable(measure):
         raise InputError(
-            "measure must be without error, duration, seed, budget, events, name, cores and "
-            "progress: give them to the function that it calls"
+            "measure must be a function of a scene, without error, duration, seed, budget, events, "
+            f"name, cores and progress, which it gives to what it calls, not {quote(measure)}"
         )
-    elif not callable(measure):
-        raise InputError(f"measure must be a function of a scene, not {quote(measure)}")
     results = []
     for scene in scenes:
         result = measure(scene) if measure else run_simulation(scene, *asked)

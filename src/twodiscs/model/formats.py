@@ -50,9 +50,9 @@ def texts_with_error(value, error):
         return f"{value:.8g}", ""
     error = float(f"{error:.1e}")
     place = _exponent(error) - 1
-    if not (value := round(float(value), -place)):
-        return f"{0:.{max(-place, 0)}f}", _to_digits(error, 2)
-    return _to_digits(value, min(_exponent(value) - place + 1, 17)), _to_digits(error, 2)
+    value = round(float(value), -place) + 0.0  # no -0
+    digits = min(max(_exponent(value) - place + 1, 1), 17)
+    return _to_digits(value, digits), _to_digits(error, 2)
 
 
 def _exponent(x):

@@ -558,15 +558,6 @@ class MonteCarloRun(Run):
         """The samples of the prism for which each sample counts."""
         return COST_RATIO if self.sampler.constants["method"] == "conditioned" else 1
 
-    def excess(self, point):
-        """Return {quantity: its relative error over the one that was asked for}, if possible."""
-        sampled = {q: point.sampled(q) or point.all_walls() for q in self.target or ()}
-        return {
-            q: one.estimate.relative_stderr / self.target[q] if one.estimate else math.inf
-            for q, one in sampled.items()
-            if q == "volume" or self.scene.is_possible(q.removesuffix("_area"))
-        }
-
     @cached_property
     def components(self):
         """The ``SequentialRun`` of all samples, {"all": run}."""
@@ -576,7 +567,12 @@ class MonteCarloRun(Run):
             return (count(first, stop),)
 
         def error_over_target(sums, blocks):
-            return np.array([*self.excess(self.sampler.point({(0, blocks): sums})).values()])
+            point, errors = self.sampler.point({(0, blocks): sums}), []
+            for quantity, target in self.target.items():
+                if quantity == "volume" or self.scene.is_possible(quantity.removesuffix("_area")):
+                    found = (point.sampled(quantity) or point.all_walls()).estimate
+                    errors.append(found.relative_stderr / target if found else math.inf)
+            return np.array(errors)
 
         each = block * self.weight
         if self.target is None:
