@@ -49,11 +49,6 @@ def sample_point(scene, quantities, samples, shell, seed):
     return drawn(sampler(scene, quantities, shell, seed), samples)
 
 
-def conditioned_point(scene, quantities, samples, shell, seed):
-    """Return the point of conditioned draws of a plain scene."""
-    return drawn(montecarlo.conditioned(scene, quantities, shell, seed), samples)
-
-
 def scenes(radii=RADII):
     return [BOX.scene(radius) for radius in radii]
 

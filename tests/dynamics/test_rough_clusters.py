@@ -7,9 +7,6 @@ Whether a mean time has an error is decided from the scene, so it is the same fo
 it has one, its scores are standard normal.
 """
 
-import math
-
-import numpy as np
 import pytest
 
 import twodiscs as td
@@ -25,15 +22,6 @@ def test_an_error_does_not_depend_on_the_largest_count(seed):
     row = td.simulate(scene, error=1e-2, budget=2e7, seed=seed, events=asked)["right_wall_time"]
     assert row.status == "reached"
     assert abs(row.z) < 5
-
-
-@pytest.mark.slow
-def test_wall_times_of_the_shortest_runs_have_errors_for_hits_in_corners():
-    """400 seeds: scores have the mean square 1 at five sigma; from the sample alone it is 1.6."""
-    scene, number = td.Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5), 400
-    found = [td.simulate(scene, budget=1, seed=seed)["any_wall_time"] for seed in range(number)]
-    square = np.mean([((one.value - one.exact) / one.stderr) ** 2 for one in found])
-    assert abs(square - 1) < 5 * math.sqrt(2 / number)
 
 
 def test_a_run_waits_for_crowds_that_its_budget_can_show():

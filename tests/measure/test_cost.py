@@ -15,7 +15,6 @@ from twodiscs.dynamics.runs import DAY, DynamicsRun
 from twodiscs.measure import cost
 from twodiscs.model.formats import format_seconds
 from twodiscs.model.seeds import job_seed
-from twodiscs.sampling.many import insertions
 from twodiscs.sampling.rounds import MARGIN
 from twodiscs.theory import exact
 from twodiscs_paper.pipeline.forecast import forecast_dynamics
@@ -81,44 +80,12 @@ def test_a_time_is_c_over_the_square_of_the_error_between_the_smallest_run_and_t
 
 
 @pytest.mark.parametrize("shell", [0.02, 0.1])
-@pytest.mark.parametrize(
-    ("scene", "method"),
-    [(SCENE, "rejection"), (SCENE.with_radius(0.38), "conditioned")],
-    ids=["rejection", "conditioned"],
-)
-def test_prices_of_volume_and_areas_are_those_of_samples(monkeypatch, scene, method, shell):
-    """A block of samples has the error that the price says, without having been drawn."""
-    monkeypatch.setattr(cost, "timed", lambda work, seconds: (None, 1, 1e-3))
-    block = 2**20 if method == "rejection" else 2**16
-    measured = td.sample(scene, 64 * block * (1 if method == "rejection" else 64), shell=shell)
-    found = {
-        price.quantity: price
-        for price in cost._prices_of_samples(scene, shell)
-        if price.method.endswith(method)
-    }
-    possible = [name for name, one in measured.items() if one.status != "impossible"]
-    assert [*found] == possible
-    for name, price in found.items():
-        one = measured[name]
-        # The error of an error from n hits is 1/√(4n).
-        near = 5 / math.sqrt(4 * one.count)
-        assert math.sqrt(price.c / 64e-3) == pytest.approx(one.relative_stderr, rel=near + 0.01)
-        if name == "volume":
-            assert price.floor == pytest.approx(0, abs=1e-12)
-        else:
-            row = measured.frame().loc[name]
-            assert price.floor == pytest.approx(abs(row["bias"] / row["exact"]))
-
-
-def test_prices_of_insertions_are_those_of_samples(blocks):
-    """The errors of 32 blocks of another seed are known within some per cent."""
-    three = td.Scene(1.5, 1.0, 0.15, discs=3)
-    measured = td.sample(three, 32 * insertions.BLOCK)
-    prices = [*cost._prices_of_samples(three, 0.02)]
-    assert {price.quantity for price in prices} == {*measured}
-    for price in prices:
-        due = 32e-3 * measured[price.quantity].relative_stderr ** 2
-        assert price.c == pytest.approx(due, rel=0.2)
+def test_the_floor_of_an_area_is_the_bias_of_its_shell(blocks, shell):
+    measured, prices = td.sample(SCENE, 1, shell=shell).frame(), td.cost(SCENE, shell=shell)
+    for name, row in measured.iterrows():
+        floor = 0 if name == "volume" else abs(row["bias"] / row["exact"])
+        method = "rejection" if name == "volume" else "shells, rejection"
+        assert prices[name, method].floor == pytest.approx(floor, abs=1e-12)
 
 
 def test_a_budget_ends_a_run_at_the_error_that_the_forecast_says(blocks):

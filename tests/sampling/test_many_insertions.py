@@ -56,21 +56,3 @@ def test_the_volume_is_that_of_rejection(scene):
     rejected = np.log(free.mean()) + scene.discs * np.log(scene.range_x * scene.range_y)
     error = np.sqrt((1 - free.mean()) / free.mean() / n)
     assert abs(found.log_volume - rejected) < 5 * np.hypot(error, errors.log_volume)
-
-
-@pytest.mark.parametrize("scene", [GASES[1], GASES[6]], ids=repr)
-def test_errors_are_those_of_repetitions(scene):
-    """The spread of 200 estimates over the mean error: within five standard errors of it.
-
-    In a channel most of a ratio to the volume is known from their covariance.
-    """
-    many = [
-        insertions.estimate(scene, *insertions.run_blocks(scene, 5, k, k + 1), insertions.BLOCK)
-        for k in range(200)
-    ]
-    values = np.array([value for value, _ in many])
-    errors = np.array([error for _, error in many])
-    spread, error = values.std(axis=0, ddof=1), np.sqrt((errors**2).mean(axis=0))
-    ratio = spread[error > 0] / error[error > 0]
-    assert np.all(spread[error == 0] == 0)
-    assert np.all(np.abs(ratio - 1) < 5 / np.sqrt(2 * 199))

@@ -79,19 +79,6 @@ def test_rate_maximizes_the_likelihood(rate):
     assert (found.n, degrees) == (sum(one.count for one in bins), 13)
 
 
-def test_rate_trend_their_errors_and_chi_square_are_those_of_binomial_counts():
-    rng, chances = np.random.default_rng(1), -np.expm1(-0.4 * np.diff(EDGES))
-    found = [distributions.constant_hazard(bins_of(EDGES, chances, 10**4, rng)) for _ in range(400)]
-    for scores in (
-        [(rate.value - 0.4) / rate.stderr for rate, *_ in found],
-        [trend.value / trend.stderr for _, trend, *_ in found],
-    ):
-        assert abs(np.mean(scores)) < 5 / math.sqrt(400)
-        assert abs(np.var(scores) - 1) < 5 * math.sqrt(2 / 400)
-    chi2, degrees = [one[2] for one in found], found[0][3]
-    assert abs(np.mean(chi2) - degrees) < 5 * math.sqrt(2 * degrees / 400)
-
-
 def test_a_hazard_that_falls_slowly_shows_in_the_trend():
     chances = -np.expm1(-0.4 * ((EDGES[1:] + EDGES[:-1]) / 12) ** -0.2 * np.diff(EDGES))
     bins = bins_of(EDGES, chances, 10**6, None)
@@ -105,26 +92,17 @@ def test_density_at_zero_of_a_parabola():
     counts = [round(1e9 * (3 / 2 - 1 / 12) / 10), round(1e9 * (3 / 2 - 7 / 12) / 10)]
     found = distributions.density_at_zero(counts, 10**9, 0.5)
     assert found.value == pytest.approx(0.3, rel=1e-8)
-    rng = np.random.default_rng(2)
-    draws = rng.multinomial(10**4, [0.2, 0.15, 0.65], 2000)
-    found = [distributions.density_at_zero(n[:2], 10**4, 0.5) for n in draws]
-    spread = np.std([one.value for one in found])
-    assert spread == pytest.approx(found[0].stderr, rel=5 / math.sqrt(2 * 2000) + 0.01)
 
 
-def test_hazards_of_an_exponential_are_its_rate_within_their_errors():
-    """Bins are independent, given those before: the mean square of scores is 1, at 5 sigma."""
-    rng, z = np.random.default_rng(8), []
-    for _ in range(40):
-        counts = np.bincount((rng.exponential(2.0, 10**4) / 0.25).astype(int), minlength=30)
-        rows = list(distributions.hazard(counts[:30], 10**4, 0.25))
-        z += [(row.rate - 0.5) / row.error for row in rows]
-        for row, after in pairwise(rows):
-            assert (row.last, row.alive - row.count) == (after.first, after.alive)
-            assert row.last - row.first >= distributions.GROWTH * row.first
-            assert row.count >= distributions.FEWEST_IN_BIN
-    assert len(z) > 500
-    assert abs(np.mean(np.square(z)) - 1) < 5 * math.sqrt(2 / len(z))
+def test_bins_of_a_hazard_follow_one_another():
+    times = np.random.default_rng(8).exponential(2.0, 10**4)
+    counts = np.bincount((times / 0.25).astype(int), minlength=30)
+    rows = list(distributions.hazard(counts[:30], 10**4, 0.25))
+    assert len(rows) > 10
+    for row, after in pairwise(rows):
+        assert (row.last, row.alive - row.count) == (after.first, after.alive)
+        assert row.last - row.first >= distributions.GROWTH * row.first
+        assert row.count >= distributions.FEWEST_IN_BIN
 
 
 # Measurements -------------------------------------------------------------------------------------

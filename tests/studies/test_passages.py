@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 from factory import empty
 from marks import slow
-from scipy.stats import chi2
 
 from twodiscs.dynamics.two import strip
 from twodiscs.figures import style
@@ -29,30 +28,6 @@ from twodiscs_paper.studies.passages.models import file
 from twodiscs_paper.studies.passages.study import PassagesTable
 
 BOX, HOP = Box(1.5, 1.0), "horizontal_hop"
-
-
-@pytest.mark.parametrize(("hop", "halvings"), [(HOP, 4), ("vertical_hop", 8)])
-def test_the_slope_at_zero_is_exact(hop, halvings):
-    assert measure.thresholds(Box(3.0, 1.0)) == {HOP: 0.25}  # before the box is full
-    limit = measure.thresholds(BOX)[hop]
-    scene = BOX.scene(measure.radius_at(limit, halvings))
-    (row,) = measure.NearThreshold("paper", scene, hop, halvings, 1).slope(1024)
-    assert row["reference_stderr"] is None
-    assert abs(row["z"]) <= 5
-    assert row["stderr"] < 0.15 * row["reference"]
-
-
-def test_errors_of_the_slope_are_those_of_its_spread():
-    """Scores of 64 seeds have the mean square 1, by the law of χ² within a false alarm of 1e-6."""
-    scene = BOX.scene(measure.radius_at(0.25, 4))
-    hop = measure.NearThreshold("paper", scene, HOP, 4, 0)
-    scores = []
-    for hop.seed in range(64):
-        (row,) = hop.slope(64)
-        scores.append(row["z"])
-    square = sum(z**2 for z in scores)
-    assert chi2.sf(square, len(scores)) > 5e-7
-    assert chi2.cdf(square, len(scores)) > 5e-7
 
 
 def power_rows(power, sizes, inertia=None):
@@ -286,6 +261,9 @@ def test_the_table_is_written(rough, tmp_path, small, monkeypatch):
         "last_exponent", "rate", "diffusion", "single_file", "displacement",
         "file", "amplitude",
     }  # fmt: skip
+    # Hops of rough discs come in crowds: fewer than 256 blocks have no error.
+    rates = [row for row in rows if row["quantity"] == "rate"]
+    assert all((row["stderr"] is None) == (row["moment_of_inertia"] is not None) for row in rates)
     # Nothing but the passages tells time between passages from time between hops.
     times = [row for row in rows if row["quantity"] == "passage_time"]
     kappa = [row for row in rows if row["quantity"] == "coefficient"]

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from factory import conditioned_point, sample_point, written
+import yaml
+from factory import written
 from marks import slow
 from mpmath import mpf
 from scipy.stats import chi2, norm
@@ -20,16 +21,15 @@ from twodiscs.dynamics.law import Law, two_disc_law
 from twodiscs.figures import style
 from twodiscs.model.checks import InputError
 from twodiscs.model.effects import EFFECTS
-from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.initial_states import states
 from twodiscs.theory import exact
 from twodiscs_paper.studies.stability import calibration, figure, figure_runs
 from twodiscs_paper.studies.stability import measure as stability
-from twodiscs_paper.studies.stability.study import StabilityTable
+from twodiscs_paper.studies.stability.study import CalibrationTable, StabilityTable
 
-EXPECTED = Path(__file__).parents[2] / "paper" / "expected" / "stability.csv"
+KEPT = Path(__file__).parents[2] / "paper" / "long_run" / "calibration"
 PAPER = Box(1.5, 1.0)
 BOXES = [PAPER, Box(3.0, 1.0), Box(1e6, 1e-6), Box(1e-6, 1e6)]
 #: The reference of theory takes half a second for a box.
@@ -117,23 +117,6 @@ def test_sampling_and_estimates_hold(box, monkeypatch):
 
 
 # The conditioned sampler ------------------------------------------------------------------------
-
-QUANTITIES = ["volume", *(f"{event}_area" for event in EVENTS)]
-
-
-def test_conditioned_agrees_with_rejection():
-    """Also in the number of samples in the shells of both walls."""
-    values = []
-    for sample, number in ((conditioned_point, 2**20), (sample_point, 2**22)):
-        point = sample(PAPER.scene(0.36), QUANTITIES, number, 0.3, 1)
-        parts = {q: (p.hits, p.measure) for q, p in point.quantities.items()}
-        parts["both"] = point.right_and_top, point.quantities["volume"].measure
-        values.append({q: (m * n / point.samples, n) for q, (n, m) in parts.items()})
-    assert values[0].keys() == values[1].keys()
-    for quantity, (value, hits) in values[0].items():
-        other, others = values[1][quantity]
-        if hits > 100:
-            assert abs(value / other - 1) <= 5 * math.sqrt(1 / hits + 1 / others), quantity
 
 
 def test_the_better_sampler_is_chosen():
@@ -326,19 +309,42 @@ def test_a_row_of_calibration_counts_what_the_face_prints():
     assert row["mean_square"] == pytest.approx(np.mean(np.square(z)))
 
 
-@pytest.mark.slow
-def test_errors_of_all_calls_are_what_they_say():
+#: Strata and clusters, a field, hits in corners, a ring, kicks, and more discs.
+SOME = (
+    "r = 0.2", "r = 0.2499", "field 0.8", "moment_of_inertia 0.5", "periodic x", "friction 10.0",
+    "three discs", "100 × 1",
+)  # fmt: skip
+COUNTED = [(study, ("plain discs",)) for study in ("distributions", "passages")]
+COUNTED += [("simulate", ("r = 0.2499",))]
+COUNTED += [("cost", ("r = 0.2", "r = 0.38")), *(slow(call, SOME) for call in calibration.CALLS)]
+COUNTED += [slow(study, (k,)) for study, k in calibration.STUDIES if (study, (k,)) not in COUNTED]
+
+
+@pytest.mark.filterwarnings("ignore::twodiscs.AccuracyWarning")
+@pytest.mark.parametrize(("call", "cases"), COUNTED)
+def test_errors_are_what_they_say(call, cases):
     """16 fresh seeds: no mean square is beyond five sigma of chance, at Bonferroni's bound."""
-    some = (
-        "r = 0.2", "r = 0.2499", "field 0.8", "moment_of_inertia 0.5", "periodic x",
-        "friction 10.0", "three discs", "100 × 1",
-    )  # fmt: skip
-    rows = [row for row in calibration.rows(16, 990_000, some) if row["scores"] >= 8]
-    assert len(rows) > 200
-    alarm = 2 * norm.sf(5) / len(rows)
+    rows = calibration.rows(16, 990_000, cases, (call,))
+    check_mean_squares([row for row in rows if row["scores"] >= 8])
+
+
+def check_mean_squares(rows):
+    """Values of one seed are correlated: there are no more scores than seeds."""
+    alarm = norm.sf(5) / len(rows)
     for row in rows:
-        n = min(row["scores"], 16)  # values of one seed are correlated
-        assert chi2.sf(row["mean_square"] * n, n) > alarm, row
+        n = min(row["scores"], row["seeds"])
+        assert alarm < chi2.sf(row["mean_square"] * n, n) < 1 - alarm, row
+
+
+def test_the_kept_errors_are_what_they_say():
+    """Each scene, call and study has errors, as the configuration of the long run says."""
+    rows = [row for row in CalibrationTable.read(KEPT / "calibration.csv") if row["scores"] > 1]
+    check_mean_squares(rows)
+    seeds = yaml.safe_load((KEPT / "config.yaml").read_text(encoding="utf-8"))["seeds"]
+    made = {(case, call, size): number for case, call, size, number, _ in calibration.runs(seeds)}
+    found = {(row["case"], row["call"], row["size"]): row["seeds"] for row in rows}
+    assert found.items() <= made.items()
+    assert {name for key in made for name in key} == {name for key in found for name in key}
 
 
 # The jobs and the figure --------------------------------------------------------------------------

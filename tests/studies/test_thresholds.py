@@ -3,8 +3,6 @@
 Without these tests a fitted power, its error or its law at a threshold could be wrong.
 """
 
-import math
-
 import numpy as np
 import pytest
 from factory import empty, written
@@ -86,25 +84,6 @@ def test_exact_times_have_the_exact_power():
     plain = found["mean_time", "plain", "exponent"]
     assert abs(plain["estimate"] + 2) > 0.2
     assert plain["p"] < 1e-10
-
-
-def test_noise_is_in_the_errors():
-    """200 fits: scores of exponent and coefficient have mean 0 and variance 1, χ² its degrees."""
-    rng, law = np.random.default_rng(2), thresholds.leading_law(PAPER, "horizontal_hop")
-    due = np.array([row["exact"] for row in times_of("horizontal_hop", RADII)])
-    found = {"exponent": [], "coefficient": []}
-    for noise in rng.standard_normal((200, len(RADII))):
-        times = due * (1 + 1e-3 * noise)
-        for row in thresholds.fits({}, law, "mean_time", RADII, times, 1e-3 * due, due):
-            if row["form"] == "reduced":
-                found[row["parameter"]].append(row)
-    for fits in found.values():
-        z = np.array([row["z"] for row in fits])
-        assert abs(z.mean()) < 5 / math.sqrt(200)
-        assert abs(z.var() - 1) < 5 * math.sqrt(2 / 200)
-        degrees = fits[0]["degrees"]
-        chi2 = np.mean([row["chi2"] for row in fits])
-        assert abs(chi2 - degrees) < 5 * math.sqrt(2 * degrees / 200)
 
 
 def test_fits_keep_to_one_regime_and_to_honest_errors():

@@ -44,9 +44,3 @@ class LinearFit:
 def chi2_p(chi2, degrees):
     """Return the probability of a larger χ² with ``degrees`` of freedom."""
     return float(scipy.special.gammaincc(degrees / 2, chi2 / 2))
-
-
-def covers(estimate, exact, confidence=0.95):
-    """Return whether the confidence interval of an ``Estimate`` contains ``exact``."""
-    low, high = estimate.interval(confidence)
-    return low <= exact <= high

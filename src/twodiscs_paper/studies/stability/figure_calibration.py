@@ -1,55 +1,63 @@
 """Mean squares of scores over seeds: what error bars say, counted, call by call."""
 
 import math
+import re
 
 from matplotlib.ticker import NullFormatter
 
 from twodiscs.figures import panels
 from twodiscs.figures.style import BLUE, COLUMN, GREEN, GREY, VERMILLION, new_figure
-from twodiscs_paper.studies.stability.calibration import SCENES
 
 #: {what scenes have in common: colour and marker}.
 LOOKS = {"plain discs": (BLUE, "o"), "effects": (VERMILLION, "s"), "more discs": (GREEN, "^")}
 
-#: The mean squares shown, and the standard deviations of a mean square that the band allows.
-SHOWN, BAND = (0.2, 5.0), 5
+#: The mean squares shown, the standard deviations of a mean square that the band allows, and the
+#: fewest scores of a mean square that is shown.
+SHOWN, BAND, FEWEST = (0.2, 5.0), 5, 16
 
-#: {row of the figure: (call, part of the name of its quantities)}, from the top.
+#: {line of the figure: (call or study, pattern in the name of its quantities)}, from the top.
 ESTIMATORS = {
     "mean times of hops": ("simulate", "hop_time"),
     "mean times of collisions": ("simulate", "collision_time"),
     "mean times of walls": ("simulate", "wall_time"),
     "ratios of mean times": ("simulate", "ratio"),
-    "pressures": ("simulate", "pressure"),
+    "pressures": ("simulate", "pressure|compressibility"),
     "volume": ("sample", "volume"),
     "areas": ("sample", "area"),
     "free energy": ("sample", "free_energy"),
     "mean intervals": ("intervals", "mean"),
-    "bins of intervals": ("intervals", "bin"),
+    "bins of intervals": ("intervals", "bin|density"),
     "transmission, clusters": ("transmission", "coefficient"),
     r"transmission, $\kappa(t)$": ("transmission", "κ"),
     "observed averages": ("observe", "average"),
     "diffusion": ("diffusion", "average"),
+    "prices": ("cost", "by"),
+    "tails: $P(T>t)$, $c$, rates": ("tails", ""),
+    "hazards, first passages": ("distributions", ""),
+    "powers at thresholds": ("thresholds", ""),
+    r"passages: $\kappa$, $D$, $c$": ("passages", "^(?!corr|displ|file|single|ord|dens|.*expon)"),
+    r"passages: $\kappa(t)$": ("passages", "^corr"),
+    "passages: exponents": ("passages", "exponent"),
+    "files: displacements, $F$": ("passages", "^(displ|file|single|ord|dens)"),
+    "Brownian discs": ("brownian", ""),
+    "rates by two methods": ("more_discs", ""),
+    "shares that never met": ("effects", ""),
+    "Lyapunov exponents": ("stability", ""),
+    "powers of time": ("accuracy_cost", ""),
 }
-
-
-def common(case):
-    """Return the key of ``LOOKS`` of a scene, by its name."""
-    names = SCENES[case].keys() - {"width", "height", "radius"}
-    return "more discs" if "discs" in names else "effects" if names else "plain discs"
 
 
 def draw(box, tables):
     """Draw the rows of calibration.csv; its scenes have boxes of their own, not the ``box``.
 
-    Long calls, with few seeds, are left out.
+    Long calls, and other quantities with fewer than ``FEWEST`` scores, are left out.
     """
-    rows = [r for r in tables["calibration"] if r["scores"] > 1 and r["size"] != "long"]
-    figure = new_figure(0.3 * len(ESTIMATORS) + 0.9, COLUMN, layout="constrained")
+    rows = [r for r in tables["calibration"] if r["scores"] >= FEWEST and r["size"] != "long"]
+    figure = new_figure(0.155 * len(ESTIMATORS) + 0.9, COLUMN, layout="constrained")
     axes = figure.subplots()
     axes.set_label("calibration")
     for level, (call, part) in enumerate(ESTIMATORS.values()):
-        own = [r for r in rows if r["call"] == call and part in r["quantity"]]
+        own = [r for r in rows if r["call"] == call and re.search(part, r["quantity"])]
         fewest = min((r["scores"] for r in own), default=2)
         half = BAND * math.sqrt(2 / fewest)
         low, high = max(1 - half, SHOWN[0]), 1 + half
@@ -59,12 +67,12 @@ def draw(box, tables):
                 here = [
                     row["mean_square"]
                     for row in own
-                    if common(row["case"]) == name and (row["size"] == "least") is least
+                    if row["kind"] == name and (row["size"] == "least") is least
                 ]
                 style = panels.open_symbol(colour, marker, 0.8)
                 if not least:
                     style["markerfacecolor"] = colour
-                axes.plot(here, [level + 0.2 * (k - 1)] * len(here), ls="", alpha=0.7, **style)
+                axes.plot(here, [level + 0.25 * (k - 1)] * len(here), ls="", alpha=0.7, **style)
     axes.axvline(1, color=GREY, lw=0.7, zorder=0)
     axes.set(xscale="log", xlim=SHOWN, ylim=(len(ESTIMATORS) - 0.5, -0.5))
     axes.set_xticks([0.25, 0.5, 1, 2, 4], ["1/4", "1/2", "1", "2", "4"])

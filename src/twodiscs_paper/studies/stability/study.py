@@ -69,11 +69,16 @@ class CalibrationTable(Table):
     """One row per scene, call, size and quantity: what errors say, counted over seeds."""
 
     columns = {
-        "case": TEXT("the scene, by its name in ``calibration.SCENES``"),
-        "call": TEXT("the function of the face"),
-        "size": TEXT("least: the smallest that the call accepts; usual; long"),
-        "quantity": TEXT("the quantity with an error"),
+        "case": TEXT("the scene, by its name in ``calibration.SCENES``; of a study the kind"),
+        "kind": TEXT("plain discs; effects; more discs: more than two"),
+        "call": TEXT("the function of the face, or the study"),
+        "size": TEXT("least: the smallest that the call accepts; usual; long; study"),
+        "quantity": TEXT(
+            "the quantity with an error; of a study the cells that tell its rows apart, the first "
+            "of ``calibration.NAMES`` first"
+        ),
         "test": TEXT("its test or status of the last seed"),
+        "seeds": COUNT("seeds: fewer for long calls and for more than eight discs"),
         "scores": COUNT("values with an error"),
         "withheld": COUNT("values without an error"),
         "mean": NUMBER("mean of the scores; a positive one is a value that is too large"),
@@ -147,14 +152,14 @@ STUDY = Study(
             "5 Numerical stability",
             Caption(
                 """
-                Mean square of scores over seeds, for each quantity with an error, call and scene. A
-                score is the deviation over its own standard error, from the exact value or from the
-                mean over all seeds if no exact value is known; the mean square is 1 if errors are
-                right. Symbols are quantities of one scene: plain discs (circles), discs with
-                effects (squares) and more than two discs (triangles). The grey band is five
-                standard deviations of the mean square of as many normal scores. Symbols of the
-                shortest runs that the call accepts are open; longer ones, with fewer seeds, are
-                left out. No build repeats these counts.
+                Mean square of scores over seeds, for each quantity with an error, of each call in
+                each scene, and of each study at a small size. A score is the deviation over its own
+                standard error, from the exact value or from the mean over all seeds if no exact
+                value is known; the mean square is 1 if errors are right. Symbols are quantities of
+                one scene: plain discs (circles), discs with effects (squares) and more than two
+                discs (triangles). The grey band is five standard deviations of the mean square of
+                as many normal scores. Symbols of the shortest runs that the call accepts are open;
+                longer ones, with fewer seeds, are left out. No build repeats these counts.
                 """
             ),
             long_runs={"calibration": "paper/long_run/calibration/calibration.csv"},
