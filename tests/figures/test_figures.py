@@ -9,6 +9,7 @@ from itertools import groupby
 import numpy as np
 import pytest
 from figure_cases import BOXES, OTHERS, PAPER, bars, covered, draw, points, tables_of, unclear
+from matplotlib.legend import Legend
 
 from twodiscs.analysis.tables import row_quantity
 from twodiscs.figures import curves, panels, radius, style
@@ -131,8 +132,18 @@ OVER_RADIUS = {*radius.CURVES, "all_areas", "pressure"}
 
 @pytest.mark.parametrize(("name", "box"), cases(QUICK, OVER_RADIUS))
 def test_numbers_over_the_radius_are_those_of_the_rows(name, box):
-    """Estimates with their errors, residuals, and exact curves, in the order of the quantities."""
+    """Estimates with their errors, residuals, and exact curves, in the order of the quantities.
+
+    The legend names estimates without an error if there are any.
+    """
     rows = tables_of(box)[FIGURES[name].tables[0]]
+    own = [row for row in rows if row_quantity(row) in FIGURES[name].needs]
+    named = {
+        text.get_text() for one in drawn(name, box).findobj(Legend) for text in one.get_texts()
+    }
+    rough = any(row["estimate"] is not None and row["stderr"] is None for row in own)
+    bound = any(row["estimate"] is None and row.get("bound") is not None for row in own)
+    assert (rough, bound) == (panels.ROUGH[0] in named, panels.BOUND[0] in named)
     panel = {axes.get_label(): axes for axes in drawn(name, box).axes}
     found = [*series(name, (BOXES | OTHERS)[box], rows)]
     assert found

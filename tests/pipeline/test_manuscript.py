@@ -144,4 +144,7 @@ def test_what_captions_explain_alike_is_split_off():
     assert found["volume"][1].startswith("Error bars")
     assert " ".join(found["volume"]) == FIGURES["volume"].caption()
     assert found["model"] == (FIGURES["model"].caption(), "")
+    square = manuscript.captions({"name": "one", "width": 2.0, "height": 2.0})
+    assert "In a square box" in square["mean_hop_time"][0]
+    assert "square" not in "".join(found["mean_hop_time"])
     assert found.keys() == FIGURES.keys() | STUDY_FIGURES.keys()
