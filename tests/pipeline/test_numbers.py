@@ -349,7 +349,8 @@ def test_the_page_on_passages_has_the_numbers_of_the_build_and_of_the_long_run()
     """Every value with an error is that of a row, rounded as in the manuscript."""
     paths = PAPER / "expected" / "passages.csv", *PAPER.glob("long_run/*/passages.csv")
     rows = [row for path in paths for row in TABLES["passages"].read(path)]
-    printed = [with_error(row["estimate"], row["stderr"]) for row in rows if row["stderr"]]
+    rows = [row for row in rows if row["stderr"]]
+    printed = [with_error(row["estimate"], row["stderr"]) for row in rows]
     rows_of_steps = TABLES["brownian"].read(PAPER / "long_run" / "brownian" / "brownian.csv")
     printed += [with_error(r["estimate"], r["stderr"]) for r in rows_of_steps]
     for row in of(rows, quantity="rate", periodic="x"):  # in files per h/v_th, h = 1
