@@ -6,6 +6,7 @@ Mistakes in words are in ``test_bad_input.py``.
 """
 
 import csv
+import inspect
 import io
 import json
 import math
@@ -88,6 +89,7 @@ def test_every_form_of_exact_numbers_holds_every_digit(shell):
     ],
 )  # fmt: skip
 def test_every_option_reaches_the_function(name, given, monkeypatch):
+    """Without the options it has its own defaults."""
     given |= {"seed": 7, "name": "a"} | ({} if name == "trajectory" else {"cores": 2})
     taken = {}
 
@@ -95,12 +97,15 @@ def test_every_option_reaches_the_function(name, given, monkeypatch):
         taken.update(options)
         raise InputError("enough")
 
+    usual = inspect.signature(getattr(twodiscs, name)).parameters
     monkeypatch.setattr(twodiscs, name, function)
     words = ["--radius", "0.2"]
     for option, value in given.items():
         words += [f"--{option}", *(value if isinstance(value, list) else [value])]
     assert command(monkeypatch, cli, name, *BOX, *map(str, words)) == 2
     assert taken == given
+    assert command(monkeypatch, cli, name, *BOX, *words[:2]) == 2
+    assert taken == {name: usual[name].default for name in given}
 
 
 def test_cost_prints_times_of_errors_as_a_table_and_for_scripts(shell):
@@ -308,7 +313,9 @@ def _dag(targets, made):
 
 def test_a_build_ends_with_its_own_verdict_and_report(tmp_path):
     """Those of another build may be in the folder. They say so if the configuration is newer."""
-    passed, report, mine = (tmp_path / n for n in ("check.passed", "report.html", "my.yaml"))
+    passed, report, mine, other = (
+        tmp_path / n for n in ("check.passed", "report.html", "my.yaml", "other.yaml")
+    )
     passed.write_text("a: 3 comparisons passed\n")
     report.touch()
     mine.touch()
@@ -320,8 +327,11 @@ def test_a_build_ends_with_its_own_verdict_and_report(tmp_path):
     assert lines[1:] == ["  a: 3 comparisons passed", f"The report is {report}"]
     os.utime(passed, (1, 1))
     os.utime(mine, (2, 2))
+    other.touch()
+    os.utime(other, (0, 0))
     old = f"{passed} is older than the configuration; the target check renews it\n"
-    assert build.closing(tmp_path, _dag([], []), [mine]) == old
+    for paths in ([mine], [mine, other], [other, mine]):
+        assert build.closing(tmp_path, _dag([], []), paths) == old
     assert old not in build.closing(tmp_path, _dag([], [[passed]]), [mine])
     # What was not reached is said of scenes that were built.
     rows = [empty(MeanTimesTable, radius=0.2, event="any_wall", target=0.1, relative_stderr=0.2)]
@@ -370,6 +380,19 @@ def test_a_run_with_failed_jobs_ends_with_their_reasons(log, lines, tmp_path, mo
             assert build.failure(workflow, 1, tmp_path) == full + said
             assert build.failure(None, 1, tmp_path) == full + again
     assert build.failure(None, 1, tmp_path) == ""  # Snakemake ended with the reason
+
+
+@pytest.mark.parametrize(
+    ("end", "status", "said"),
+    [(KeyboardInterrupt, 130, "Stopped; the same"), (SystemExit(3), 3, "")],
+)
+def test_a_run_has_the_status_of_its_end(end, status, said, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("snakemake.cli.main", Mock(side_effect=end))
+    monkeypatch.setattr("snakemake.workflow.workflow", None, raising=False)
+    Path("a.yaml").write_text("scenes: [{name: a, box: {width: 1, height: 1}}]\n")
+    assert command(monkeypatch, cli, "run", "a.yaml") == status
+    assert capsys.readouterr().err.startswith(said)
 
 
 def test_a_dry_run_counts_the_jobs_of_a_scene_and_names_a_reason():

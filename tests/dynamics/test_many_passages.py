@@ -63,6 +63,25 @@ def test_clusters_are_those_of_another_program(periodic, discs, radius, gap):
     same_sizes(counts, clusters(6, 6000, *box, gap))
 
 
+def test_it_does_not_matter_where_a_ring_begins():
+    """Hops within a short gap after random ones, and after the same ones half a turn further."""
+    scene, gap = Scene(1.0, 1.0, 0.1, discs=3, periodic="x"), 1.0
+    pair = many_hop_clusters.surface_pair(scene, HOP)
+    states, found = np.zeros((12, 2**11)), []
+    stream = many_hop_clusters.open_stream(np.uint64(2), 0)
+    many_hop_clusters.draw_on_surface(stream, pair, states, -1)
+    for begun in (0.0, scene.width / 2):
+        turned = states.copy()
+        turned[:3] -= np.where(turned[:3] > 0, begun, -begun)
+        net, hops = np.zeros((2, states.shape[1]))
+        now = many_hop_clusters.begin(3, turned, 0, net, hops)
+        time = np.full(states.shape[1], gap)
+        many_hop_clusters.follow_pair(now, time, gap, net, hops, pair.law, None)
+        found.append(hops)
+    assert found[0].sum() > 400
+    assert np.array_equal(*found)
+
+
 def test_correlations_are_those_of_another_program():
     scene, time = Scene(2.25, 1.0, 0.23, discs=3), 3.0
     (found,) = coefficients_at_times(many_hop_clusters.hop_sums(scene, HOP, [time], 256, 7)[0])

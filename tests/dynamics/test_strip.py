@@ -45,9 +45,9 @@ NECKS = {
 
 #: Each of them has another kernel, which takes seconds to compile.
 COUNTED = [slow(*neck, id=name) for name, neck in NECKS.items()]
-#: Both discs as the larger and lighter one, at both hops, in a field as weak as none.
+#: Both discs as the larger and lighter one, at both hops, in a field.
 SIDES = [
-    (Scene(1.5, 1.0, side / (2 + 2 * ratio), field=1e-9, radius_ratio=ratio, mass_ratio=mass), hop)
+    (Scene(1.5, 1.0, side / (2 + 2 * ratio), field=0.5, radius_ratio=ratio, mass_ratio=mass), hop)
     for ratio, mass in ((0.6, 3.0), (1.5, 0.4))
     for side, hop in ((0.98, "horizontal_hop"), (1.47, "vertical_hop"))
 ]

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from figure_cases import BOXES, OTHERS, PAPER, bars, covered, draw, points, tables_of, unclear
 from matplotlib.legend import Legend
+from matplotlib.markers import CARETUPBASE
 
 from twodiscs.analysis.tables import row_quantity
 from twodiscs.figures import curves, panels, radius, style
@@ -304,7 +305,7 @@ def test_every_status_has_its_symbol():
     assert points(main, *look) == {(0.1, 1.0), (0.3, 2.0), (0.35, 2.0)}
     assert points(main, look[0], "x") == {(0.15, 1.2)}
     caret = [line for line in main.lines if not isinstance(line.get_marker(), str)]
-    assert [x for line in caret for x in line.get_xdata()] == [0.2]
+    assert [(*line.get_xdata(), line.get_marker()) for line in caret] == [(0.2, CARETUPBASE)]
     assert points(lower, *look) == {(0.1, 1.0), (0.15, -0.5)}
     assert points(lower, look[0], "^") == {(0.3, 0.97 * panels.LARGEST_RESIDUAL)}
     assert points(lower, look[0], "v") == {(0.35, -0.97 * panels.LARGEST_RESIDUAL)}

@@ -92,6 +92,18 @@ def test_a_pressure_has_an_error_if_none_of_its_times_is_too_rare_for_one(rare):
     assert {name for name, one in found.items() if one.z is not None} == known
 
 
+@pytest.mark.parametrize(
+    ("name", "unit"), [("plain", "energy/length²"), ("balls", "energy/length³")]
+)
+def test_a_pressure_has_the_unit_of_a_force_on_a_side_of_the_box(name, unit):
+    point = Laws(EXACT[name]).dynamics(np.random.default_rng(1), events=("right_wall", "top_wall"))
+    rows = MeanTimesTable.rows([point])
+    found = td.pressure(Measurements("simulate", point.scene, rows, {}, point))
+    units = {quantity: one.unit for quantity, one in found.items()}
+    assert units.pop("compressibility_factor") == ""
+    assert {*units.values()} == {unit}
+
+
 def test_the_free_energy_is_measured_by_the_volume():
     """Five standard errors: one false alarm in two million."""
     found = td.free_energy(td.sample(PAPER, 1e6, seed=2))

@@ -36,6 +36,10 @@ def test_a_limit_is_above_the_price():
             assert (
                 60 * job_cost.minutes(whole, stage) > job_cost.seconds(whole, stage, radius) / jobs
             )
+    # Shards do not last longer if the budget is larger.
+    more, less = (scene(accuracy=1e-5, event_budget=budget) for budget in (1e14, 1e8))
+    limits = [job_cost.minutes(one, "dynamics") for one in (less, whole, more)]
+    assert limits[0] < limits[1] == limits[2]
     for budget in (1e8, 1e9, 5e9, 2e10, 9e10):
         for watched in (["horizontal_hop"], ["horizontal_hop", "top_wall"]):
             request = scene(accuracy=1e-8, event_budget=budget, watch={"mean_times": watched})

@@ -128,6 +128,8 @@ def test_bursts_in_corners_scale_as_the_stays():
     assert kicked[2] < 0.02 * one[2]
     # The heavy disc is slow, and disc 1 alone hits the walls that are counted as one.
     assert other[0] == pytest.approx(one[0] * (1 + 1 / 4) / 2, rel=1e-2)
+    # A long stay ends with the other disc, whose speed is that of its own mass.
+    assert other[3] == pytest.approx(one[3] * (2 + 1 / 4) / 2, rel=1e-2)
     alone = clusters.corner_variance(replace(ROUGH, mass_ratio=4.0), "right_wall", 1e-3)
     assert alone == pytest.approx(one[0] / 8, rel=1e-2)
     assert clusters.corner_variance(ROUGH, "right_wall", 1e-3) == pytest.approx(one[0] / 4)
