@@ -266,15 +266,19 @@ def test_the_bound_of_a_wall_never_hit_counts_no_copy_twice():
         assert row["bound"] == pytest.approx(due, rel=1e-12), row["event"]
 
 
-@pytest.mark.parametrize(("replicas", "status"), [(2**15, "too-few"), (2**16, "reached")])
-def test_an_error_smaller_than_asked_needs_its_own_initial_states(replicas, status):
+@pytest.mark.parametrize(
+    ("replicas", "target", "status"),
+    [(2**15, 0.5, "too-few"), (2**16, 0.5, "reached"), (2**15, None, "too-few"),
+     (2**16, None, "counted")],
+)  # fmt: skip
+def test_an_error_smaller_than_asked_needs_its_own_initial_states(replicas, target, status):
     """Half of the mean time needs 119 states of rough discs, the error of these counts 45411."""
     scene, event = Scene(1.5, 1.0, 0.245, moment_of_inertia=0.5), "disc_collision"
     assert replicas_needed(scene, event, 0.5) < replicas
     total = 1000 * replicas
     point = counts_point(
         scene.radius, event, total, 1010 * total,
-        scene=scene, replicas=replicas, target={event: 0.5},
+        scene=scene, replicas=replicas, target={event: target},
     )  # fmt: skip
     with as_theory({(scene.radius, f"{event}_time"): 1.0}):
         (row,) = MeanTimesTable.rows([point])

@@ -115,7 +115,7 @@ def test_rounds_end_where_the_error_is_reached_or_the_budget_spent(budget):
     assert known[-1][0] <= known[-1][1]
 
 
-#: A scene of each rule that ends a run, and its events; None are all.
+#: A scene of each rule that ends a run, and its events or quantities; None are all.
 BRANCHES = {
     "two discs": (PAPER.scene(0.2), None),
     "strip": (PAPER.scene(0.2499), ["horizontal_hop"]),
@@ -125,22 +125,28 @@ BRANCHES = {
     "effects": (SCENES["combination"], None),
     "three discs": (td.Scene(1.5, 1.0, 0.15, discs=3), None),
     "ring": (td.Scene(1.5, 1.0, 0.15, discs=4, periodic="x"), None),
+    "rejection": (PAPER.scene(0.3), ["volume", "disc_collision_area", "any_wall_area"]),
+    "conditioned": (PAPER.scene(0.38), ["volume", "vertical_hop_area", "any_wall_area"]),
+    "insertions": (td.Scene(1.5, 1.0, 0.15, discs=3), ["volume", "vertical_hop_area"]),
 }
 
 
 @pytest.mark.parametrize("name", BRANCHES)
 def test_without_a_budget_a_run_ends_with_the_first_round_that_reaches_every_error(name):
     """One error that is asked for, of another event with each seed, is just not reached at once."""
-    scene, events = BRANCHES[name]
-    for seed in range(6):
-        first = td.simulate(scene, 1.0, seed=seed, events=events)
-        errors = {row["event"]: row["relative_stderr"] for row in first.rows}
+    scene, names = BRANCHES[name]
+    kind, call, what = "event", td.simulate, {"events": names}
+    if names and "volume" in names:
+        kind, call, what = "quantity", td.sample, {"quantities": names}
+    for seed in range(6 if kind == "event" else 3):
+        first = call(scene, error=1.0, seed=seed, **what)
+        errors = {row[kind]: row["relative_stderr"] for row in first.rows}
         possible = [event for event, error in errors.items() if error]
         late = possible[seed % len(possible)]
         asked = {event: 2 * (error or 0.5) for event, error in errors.items()}
         found = first.more(error=asked | {late: 0.98 * errors[late]})
         for row in found.rows:
-            assert row["status"] == ("reached" if row["event"] in possible else "impossible")
+            assert row["status"] == ("reached" if row[kind] in possible else "impossible")
             assert row["status"] == "impossible" or row["relative_stderr"] <= row["target"]
         for component, content in found.components.items():
             begun, *later = sorted(content["sums"])
@@ -157,7 +163,7 @@ def test_the_work_of_runs_one_after_the_other_ends_at_their_total():
     assert seen[-1] == (sum(work), sum(work))
 
 
-@pytest.mark.parametrize("budget", [325, 1005, 12345])
+@pytest.mark.parametrize("budget", [55, 325, 1005, 2890, 12345])
 def test_a_budget_has_as_many_whole_blocks_as_it_can_pay(budget):
     """A block has ten events, and the error is never reached."""
     run = rounds.SequentialRun(
