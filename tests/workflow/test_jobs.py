@@ -159,6 +159,12 @@ def test_an_edit_reruns_what_depends_on_it_and_is_named(built, everything, path,
         assert {job for job in everything if job[0] in run & (COUNTED | DRAWN)} <= jobs
 
 
+def test_other_events_that_are_timed_leave_the_areas(built):
+    built.configure(lambda mapping: mapping["scenes"][0]["watch"].update(mean_times=["top_wall"]))
+    tables = [wildcards for rule, wildcards in built.jobs() if rule == "table"]
+    assert {*tables} == {(FULL, f"table={name}") for name in ("mean_times", "check", "cost")}
+
+
 def test_an_edit_of_a_scene_with_effects_counts_that_one_again(built):
     built.edit("config/scenes/field.yaml", "# a remark\n")
     assert not built.jobs()
