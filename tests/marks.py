@@ -1,4 +1,20 @@
-"""Marks of the parameters of a test."""
+"""Marks of the parameters of a test, and what only slow tests see.
+
+``make test-all`` runs the slow tests. Each kind has a reason, and a fast test nearby:
+
+* A kernel of two discs with several effects, or with one effect in a strip or in a field, takes
+  seconds to compile. The law of every scene and its kicks are tested in Python, all effects at once
+  among them; counts, intervals, strips and passages with friction are fast.
+* Rough discs, many, moved in time or on a ring with cells: one trajectory is compared with the
+  engine of two, counts with theory. Cells in a box that count no events: counts and a trajectory
+  with kicks are fast.
+* 2e7 events without drift, many more scenes of theory and Monte Carlo, all figures in all boxes:
+  some are fast.
+* Other processors, an empty environment, the network, a type checker, the whole site.
+* A second build: on one core, as a module, in a storage, with the manuscript, with Slurm, in a
+  queue. Fast are dry runs of the same, shards of others, minutes by attempt, the script of a queue.
+* Signals to ``snakemake``: fast are those to ``twodiscs run``.
+"""
 
 from functools import partial
 

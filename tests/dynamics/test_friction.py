@@ -17,10 +17,9 @@ from marks import slow
 from sampling.uniformity import assert_uniform_on_sphere, parts, scaled_components
 
 import twodiscs as td
-from twodiscs.dynamics import paths
+from twodiscs.dynamics import law, paths
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import open_block_kicks, open_kicks
-from twodiscs.dynamics.law import redrawn
 from twodiscs.dynamics.two.follow import new_kicks
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.initial_states import components, states
@@ -31,16 +30,15 @@ PLAIN = Scene(1.5, 1.0, 0.2)
 NAMED = SCENES | {"all": ALL}
 #: A scene without effects, and one that takes long to compile.
 BOTH = pytest.mark.parametrize("scene", [PLAIN, slow(ALL)], ids=["plain", "all"])
-#: Each compiles kicks of its own.
-SLOW = [*map(slow, ("all", "torus", "combination"))]
 
 
-@pytest.mark.parametrize("name", ["friction", *SLOW])
+@pytest.mark.parametrize("name", ["friction", "all", "torus", "combination"])
 def test_a_kick_keeps_places_and_draws_velocities_on_the_sphere(name):
     """Also their energy, and the momentum along a periodic axis: 0 in the ensemble, not 0 below."""
     scene = replace(NAMED[name], friction=1.0)
     start = states(scene, 1, 5)[: len(components(scene)), 0]
     kicks, stream = new_kicks(scene, 1), open_stream(np.uint64(2), 0)
+    redrawn = law.redrawn.py_func  # of which each effect would compile another one
 
     def kicked(state, number):
         """Yield the states after each of a ``number`` of kicks."""
@@ -76,7 +74,6 @@ def test_no_mean_time_changes(scene, rate):
     check_rates(both[1], seed=6, blocks=16)
 
 
-@pytest.mark.slow
 @BOTH
 def test_intervals_have_their_exact_mean(scene):
     """Rough discs have none without friction, because they are not ergodic."""

@@ -41,7 +41,7 @@ SHORT = [
 ROUGH = slow(Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.3))
 #: Their kernels take seconds to compile.
 ROUGH_TOO = slow(BORDER[4])
-KICKED_TOO = slow(Scene(8.75, 0.6, 0.18, discs=20, friction=4.0))
+KICKED_TOO = Scene(8.75, 0.6, 0.18, discs=20, friction=4.0)
 
 
 #: Few discs have as few cells as there may be.
