@@ -4,6 +4,7 @@ Without these tests a build could miss files, differ if repeated, or pass if it 
 """
 
 import json
+import re
 import subprocess
 
 import pytest
@@ -41,6 +42,11 @@ def test_everything_that_is_called_for_is_built(complete):
     path = TrajectoryTable.read(complete.path / "results/full/trajectory.csv")
     states = td.trajectory(td.Scene(1.5, 1.0, 0.24), duration=9, seed=7, name="full")
     assert [row["x1"] for row in path[:20]] == [*states["x1"][:20]]
+    # The last lines are the verdict and the report.
+    verdict = (complete.path / "results/check.passed").read_text().splitlines()
+    lines = [r"^results/check\.passed, of 20.*:", *(re.escape(f"  {line}") for line in verdict)]
+    lines += [re.escape(f"The report is {complete.path}/results/report.html")]
+    assert re.search("\n".join(lines), complete.path.with_suffix(".done").read_text(), re.MULTILINE)
 
 
 def test_the_scheduler_looks_for_jobs_when_a_job_ends_and_at_no_other_time(complete):

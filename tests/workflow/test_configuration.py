@@ -49,12 +49,20 @@ def test_a_file_that_cannot_be_read_and_a_mistake_on_the_command_line(unbuilt, t
     assert_refused(place, "config/config.yaml: must be UTF-8, which has no byte 0xe9 here")
 
 
-def test_a_misspelt_target_gets_the_name_that_is_closest(unbuilt):
-    words = "--dry-run", "mean_hop_times", "--report", "report.zip"
-    run = unbuilt.snakemake(*words, passes=False)
+#: A scene that takes days, and does not reach its accuracy.
+LONG = {"name": "a", "box": {"width": 1.5, "height": 1}, "radii": [0.2]}
+LONG |= {"watch": {"mean_times": ["any_wall"]}, "accuracy": 1e-7, "event_budget": 1e13}
+
+
+def test_a_dry_run_names_the_closest_target_the_days_and_accuracies_not_reached(unbuilt, tmp_path):
+    place = folder(tmp_path, unbuilt, {"shared": [], "scenes": [LONG]})
+    words = "--dry-run", "mean_wall_times", "--report", "report.zip"
+    run = place.snakemake(*words, passes=False)
     assert run.returncode != 0
-    assert "'mean_hop_times' is no target; did you mean 'mean_hop_time'?" in run.stdout
+    assert "'mean_wall_times' is no target; did you mean 'mean_wall_time'?" in run.stdout
     assert run.stdout.count("is no target") == 1
+    assert "This configuration takes about 1.2 days of processor time." in run.stdout
+    assert "a, radius 0.2: 1e-7 asked for; the budget of 1e13 events ends it at" in run.stdout
 
 
 def test_the_code_beside_the_workflow_is_the_code_that_runs(unbuilt, tmp_path):
