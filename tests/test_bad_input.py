@@ -80,7 +80,7 @@ discs: 3, radius: 0.31 → radius 0.31 does not fit: 3 discs in a box of 1.5 × 
 discs: 4, radius: 0.376, periodic: x → radius 0.376 does not fit
 discs: 20, radius: 0.2 → 20 discs in a box of 1.5 × 1.0 need a radius below 0.136
 discs: 64, width: 300, height: 1.3, radius: 0.33 → must be in a unit of length in which
-discs: 64, width: 300, height: 1.3, radius: 0.33, periodic: x → not 300.0 and 1.3
+discs: 64, width: 300, height: 1.3, radius: 0.33, periodic: x → and 1e150, not 300.0 and 1.3
 radius: 0.5 → radius 0.5 does not fit: … need a radius below 0.3839745962155614
 width: 0.2, radius: 1.5 → radius 1.5 does not fit
 height: 1.0e+99 → height must … between 1e-60 and 1e60, not 1
@@ -101,7 +101,6 @@ Scene(1.5, 1, 0.1, n_discs=3) → 'n_discs'; did you mean discs?
 Scene(1.5, 1, np.array([0.1, 0.2])) → radius must be
 Scene(1.5, 1, 0.1, discs=3, periodic='x').turned() → periodic must be left out or
 Scene(1.5, 1) → missing 1 required positional argument: 'radius'
-td.rate('any_wall', PAPER) → scene must be a Scene, not 'any_wall'
 td.simulate(PAPER, evnets=['any_wall']) → 'evnets'; did you mean events?
 td.simulate() → missing 1 required positional argument: 'scene'
 td.simulate(PAPER, events='any wall') → ; did you mean any_wall?
@@ -126,8 +125,6 @@ td.load('nothere') → tables of results, but 'nothere' does not exist
 td.load('src') → folder must hold tables of results, but 'src' has none
 td.scan(1.5, 1, [0.1], gravity=1) → got an unexpected keyword argument 'gravity'
 td.exact_table(1.5, 1, [0.1], feild=1) → argument 'feild'; did you mean field?
-Scene(300, 1.3, 0.33, discs=64) → 1e-150 and 1e150, not 300.0 and 1.3
-Scene(300, 1.3, 0.33, discs=64, periodic='x') → 1e-150 and 1e150, not 300.0 and 1.3
 td.scan(1.5, 1, [0.2, 0.2]) → radii must differ, because one scene, … time, not [0.2, 0.2]; to
 td.scan(1.5, 1, 0.2, field=[0, None, 1]) → radii and field must differ, … and [0, None, 1]; to
 td.scan(1.5, 1, 0.2, field=[]) → field must have at least one value, but has none

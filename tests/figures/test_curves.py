@@ -44,19 +44,13 @@ def test_curves_break_where_times_jump():
 LARGEST = r"r_{\mathrm{max}}"
 
 
-def test_limits_of_plain_boxes():
-    def names(box):
-        return [name for _, name in limits(box)]
-
-    assert names(Box(1.5, 1)) == ["h/4", "w/4", LARGEST]
-    assert names(Box(1, 1.5)) == ["w/4", "h/4", LARGEST]
-    assert names(Box(1, 1)) == ["h/4=w/4", LARGEST]
-    assert limits(Box(3, 1)) == ((0.25, "h/4"), (0.5, LARGEST))
-
-
 @pytest.mark.parametrize(
     ("effects", "expected"),
     [
+        ({}, {"h/4": 0.25, "w/4": 0.375}),
+        ({"width": 1.0}, {"h/4": 0.25, "w/4": 0.25}),
+        ({"width": 0.7}, {"w/4": 0.175, "h/4": 0.25}),
+        ({"width": 3.0}, {"h/4": 0.25}),  # w/4 is beyond the largest radius
         ({"periodic": "x"}, {"h/2": 0.25, "v": 0.375}),
         ({"periodic": "y"}, {"h": 0.25, "w/2": 0.375}),
         ({"periodic": "xy"}, {"h/2": 0.25, "w/2": 0.375}),
@@ -68,12 +62,14 @@ def test_limits_of_plain_boxes():
     ],
     ids=str,
 )
-def test_limits_of_scenes_with_effects(effects, expected):
-    box = Box(1.5, 1.0, **effects)
+def test_limits_have_their_radii_and_names(effects, expected):
+    box = Box(**{"width": 1.5, "height": 1.0} | effects)
     *found, (largest, name) = limits(box)
     assert name == LARGEST
     assert largest == pytest.approx(box.largest_radius, rel=1e-14)
     named = {
-        index: radius for radius, text in found for index in re.findall(r"(?:\{|=)([\w/]+)", text)
+        index: radius
+        for radius, text in found
+        for index in re.findall(r"(?:\{|=|^(?=[hw]))([\w/]+)", text)
     }
     assert named == pytest.approx(expected, rel=1e-15)

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import typst
+from factory import of
 
 from twodiscs.analysis.tables import SCENE_TABLES, MeanTimesTable
 from twodiscs.dynamics.ensemble import REPLICAS
@@ -234,11 +235,6 @@ def expected(results):
     path = kept / "calibration" / "calibration.csv"
     tables["calibration"] = TABLES["calibration"].read(path)
     return tables | {"long_run": MeanTimesTable.read(kept / "far" / "mean_times.csv")}
-
-
-def of(rows, **where):
-    """Return those of ``rows`` that have these values."""
-    return [row for row in rows if where.items() <= row.items()]
 
 
 def scores(rows):

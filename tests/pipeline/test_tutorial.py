@@ -3,10 +3,8 @@
 Without these tests the tutorial could show what its blocks of Python do not print.
 """
 
-import math
-import re
-
 import pytest
+import test_examples
 import tutorial
 from checkout import REPOSITORY
 
@@ -24,23 +22,9 @@ def made(tmp_path_factory):
         return tutorial.tutorial(PAGE.read_text(encoding="utf-8"))
 
 
-def words(text):
-    """Return the words of a text, with numbers as numbers."""
-    words = text.split()
-    return [float(word) if re.fullmatch(r"[-+]?\d[\d.e+-]*", word) else word for word in words]
-
-
 def same(shown, found):
-    """Return whether texts agree, except the last digits of exact and of rounded numbers.
-
-    Those depend on the math library; simulated numbers do not.
-    """
-    pairs = zip(words(shown), words(found), strict=True)
-    return all(
-        a == b
-        or (isinstance(a, float) and isinstance(b, float) and math.isclose(a, b, rel_tol=1e-9))
-        for a, b in pairs
-    )
+    """Return whether texts agree, except the last digits of exact and of rounded numbers."""
+    return test_examples.same(shown, found, digits=9)
 
 
 def test_the_page_shows_what_its_blocks_print(made):

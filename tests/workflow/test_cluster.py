@@ -92,7 +92,10 @@ def kill_a_job(jobs):
 
 
 def test_a_queue_knows_how_a_job_ended(tmp_path, monkeypatch):
-    """A job that is killed at its limit has failed: a queue that says nothing waits for ever."""
+    """A job that is killed at its limit has failed, and is tried three times more."""
+    for name in ("queue", "slurm"):
+        profile = (REPOSITORY / "profiles" / name / "config.yaml").read_text()
+        assert yaml.safe_load(profile)["retries"] == 3
     monkeypatch.setenv("TMPDIR", str(tmp_path))
 
     def asked(*words):

@@ -4,7 +4,7 @@ Without these tests ``twodiscs run`` could read files of others, or print anothe
 """
 
 import json
-import shutil
+import re
 import subprocess
 import sys
 
@@ -12,7 +12,6 @@ import pytest
 import yaml
 from checkout import Checkout, folder, fresh, run_twodiscs
 
-from twodiscs.points.base import digest_line
 from twodiscs_paper.configuration.new import new
 from twodiscs_paper.configuration.yaml_files import read
 
@@ -37,15 +36,6 @@ def last_lines(done):
     *_, reason, log, advice = done.stderr.splitlines()
     assert advice.startswith("Remove the cause; the same command goes on")
     return reason.removeprefix("error: "), log.removeprefix("The log is ")
-
-
-def test_a_new_configuration_is_the_report_on_mean_times(place):
-    found = place.jobs("--configfile", "my.yaml", "--", "report")
-    rules = {rule for rule, _ in found}
-    assert rules == {"exact", "dynamics", "table", "figure", "check", "configuration", "report"}
-    assert {f"figure={name}" for name in ("mean_hop_time", "mean_collision_time")} < {
-        wildcard for _, wildcards in found for wildcard in wildcards
-    }
 
 
 def test_files_of_another_project_in_the_folder_are_not_read_and_its_verdict_is_not_printed(place):
@@ -99,74 +89,50 @@ SMALL = {
 }
 
 
-def test_a_point_of_other_work_that_was_copied_in_place_is_refused(place):
-    """It has another radius, seed or method. All else stays, and its own work replaces it."""
-
-    def build(seed, results, **options):
-        (place.path / "my.yaml").write_text(
-            yaml.safe_dump(SMALL | {"seed": seed, "results": results})
-        )
-        tables = (f"{results}/small/{name}.csv" for name in ("mean_times", "volume"))
-        return run(place, *tables, **options)
-
-    for seed, results in ((1, "mine"), (2, "theirs")):
-        build(seed, results)
-    first, points = place.results("mine"), place.path / "mine/small/points"
-    for source, target, wrong in (
-        ("mine/small/points/dynamics/0.2", "dynamics/0.1", "radius 0.2, but its job asks for 0.1"),
-        ("theirs/small/points/dynamics/0.1", "dynamics/0.1", "seed 2, but its job asks for 1"),
-        ("mine/small/points/dynamics/0.2", "monte_carlo/0.2", "kind 'simulate', but its job asks"),
-    ):
-        before = place.results("mine")
-        shutil.copy(place.path / f"{source}.json", points / f"{target}.json")
-        sentence, _ = last_lines(build(1, "mine", passes=False))
-        assert f"{target}.json has {wrong}" in sentence
-        assert sentence.endswith("; delete it, and it is made again")
-        now = place.results("mine")
-        kept = {name for name in before if "points/" in name} - {f"small/points/{target}.json"}
-        assert {name: now[name] for name in kept} == {name: before[name] for name in kept}
-        (points / f"{target}.json").unlink()
-        build(1, "mine")
-        for name in ("mean_times", "volume"):
-            assert place.results("mine")[f"small/{name}.csv"] == first[f"small/{name}.csv"]
-
-
 def test_a_run_that_fails_ends_with_the_reason_its_log_and_what_to_do(place):
-    """A table that was cut, a score that is too high, and a point that was edited."""
+    """A table that was cut, a point that was edited and one that was copied over another.
+
+    All else stays, and the work of their jobs replaces them. test_build has a score too high.
+    """
     (place.path / "my.yaml").write_text(yaml.safe_dump(SMALL))
     built = run(place, "check").stdout
     assert built.startswith(f"Results: {place.path}/results\n")
-    scene, edited = place.path / "results/small", "is not what its job wrote; delete it, and it is"
-    table, point = scene / "check.csv", scene / "points/dynamics/0.2.json"
-
-    header, row, *rows = table.read_text().splitlines(keepends=True)
-    table.write_text("".join([header, row]))
-    of_check = "results/logs/check.log"
-    expected = f"results/small/check.csv {edited} made again", of_check
-    assert last_lines(run(place, "check", passes=False)) == expected
-    cells = dict(zip(header.split(","), row.split(","), strict=True)) | {"z": "77"}
-    table.write_text("".join([header, ",".join(cells.values()), *rows]))
-    (place.path / "results/logs/small/check.log").write_text(digest_line(table))
-    reason, log = last_lines(run(place, "check", passes=False))
-    assert reason.startswith(
-        "small: comparison volume, quantity volume, method monte_carlo, radius"
+    scene, first = place.path / "results/small", place.results()
+    table, point, other = (
+        scene / name
+        for name in ("check.csv", "points/dynamics/0.2.json", "points/dynamics/0.1.json")
     )
-    assert log == of_check
+    remedy = "; delete it, and it is made again"
+
+    table.write_text("".join(table.read_text().splitlines(keepends=True)[:2]))
+    sentence = f"results/small/check.csv is not what its job wrote{remedy}"
+    assert last_lines(run(place, "check", passes=False)) == (sentence, "results/logs/check.log")
     table.unlink()
-    point.write_text(point.read_text().replace("1", "2", 1))
-    expected = f"results/small/points/dynamics/0.2.json {edited} made again"
-    assert last_lines(run(place, "check", passes=False))[0] == expected
+    for text, wrong in (
+        (point.read_text().replace("1", "2", 1), "is not what its job wrote"),
+        (other.read_text(), "has radius 0.1, but its job asks for 0.2"),
+    ):
+        point.write_text(text)
+        sentence, _ = last_lines(run(place, "check", passes=False))
+        assert sentence == f"results/small/points/dynamics/0.2.json {wrong}{remedy}"
     point.unlink()
     assert "small: 8 comparisons passed" in run(place, "check").stdout
+    now, again = place.results(), "small/points/dynamics/0.2.json"
+    names = {name for name in first if name.endswith(".csv") or "points/" in name} - {again}
+    assert len(names) == 4  # the table and three points
+    assert {name: now[name] for name in names} == {name: first[name] for name in names}
 
 
 def test_results_are_where_the_run_is_and_a_build_beside_the_file_is_named(place):
+    """A new configuration is the report on mean times at three radii, with key figures."""
     (place.path / "elsewhere").mkdir()
     run(place, "results/configuration.json")
-    words = "../my.yaml", "--dry-run", "check"
-    lines = run_twodiscs(Checkout(place.path / "elsewhere", place.home), *words).stdout.splitlines()
+    done = run_twodiscs(Checkout(place.path / "elsewhere", place.home), "../my.yaml", "--dry-run")
+    lines = done.stdout.splitlines()
     assert lines[0] == f"Results: {place.path}/elsewhere/results"
     assert lines[1].startswith("../results has a build of this configuration")
+    jobs = dict(re.findall(r"^mine +(\w+) +(\d+) +output files have", done.stdout, re.MULTILINE))
+    assert jobs == {"exact": "2", "dynamics": "3", "table": "3", "figure": "4"}
 
 
 def test_an_environment_in_a_folder_with_a_blank_is_no_obstacle(tmp_path):
