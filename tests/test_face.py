@@ -409,6 +409,7 @@ td.intervals(SCENE, "vertical_hop", 10) → 10 intervals asked for, 65536 done
 td.observe(SCENE, lambda a, b: b["x1"], [1], 10) → 10 replicas asked for, 4096
 td.observe(SCENE, lambda a, b: b["x1"], [1], 8192) →
 td.simulate(SCENE, 0.5) → error 0.5 asked for, 0.0028 reached: the first round is 7.8e6 wall hits
+td.simulate(SCENE, 0.5, budget=2e5) → error 0.5 asked for
 td.simulate(SCENE, 0.5, budget=1) → budget 1 asked for: the minimum, one block, is 250000
 td.simulate(SCENE, duration=100) → duration 100 asked for, 65536 simulated: 1024
 td.transmission(td.Scene(1.5, 1, 0.249), "horizontal_hop", 10) → 10 hops asked for, 64 done
