@@ -275,6 +275,7 @@ width: 1 →  has an unknown key 'width'; it belongs in 'box'
 box: {discs: 3} → .box has an unknown key 'discs'; it belongs in a scene
 box: {width: 1,5, height: 1} → .box has an unknown key 5; decimals have a point
 box: {width: 1.5, heigth: 1} → .box has an unknown key 'heigth'; did you mean 'height'?
+box: {width: 1, height: 1, heigth: 2} → .box … 'heigth'; its keys are width, height, depth
 box: {width: 1, height: '1,2'} → .box.height must be a positive length …; decimals …, 1.2
 discs: 2.5 → .discs must be an integer from 2 to 1024, not 2.5
 discs: 65⏎radii: [0.01]⏎watch: {volume: true} → .watch.volume must be false for more than 64 discs…

@@ -72,8 +72,10 @@ def test_a_trajectory_goes_on_from_its_end(scene):
 
 @pytest.mark.parametrize(("disc", "axis", "ratio"), [*product((0, 1), (0, 1), (0.5, 2.0))])
 def test_each_disc_may_start_at_its_own_walls_and_not_beyond(disc, axis, ratio):
-    scene, state = Scene(1.5, 1.0, 0.1, radius_ratio=ratio), [0.0] * 8
-    state[4] = 1.0
+    """All energy is in the spin of this disc, whose mass is 1 or 2."""
+    effects = {"radius_ratio": ratio, "mass_ratio": 2.0, "moment_of_inertia": 0.5}
+    scene, state = Scene(1.5, 1.0, 0.1, **effects), [0.0] * 10
+    state[8 + disc] = (math.sqrt(2), 1.0)[disc]
     for side in (-1, 1):
         state[2 * disc + axis] = side * (scene.sides[axis] / 2 - scene.radii[disc])
         assert paths.check_start(scene, state) == tuple(state)
