@@ -9,6 +9,8 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 import twodiscs
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.model.calls import checked_call
@@ -150,7 +152,8 @@ def from_dict(content):
         kind, settings = content["kind"], content["settings"]
         numbers = float if kind in ("observe", "diffusion") else int
         components = Ended(restore_arrays(content["parts"], numbers))
-        found = makers[kind](Scene(**content["scene"]), **settings, resume_from=components)
+        with np.errstate(invalid="ignore"):  # counts that no run has are refused below
+            found = makers[kind](Scene(**content["scene"]), **settings, resume_from=components)
         # A point of a build has some of the settings, maybe in another order.
         is_right, known = settings.keys() <= found.settings.keys(), {"settings": settings}
     made = found.to_dict() | known | {"twodiscs": content["twodiscs"]}

@@ -75,16 +75,18 @@ SCENES = {
 #: Scenes of more discs have calls of the least size, and half of the seeds.
 MANY = 8
 
-#: The least size that the face accepts, the default one, and a long one.
+#: The least size that the face accepts, the default one, a long one, and one that an error ends.
 SIZES = {
     "simulate": {"least": {"budget": 1}, "usual": {"error": 1e-2}, "long": {"error": 3e-3}},
-    "sample": {"least": {"samples": 1}, "usual": {"samples": 3e6}},
+    "sample": {
+        "least": {"samples": 1}, "usual": {"samples": 3e6}, "error": {"error": 0.03, "budget": 1e7},
+    },
     "intervals": {"least": {"number": 1}, "usual": {"number": 2**17}},
     "transmission": {"least": {"hops": 1}, "usual": {"hops": 2**15}},
     "observe": {"least": {"replicas": 1}, "usual": {"replicas": 2**13}},
     "diffusion": {"least": {"replicas": 1}, "usual": {"replicas": 2**13}},
     "cost": {"least": {}},
-}
+}  # fmt: skip
 
 #: The most wall and disc events of a call.
 MOST_EVENTS = 3e7
