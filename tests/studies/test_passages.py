@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from factory import empty
 from marks import slow
+from scipy.stats import chi2
 
 from twodiscs.dynamics.two import strip
 from twodiscs.figures import style
@@ -39,6 +40,18 @@ def power_rows(power, sizes, inertia=None):
         row |= {"scene": "paper", "event": HOP, "discs": 2, "moment_of_inertia": inertia}
         rows.append(empty(PassagesTable, **row, estimate=value if inertia else 1 - value))
     return rows
+
+
+def test_errors_of_the_slope_are_those_of_its_spread():
+    """Scores of 64 seeds have the mean square 1, by the law of χ² within a false alarm of 1e-6."""
+    scene = BOX.scene(measure.radius_at(0.25, 4))
+    hop = measure.NearThreshold("paper", scene, HOP, 4, 0)
+    scores = []
+    for hop.seed in range(64):
+        (row,) = hop.slope(64)
+        scores.append(row["z"])
+    square = sum(z**2 for z in scores)
+    assert 5e-7 < chi2.sf(square, len(scores)) < 1 - 5e-7
 
 
 def test_a_power_is_fitted_to_the_last_octaves():
