@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from twodiscs.model.scene import Scene
 
-#: Of unequal discs each of the two is once the larger and lighter one.
+#: Each of two unequal discs is the larger and lighter one in one of these scenes.
 SCENES = {
     "unequal": Scene(1.5, 1.0, 0.15, radius_ratio=0.6, mass_ratio=3.0),
     "larger": Scene(1.5, 1.0, 0.12, radius_ratio=1.5, mass_ratio=0.4),

@@ -73,7 +73,7 @@ def test_the_shell_works_from_a_wheel(installed):
     scene = "--width", "1.5", "--height", "1", "--radius", "0.2", "--json"
     found = json.loads(outside(installed, "-m", "twodiscs.cli", "exact", *scene))
     assert found["regime"] == "all-hops"
-    # What reads tables and begins a configuration needs no extras.
+    # Reading tables and beginning a configuration need no extras.
     outside(installed, "-c", "import twodiscs.measure.load")
     outside(installed, "-m", "twodiscs.cli", "new", "my.yaml")
     with pytest.raises(AssertionError, match="yaml is of the extras"):

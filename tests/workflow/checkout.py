@@ -63,8 +63,8 @@ else:
 table.write_and_log(snakemake.output.table, rows)
 """
 
-#: What is edited in a checkout, so that a build is quick, and the tests that see what a build does
-#: not see therefore: {file: (text, its text in a checkout, tests)}.
+#: Edits of a checkout that make its build quick, and the tests that see what such a build hides:
+#: {file: (text, its text in a checkout, tests)}.
 QUICKER = {
     "workflow/scripts/study.py": (  # rows of studies
         "table.write_and_log(snakemake.output.table, work(**given))", KEPT, "tests/studies",

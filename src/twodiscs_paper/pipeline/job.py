@@ -13,8 +13,8 @@ PERIOD = 0.5
 # notebook sets it to its own backend, for its child processes too, and jobs may not have that.
 os.environ["MPLBACKEND"] = "agg"
 
-# What a script imports stays, so no collection reads it: a twelfth of the start of a job. Scripts
-# of short jobs import this module first.
+# Imported modules stay in memory, so collections during imports are wasted: a twelfth of the start
+# of a job. Scripts of short jobs import this module first.
 gc.disable()
 
 
