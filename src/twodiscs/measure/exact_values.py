@@ -172,7 +172,7 @@ def exact_table(
         }
         for scene in scenes
     ]
-    rows += [{"radius": of["radius"], "regime": why} for of, why in refused]
+    rows += [{"radius": one["radius"], "regime": why} for one, why in refused]
     frame = pd.DataFrame(rows).set_index("radius")
     parts = [row.get("ergodic_components") for row in rows]
     if any(part is None or part.bit_length() > 63 for part in parts):
