@@ -287,7 +287,11 @@ def accepted(state, prism, proposals):
         # Wide necks: some proposals have the opposite order.
         (Scene(1.5, 1.0, 0.1, mass_ratio=2.0), "horizontal_hop"),
         (Scene(1.5, 1.0, 0.05, radius_ratio=2.0), "vertical_hop"),
-        slow(Scene(1.5, 1.0, 0.2, field=0.3, depth=0.6), "vertical_hop"),
+        # A disc has less room in depth than their separation.
+        *(
+            slow(Scene(1.5, 1.0, radius, field=0.3, depth=depth, radius_ratio=r), HOPS[1])
+            for radius, depth, r in ((0.2, 0.6, 1.0), (0.04, 1.0, 12.0), (0.48, 1.0, 1 / 12))
+        ),
     ],
     ids=repr,
 )

@@ -166,7 +166,8 @@ def test_the_power_of_independent_blocks_has_the_error_that_it_says():
     runs = np.array([fitted(generator.normal(size=1024)) for _ in range(200)])
     deviations = (runs[:, 0] + 0.5) / runs[:, 1]
     assert deviations.std() == pytest.approx(1, rel=SIGMA / math.sqrt(400))
-    # Rare counts, of which most blocks have none, tell too little.
+    # Eight runs of two blocks are too few, and of rare counts most blocks have none.
+    assert fitted(generator.normal(size=16)) == (None, None)
     assert fitted(10 * (generator.poisson(0.01, 256) / 0.01 - 1)) == (None, None)
 
 

@@ -140,10 +140,11 @@ def test_bursts_in_corners_scale_as_the_stays():
     assert top / right == pytest.approx(left / (1 + left), rel=1e-9)
 
 
-@pytest.mark.parametrize("ratio", [0.6, 1.5])
-def test_bursts_in_corners_are_those_of_disc_1_with_disc_2_where_it_has_room(ratio):
+@pytest.mark.parametrize("sides", [(1.5, 1.0), (1.0, 1.5)])
+@pytest.mark.parametrize(("radius", "ratio"), [(0.2, 0.6), (0.2, 1.5), (0.24, 1.5)])
+def test_bursts_in_corners_are_those_of_disc_1_with_disc_2_where_it_has_room(sides, radius, ratio):
     """Its room and its contacts with a disc in the corner, counted on a grid and on an arc."""
-    scene = replace(ROUGH, radius_ratio=ratio, mass_ratio=4.0)
+    scene = Scene(*sides, radius, radius_ratio=ratio, mass_ratio=4.0, moment_of_inertia=0.5)
     (r1, r2), sigma = scene.radii, scene.contact_distance
     place = (np.arange(1000) + 0.5) / 1000
     sides = [side - 2 * r2 for side in scene.sides]
@@ -160,7 +161,8 @@ def test_bursts_in_corners_are_those_of_disc_1_with_disc_2_where_it_has_room(rat
     each *= 2 * free / exact.volume(scene) * 3 / 6 * 2 / 4
     for time, square in ((1e-3, 1e-6), (1e6, 2e6 / rate)):
         found = clusters.corner_variance(scene, "right_wall", time)
-        assert found == pytest.approx(each * square, rel=0.01)
+        # The ends of the arc lie between two of its points.
+        assert found == pytest.approx(each * square, rel=0.01 + 1 / clusters.POINTS)
 
 
 @pytest.mark.slow
