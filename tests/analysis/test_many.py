@@ -23,7 +23,9 @@ from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.points.base import file_content, restore_arrays
 from twodiscs.sampling import initial_states, montecarlo
+from twodiscs.sampling.many import insertions
 from twodiscs.theory import exact
+from twodiscs.theory.flux import rates
 
 #: With an exact value, and without; between walls, and on a ring.
 SCENES = {
@@ -121,6 +123,15 @@ def test_expected_rates_are_near_what_is_counted():
         for event, rate in many_rates.expected_rates(scene).items():
             seen = sums[EVENTS.index(event)] / duration / 2 / REPLICAS
             assert rate == pytest.approx(seen, rel=0.05), (name, event)
+
+
+@pytest.mark.parametrize("periodic", ["", "x"])
+def test_an_equation_of_state_gives_the_rates_of_twenty_discs_within_ten_per_cent(periodic):
+    scene = Scene(6.0, 4.0, 0.2, discs=20, periodic=periodic)
+    due = rates(scene, insertions.sample(scene, 2**16, 1)[0])
+    due["any_wall"] = due["right_wall"] + due["top_wall"]
+    expected = many_rates.expected_rates(scene)
+    assert expected == {event: pytest.approx(due[event], rel=0.1) for event in scene.events}
 
 
 # A trajectory -----------------------------------------------------------------------------------

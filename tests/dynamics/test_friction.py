@@ -54,8 +54,13 @@ def test_a_kick_keeps_places_and_draws_velocities_on_the_sphere(name):
     # One kick does not know of the one before.
     d, n = unit.shape
     assert np.all(np.abs(np.mean(unit[:, 1:] * unit[:, :-1], axis=1)) <= 5 / (d * math.sqrt(n)))
-    start[components(scene).index("u1")] += 0.3
-    found, _ = parts(scene, np.array([*kicked(tuple(start), 50)]).T)
+    for velocity, _ in zip("uvw", scene.axes, strict=False):
+        start[components(scene).index(f"{velocity}1")] += 0.3
+    found, spins = parts(scene, np.array([start, *kicked(tuple(start), 50)]).T)
+    energy = sum(scene.masses @ found[axis][2:] ** 2 for axis in scene.axes)
+    if spins is not None:
+        energy += scene.moment_of_inertia * (scene.masses @ spins**2)
+    assert np.ptp(energy) < 50 * 16 * 2.0**-52  # roundings
     for axis in scene.axes:
         momentum = scene.masses @ found[axis][2:]
         assert (np.ptp(momentum) < 1e-14) == (axis in scene.conserved)

@@ -140,7 +140,7 @@ def row(event, error, status="budget", target=1e-5):
         ([row("any_wall", None, "too-few", 0.5)], None),
         ([row("any_wall", None, "counted", None)], None),
         (
-            [row("any_wall", 2e-5), row("top_wall", 9e-5), row("right_wall", 1e-6, "reached")],
+            [row("any_wall", 2e-5), row("top_wall", 9e-5), row("right_wall", 8e-4, target=1e-4)],
             "1e-5 asked for; the budget of 2e9 events ended it at 9e-5 (top_wall_time); "
             "a budget of 2e11 is enough, 27 min",
         ),
