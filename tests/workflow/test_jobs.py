@@ -22,6 +22,9 @@ FULL, WALLS = "scene=full", "scene=walls"
 #: The jobs of a study: rules with their wildcards.
 MEASURED = {"study_table": "table=tails", "shared_figure": "figure=tails"}
 
+#: {table of a study: the study}
+STUDY_OF = {table.name(): study.name for study in STUDIES.values() for table in study.tables}
+
 
 def expected(*jobs):
     """Return jobs, each given as its rule and its wildcards."""
@@ -106,8 +109,11 @@ def test_a_job_has_the_code_that_its_script_imports(planned_files, groups):
     names = {path.relative_to(REPOSITORY).as_posix(): module for module, path in FILES.items()}
     paths = {module: path for path, module in names.items()}
     lacking = set()
-    for rule, inputs, _ in planned_files:
+    for rule, inputs, output in planned_files:
         sums = inputs & groups.keys()
+        if "workflow/scripts/study.py" in inputs:  # a part is in the folder of its study
+            study = STUDY_OF.get(Path(output).stem, Path(output).parent.name)
+            assert study in {Path(one).stem for one in sums}, output
         own = inputs.union(*(groups[one] for one in sums if Path(one).stem in STUDIES))
         todo = {names[path] for path in own & names.keys()}
         scripts = [path for path in inputs if path.startswith("workflow/scripts/")]
