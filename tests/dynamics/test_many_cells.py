@@ -12,11 +12,12 @@ import pytest
 from marks import slow
 
 from twodiscs.dynamics import paths
+from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import all_pairs as many
 from twodiscs.dynamics.many import cell_list as many_cells
-from twodiscs.dynamics.many import many_intervals, many_paths, many_rates
+from twodiscs.dynamics.many import class_counts, many_intervals, many_paths, many_rates
 from twodiscs.dynamics.many.many_intervals import mean_interval
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling.many import many_initial_states
 from twodiscs.sampling.many.cell_grid import make_grid
 
@@ -143,6 +144,18 @@ def test_intervals_are_those_of_the_other_kernel(scene, hop, monkeypatch):
     # A rounding may move an interval across the border of a bin.
     assert np.abs(sums - other)[0].sum() <= 2
     assert np.array_equal(sums[0, :65].sum(), found[1].sum())
+
+
+@pytest.mark.parametrize("share", [0.5, 0.999])
+def test_events_are_as_many_as_expected_within_a_factor_of_two(share):
+    """Those of a replica, too: 64 of each disc, and more if crowded ones have fewer replicas."""
+    box = Box(5.0, 4.0, discs=many_initial_states.LARGE)
+    scene = box.scene(share * box.largest_radius)
+    time, replicas = many_rates.expected_duration(scene), 8
+    sums, _ = class_counts.run_classes(scene, 1, 0, 1, time, replicas=replicas)
+    events = class_counts.simulated_events(sums) / replicas
+    assert 0.5 < events / (time * many_rates.expected_event_rate(scene)) < 2
+    assert 0.5 < events / (64 * box.discs * REPLICAS / many_rates.block_replicas(scene)) < 2
 
 
 def check_state(scene, state):

@@ -4,6 +4,7 @@ Without it a forecast could promise an error or a time that no run has.
 """
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -100,6 +101,8 @@ def test_a_budget_ends_a_run_at_the_error_that_the_forecast_says(blocks):
             assert error == pytest.approx(one.relative_stderr, rel=0.2)
         assert found.events == pytest.approx(1e7, rel=0.3)
         assert "budget of 1e7 events ends it at" in found.shortfall(run)
+        one = replace(run, target=dict.fromkeys(scene.events, 1.0) | {"top_wall": 1e-5})
+        assert "(top_wall_time)" in found.shortfall(one)
 
 
 def test_ten_times_the_accuracy_takes_a_hundred_times_as_long(blocks):
@@ -199,6 +202,9 @@ def test_a_run_has_its_first_round_whatever_is_asked_and_the_replicas_of_bursts(
     for error, blocks in ((1.0, 32), (0.1, 32), (0.02, 32), (0.001, MARGIN * 1e4)):
         found = cost.blocks_wanted(SCENE, {"all": pilot}, {"disc_collision": error})
         assert found == {"all": pytest.approx(blocks)}
+    both = pilot._replace(errors={"disc_collision": 0.1, "top_wall": 0.01})
+    found = cost.blocks_wanted(SCENE, {"all": both}, {"disc_collision": 0.1, "top_wall": 1e-4})
+    assert found == {"all": pytest.approx(MARGIN * 1e4)}
     rough = td.Scene(1.5, 1.0, 0.24999, moment_of_inertia=0.1)
     needed = exact.replicas_needed(rough, "disc_collision", 0.02) / 1024
     assert needed > 8

@@ -122,7 +122,7 @@ def blocks(monkeypatch):
 
 @pytest.mark.parametrize("radius", [0.01, 0.2, 0.24, 0.3, 0.38])
 def test_the_bound_on_the_events_of_an_accuracy_is_not_below_the_plan(radius):
-    for accuracy in (1e-2, 1e-4):
+    for accuracy in (1e-2, 1e-4, {"default": 1e-2, "top_wall": 1e-4}):
         request = scene(radii=[radius], accuracy=accuracy, event_budget=1e15)
         components = job_cost.run_at(request, "dynamics", radius).components
         events = components["all"].planned * components["all"].block_events

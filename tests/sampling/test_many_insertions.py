@@ -5,6 +5,7 @@ too small.
 """
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +13,8 @@ import pytest
 from twodiscs.analysis.scores import z_mean, z_spread
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import insertions
+from twodiscs.theory import exact
+from twodiscs.theory.equation_of_state import pair_overlap
 from twodiscs_paper.studies.more_discs.measure import known_derivatives
 
 GASES = [
@@ -60,3 +63,11 @@ def test_the_volume_is_that_of_rejection(scene):
     rejected = np.log(free.mean()) + scene.discs * np.log(scene.range_x * scene.range_y)
     error = np.sqrt((1 - free.mean()) / free.mean() / n)
     assert abs(found.log_volume - rejected) < 5 * np.hypot(error, errors.log_volume)
+
+
+@pytest.mark.parametrize(("radius", "periodic"), [(0.2, ""), (0.2, "x"), (0.3, "x")])
+def test_the_overlap_of_a_pair_is_that_of_two_discs_alone(radius, periodic):
+    """Also on a ring so low that discs at opposite walls may touch."""
+    two = Scene(2.0, 1.0, radius, periodic=periodic)
+    overlap = pair_overlap(replace(two, discs=3))
+    assert overlap == pytest.approx(1 - exact.free_fraction(two), rel=1e-12)
