@@ -129,6 +129,15 @@ def test_a_job_has_the_code_that_its_script_imports(planned_files, groups):
     assert lacking == set()
 
 
+def test_the_manuscript_is_made_again_after_an_edit_of_a_file_that_its_texts_read(planned_files):
+    (inputs,) = (inputs for rule, inputs, _ in planned_files if rule == "paper")
+    reads = r'\b(?:import|read|yaml|bibliography)\b[ (]+"([^"]*\.\w+)"'
+    texts = "".join(path.read_text("utf-8") for path in REPOSITORY.glob("paper/*.typ"))
+    found = {os.path.normpath(f"paper/{path}") for path in re.findall(reads, texts)}
+    assert {"paper/read.typ", "CITATION.cff", "paper/long_run/far/mean_times.csv"} <= found
+    assert found <= inputs
+
+
 CODE = "\n\nREMARK = 1\n"
 DOCUMENTS = {"report", "manifest", "provenance"}
 COUNTED = {"monte_carlo", "dynamics", "intervals"}

@@ -21,6 +21,7 @@ if MAIN:
         "files/passages",
         "accuracy_cost/accuracy_cost",
         "brownian/brownian",
+        "calibration/calibration",
         "far/mean_times",
         "passages/passages",
         "tails/tails",
