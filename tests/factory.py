@@ -4,6 +4,7 @@ import json
 import math
 from contextlib import contextmanager
 from functools import cached_property
+from itertools import combinations_with_replacement
 from types import MappingProxyType
 from unittest.mock import patch
 
@@ -22,9 +23,6 @@ from twodiscs.theory import exact
 
 BOX = Box(1.5, 1.0)
 RADII = (0.02, 0.1, 0.2, 0.24, 0.3, 0.36, 0.38)
-
-
-#: The class of the points of each stage.
 
 
 def empty(table, **values):
@@ -186,20 +184,13 @@ class Laws:
             if "any_wall" in events and len(first) == 2:
                 counts["any_wall"] = sum(counts[wall] for wall in first.values())
         events = [event for event in EVENTS if event in events]
-        return DynamicsPoint(
-            scene=self.scene,
-            duration=duration,
-            replicas=replicas,
-            events=10**6,
-            counts={event: int(counts[event].sum()) for event in events},
-            products={
-                f"{a}*{b}": int((counts[a] * counts[b]).sum())
-                for i, a in enumerate(events)
-                for b in events[i:]
-            },
-            target=dict.fromkeys(events, relative),
-            strips={},
-        )
+        pairs = combinations_with_replacement(events, 2)
+        fields = {
+            "counts": {event: int(counts[event].sum()) for event in events},
+            "products": {f"{a}*{b}": int((counts[a] * counts[b]).sum()) for a, b in pairs},
+            "target": dict.fromkeys(events, relative),
+        }
+        return counts_point(scene=self.scene, duration=duration, replicas=replicas, **fields)
 
     def intervals(self, rng, chains=1024, relative=3e-4):
         """Return an intervals point of the vertical hop, with exponential intervals."""
@@ -215,18 +206,17 @@ class Laws:
             return Bins(edges, whole, [n + -(-n * n // chains) for n in whole])
 
         wide = [0, 1, 2, 4, 8, 12]
-        return IntervalsPoint(
-            scene=self.scene,
-            event="vertical_hop",
-            bin_width=width,
-            equal=of_chains([*range(13)], counts[:-1]),
-            wide=of_chains(wide, np.add.reduceat(counts[:-1], wide[:-1])),
-            overflow=int(counts[-1]),
-            intervals=intervals,
-            chains=chains,
-            mean=mean + stderr * rng.standard_normal(),
-            stderr=stderr,
-        )
+        fields = {
+            **{"equal": of_chains([*range(13)], counts[:-1]), "overflow": int(counts[-1])},
+            **{"wide": of_chains(wide, np.add.reduceat(counts[:-1], wide[:-1]))},
+            **{"intervals": intervals, "chains": chains, "bin_width": width},
+            **{"mean": mean + stderr * rng.standard_normal(), "stderr": stderr},
+        }
+        return bins_point(scene=self.scene, **fields)
+
+
+#: The laws of all ``RADII``.
+LAWS = [Laws(scene) for scene in scenes()]
 
 
 def written(folder, table, **given):

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from factory import BOX, RADII, Laws, as_theory, bins_point, counts_point, hits_point, scenes
+from factory import LAWS, RADII, as_theory, bins_point, counts_point, hits_point
 from scipy.special import ndtri, stdtr
 
 import twodiscs as td
@@ -30,32 +30,25 @@ from twodiscs.points.intervals_point import Bins
 from twodiscs.sampling.montecarlo import MonteCarloRun
 from twodiscs.theory.exact import rate, replicas_needed
 
-
-@pytest.fixture(scope="module")
-def laws():
-    return [Laws(scene) for scene in scenes()]
-
-
 # Monte Carlo ----------------------------------------------------------------------------------
 
 
-def test_the_whole_wall_area_is_four_times_right_and_top(laws):
-    point = laws[1].monte_carlo(np.random.default_rng(2), 10**7)
+def test_the_whole_wall_area_is_four_times_right_and_top():
+    point = LAWS[1].monte_carlo(np.random.default_rng(2), 10**7)
     found = {row["quantity"]: row for row in AreasTable.rows([point])}
     right, top, whole = (found[f"{e}_area"] for e in ("right_wall", "top_wall", "any_wall"))
     assert whole["estimate"] == pytest.approx(4 * (right["estimate"] + top["estimate"]), rel=1e-14)
     assert whole["expectation"] == 4 * (right["expectation"] + top["expectation"])
     # In these points the two shells are hit independently, so variances add up.
-    assert whole["stderr"] == pytest.approx(
-        4 * math.hypot(right["stderr"], top["stderr"]), rel=1e-2
-    )
+    both = 4 * math.hypot(right["stderr"], top["stderr"])
+    assert whole["stderr"] == pytest.approx(both, rel=1e-2)
     correlated = replace(point, right_and_top=min(right["hits"], top["hits"]))
     found = {row["quantity"]: row for row in AreasTable.rows([correlated])}
     assert found["any_wall_area"]["stderr"] > 1.1 * whole["stderr"]
 
 
-def test_only_watched_areas_have_rows(laws):
-    point = laws[1].monte_carlo(np.random.default_rng(2), 10**6)
+def test_only_watched_areas_have_rows():
+    point = LAWS[1].monte_carlo(np.random.default_rng(2), 10**6)
     found = AreasTable.rows([point], ("any_wall", "vertical_hop"))
     assert [row["quantity"] for row in found] == ["vertical_hop_area", "any_wall_area"]
     assert VolumeTable.rows([replace(point, quantities={})]) == []
@@ -99,10 +92,10 @@ def time_row(total=0, squares=0, exact=50.0, radius=0.37, **given):
     return row
 
 
-def test_walls_that_symmetry_makes_equal_have_one_row(laws):
+def test_walls_that_symmetry_makes_equal_have_one_row():
     """Four pairs of a disc and a wall beneath h/4, beyond it two of them for either component."""
     for radius, copies in ((0.2, 4), (0.3, 2)):
-        law = laws[RADII.index(radius)]
+        law = LAWS[RADII.index(radius)]
         point = law.dynamics(np.random.default_rng(4))
         found = {row["event"]: row for row in MeanTimesTable.rows([point])}
         row = found["right_wall"]
@@ -113,8 +106,8 @@ def test_walls_that_symmetry_makes_equal_have_one_row(laws):
         assert row["exact"] == pytest.approx(copies / 4 / rate(law.scene, "right_wall"))
 
 
-def test_a_rare_hop_has_the_row_of_its_strip(laws):
-    law = laws[RADII.index(0.24)]
+def test_a_rare_hop_has_the_row_of_its_strip():
+    law = LAWS[RADII.index(0.24)]
     point = law.dynamics(np.random.default_rng(5), relative=0.1)
     tau = law.times["horizontal_hop"]
     count, n = round(0.125 * 10**7 / 0.004 / tau) // 4 * 4, 10**7 // 2
@@ -188,9 +181,9 @@ def test_where_no_exact_value_is_known_what_is_seen_stands():
 # Histogram ------------------------------------------------------------------------------------
 
 
-def test_rows_of_the_histogram(laws):
+def test_rows_of_the_histogram():
     rng = np.random.default_rng(5)
-    points = [laws[i].intervals(rng) for i in (2, 1)]
+    points = [LAWS[i].intervals(rng) for i in (2, 1)]
     found = HopHistogramTable.rows(points)
     assert [row["radius"] for row in found] == [0.1] * 17 + [0.2] * 17
     for row in found:
@@ -204,7 +197,7 @@ def test_rows_of_the_histogram(laws):
     first, second = [row for row in HopHistogramTable.rows([empty]) if row["bins"] == "equal"]
     assert (first["density"], first["stderr"]) == (0.0, None)
     assert second["stderr"] > 0
-    few = HopHistogramTable.rows([laws[2].intervals(rng, chains=99)])
+    few = HopHistogramTable.rows([LAWS[2].intervals(rng, chains=99)])
     assert few[0]["z"] is few[0]["mean_stderr"] is None
 
 
@@ -253,8 +246,7 @@ def test_the_bound_of_a_wall_never_hit_counts_no_copy_twice():
 
     Without an event in R replicas of length T the bound is R T/(4 ln 20).
     """
-    scene = BOX.scene(0.3)
-    point = Laws(scene).dynamics(np.random.default_rng(1))
+    point = LAWS[RADII.index(0.3)].dynamics(np.random.default_rng(1))
     none = {name: dict.fromkeys(getattr(point, name), 0) for name in ("counts", "products")}
     point = replace(point, **none)
     rows = MeanTimesTable.rows([point])
@@ -289,9 +281,8 @@ def test_an_error_smaller_than_asked_needs_its_own_initial_states(replicas, targ
 @pytest.mark.parametrize("chains", [100, 150])
 def test_the_mean_of_a_histogram_is_tested_over_chains(chains):
     """Student's t with as many degrees of freedom as chains less one, whatever their intervals."""
-    laws = Laws(BOX.scene(0.2))
-    point = laws.intervals(np.random.default_rng(2), chains)
-    exact = laws.times["vertical_hop"]
+    point = LAWS[2].intervals(np.random.default_rng(2), chains)
+    exact = LAWS[2].times["vertical_hop"]
     point = replace(point, mean=exact - 5 * point.stderr)
     (z,) = {row["z"] for row in HopHistogramTable.rows([point])}
     assert z == pytest.approx(ndtri(stdtr(chains - 1, -5.0)), abs=2e-3)

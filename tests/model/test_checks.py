@@ -6,7 +6,6 @@ Allowed values are returned in their plain type, others are named in a short sen
 """
 
 import math
-from dataclasses import fields
 from fractions import Fraction
 
 import numpy as np
@@ -73,17 +72,6 @@ def test_odd_values_are_named_in_a_short_sentence(value):
 
 
 NUMBERS = {name: effect for name, effect in EFFECTS.items() if effect.is_number}
-
-
-def test_effects_are_the_fields_of_a_scene_after_its_radius():
-    _, _, *rest, discs, radius = fields(Scene)
-    assert (radius.name, discs.name, discs.default) == ("radius", "discs", 2)
-    assert fields(Box) == fields(Scene)[:-1]
-    assert {field.name: field.default for field in rest} == ABSENT
-    # The parameters of a scene are in the order of the declarations.
-    assert [field.name for field in rest] == list(EFFECTS)
-    # Only the depth is a side of the box.
-    assert [name for name, effect in EFFECTS.items() if effect.of_box] == ["depth"]
 
 
 @pytest.mark.parametrize("effect", NUMBERS.values(), ids=NUMBERS)

@@ -22,18 +22,13 @@ BOX = Scene(1.5, 1.0, 0.24, moment_of_inertia=0.5)
 RING = Scene(1.0, 2.0, 0.2495, moment_of_inertia=0.01, periodic="x")
 
 
-def densities(scene):
-    """Return the densities of |x1 − x2| and |y1 − y2| and their ranges."""
-    a, b, w = scene.range_x, scene.range_y, scene.width
-    if scene.periodic:
-        return (lambda u: 2 * w), w / 2, (lambda v: 2 * (b - v)), b
-    return (lambda u: 2 * (a - u)), a, (lambda v: 2 * (b - v)), b
-
-
 def shares(scene, axis, within):
     """Return the shares of the volume and of collisions that are level within a distance."""
-    f, a, g, b = densities(scene)
-    sigma = scene.contact_distance
+    # The densities of |x1 − x2| and |y1 − y2| and their ranges.
+    a, b, sigma = scene.range_x, scene.range_y, scene.contact_distance
+    f, g = (lambda u: 2 * (scene.range_x - u)), (lambda v: 2 * (scene.range_y - v))
+    if scene.periodic:
+        f, a = (lambda u: 2 * scene.width), scene.width / 2
     if axis == "y":
         f, a, g, b = g, b, f, a  # now u is small
 

@@ -17,15 +17,6 @@ from twodiscs_paper.studies.more_discs.measure import known_derivatives, virial_
 PAPER = Scene(1.5, 1.0, 0.2)
 
 
-def turned(scene, axis):
-    """Return the same scene with the walls of ``axis`` to the right and to the left."""
-    sides = {"x": scene.width, "y": scene.height, "z": scene.depth}
-    first = sides.pop(axis)
-    return replace(
-        scene, width=first, **dict(zip(("height", "depth"), sides.values(), strict=True))
-    )
-
-
 @pytest.mark.parametrize(
     "scene",
     [
@@ -41,7 +32,9 @@ def test_virials_of_all_forces_add_up_to_twice_the_kinetic_energy(scene):
     """Every disc at every wall, by scenes that are turned and with the discs exchanged."""
     virials = []
     for axis in scene.axes:
-        here = turned(scene, axis)
+        # The same scene with the walls of this axis to the right and to the left.
+        sides = [scene.side(axis), *(scene.side(other) for other in scene.axes if other != axis)]
+        here = replace(scene, **dict(zip(("width", "height", "depth"), sides, strict=False)))
         for one in (here, exchanged(here)[0]):
             # A momentum times a rate is an energy over a length, in any unit of mass.
             force = virial.momentum_per_hit(one, "right_wall") * exact.rate(one, "right_wall")

@@ -10,12 +10,11 @@ Dynamics tests the meaning of the areas.
 
 import math
 import os
-import subprocess
-import sys
 from itertools import pairwise, product
 
 import numpy as np
 import pytest
+from commands import python
 from effect_scenes import exchanged
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -28,14 +27,7 @@ from twodiscs.model.scene import Scene
 from twodiscs.theory import exact, flux, weighted
 from twodiscs_paper.studies.passages.measure import passing_rate
 
-BOUND = 1e-13
-
-
-@pytest.fixture(autouse=True, scope="module")
-def digits():
-    """Work with 40 digits."""
-    with mp.workdps(40):
-        yield
+BOUND, DIGITS = 1e-13, 40
 
 
 def numbers(scene):
@@ -220,27 +212,14 @@ def test_the_bits_depend_on_neither_vectors_nor_process():
     vectors = np.show_config("dicts")["SIMD Extensions"].get("found", [])
     other = {"OPENBLAS_NUM_THREADS": "1", "NPY_DISABLE_CPU_FEATURES": " ".join(vectors)}
     one, two = (
-        subprocess.check_output(
-            [sys.executable, "-c", BITS, step, *scenes],
-            env=os.environ | {"PYTHONHASHSEED": "1"} | env,
-        )
+        python("-c", BITS, step, *scenes, env=os.environ | {"PYTHONHASHSEED": "1"} | env).stdout
         for step, env in (("1", {}), ("-1", other | {"PYTHONHASHSEED": "2"}))
     )
     assert one == two
-    assert one.count(b"disc_collision") == len(scenes)
+    assert one.count("disc_collision") == len(scenes)
 
 
 # Closed forms -----------------------------------------------------------------------------------
-
-
-def test_constant():
-    """c_D is the mean of |cos θ| on the sphere."""
-    for components in range(2, 8):
-        power = mpf(components - 2)
-        mean = mp.quad(lambda a, p=power: mp.cos(a) * mp.sin(a) ** p, [0, mp.pi / 2])
-        mean /= mp.quad(lambda a, p=power: mp.sin(a) ** p, [0, mp.pi / 2])
-        assert relative_error(flux.flux_constant(components), mean) < 1e-15
-    assert math.isclose(flux.flux_constant(4) / 2, 2 / (3 * math.pi), rel_tol=1e-15)
 
 
 BOXES = [(1.5, 1.0), slow((1.0, 1.0)), slow((1.0, 2.0)), (3.0, 1.0), (1e6, 1.0)]
@@ -346,7 +325,7 @@ def test_what_is_possible(scene):
 
 
 @given(scenes(), st.floats(0.01, 1.4))
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=40, deadline=None, derandomize=True)
 def test_no_number_depends_on_which_disc_and_which_axis_is_the_first(scene, share):
     """Disc 2 as the first, in units of its mass, then x and y exchanged."""
     other, speed = exchanged(scene)
