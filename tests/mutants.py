@@ -42,7 +42,7 @@ READERS = {
 }
 
 #: Seconds: a run of tests that takes longer hangs, which is noticed as well.
-PATIENCE = 1200
+PATIENCE = 300
 
 #: Mistake, text, its replacement.
 # fmt: off
@@ -235,23 +235,25 @@ MUTANTS = [
 # fmt: on
 
 
+#: The folders of the files that a mutant may be in.
+MUTATED = "src", "workflow", "paper"
+
+
 @cache
-def sources():
-    """Return {path in the repository: text} of all files that a mutant may be in."""
-    files = (
-        path for folder in ("src", "workflow", "paper") for path in (REPOSITORY / folder).rglob("*")
-    )
+def texts(*folders):
+    """Return {path in the repository: text} of the files in ``folders`` that are sources."""
+    paths = (path for folder in folders for path in (REPOSITORY / folder).rglob("*"))
     kinds = (".py", ".smk", ".js", ".css", ".html", ".typ")
     return {
         path.relative_to(REPOSITORY).as_posix(): path.read_text(encoding="utf-8")
-        for path in files
+        for path in paths
         if path.suffix in kinds
     }
 
 
 def file_scene(text):
     """Return the path of the only file with this ``text``, once; raise ``LookupError`` otherwise."""
-    found = [path for path, content in sources().items() for _ in range(content.count(text))]
+    found = [path for path, content in texts(*MUTATED).items() for _ in range(content.count(text))]
     if len(found) != 1:
         raise LookupError(f"{text!r} must be in the sources once, but is in {found}")
     return found[0]
@@ -290,13 +292,8 @@ def homes():
 @cache
 def users():
     """Return {module: paths of the files that import it}, of the packages and of the tests."""
-    tests = {
-        path.relative_to(REPOSITORY).as_posix(): path.read_text(encoding="utf-8")
-        for path in (REPOSITORY / "tests").rglob("*.py")
-        if path.name != "mutants.py"
-    }
     found = {}
-    for path, text in (tests | sources()).items():
+    for path, text in texts("tests", *MUTATED).items():
         if path.endswith(".py") and path != "src/twodiscs/__init__.py":
             for name in imported(text):
                 found.setdefault(name, set()).add(path)
@@ -329,13 +326,13 @@ def nearest(mutated):
             {user for one in border for user in users().get(module_of(one), ())} - distance.keys()
         )
         distance |= dict.fromkeys(border, max(distance.values()) + 1)
-    here, names = Path(path), names_in(sources()[path], mutated)
-    same = (REPOSITORY / "tests").rglob(f"test_{here.stem}.py")  # which may run it as a program
-    for test in same:
-        distance.setdefault(test.relative_to(REPOSITORY).as_posix(), 1)
+    here, names = Path(path), names_in(texts(*MUTATED)[path], mutated)
+    for test in texts("tests"):
+        if Path(test).name == f"test_{here.stem}.py":  # which may run it as a program
+            distance.setdefault(test, 1)
 
     def order(test):
-        text = (REPOSITORY / test).read_text(encoding="utf-8")
+        text = texts("tests")[test]
         named = Path(test).stem.startswith((f"test_{here.stem}", f"test_{here.parent.name}"))
         spoken = sum(len(re.findall(rf"\b{name}\b", text)) for name in names)
         return not named, distance[test], -spoken, len(text)
@@ -390,7 +387,7 @@ def main(words, most):
 
         def tried(plan):
             what, old, new, file, tests = plan
-            folder, begun, text = copies.get(), time.monotonic(), sources()[file]
+            folder, begun, text = copies.get(), time.monotonic(), texts(*MUTATED)[file]
             (folder / file).write_text(text.replace(old, new), encoding="utf-8")
             try:
                 failed = failure(folder, tests)

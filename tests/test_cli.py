@@ -12,9 +12,10 @@ import json
 import math
 import os
 import re
-import shlex
 import subprocess
 import sys
+from io import TextIOWrapper
+from multiprocessing import get_context
 from pathlib import Path
 from types import SimpleNamespace
 from unittest.mock import Mock
@@ -66,48 +67,38 @@ def test_every_form_of_exact_numbers_holds_every_digit(shell):
         assert table[f"{event}_time"]["exact"] == ("" if time is None else text)
 
 
-@pytest.mark.parametrize(
-    ("name", "given"),
-    [
-        (
-            "simulate",
-            {
-                "error": 0.1, "duration": 5.0, "budget": 10**6, "events": ["any_wall"],
-                "method": "dynamics",
-            },
-        ),
-        (
-            "sample",
-            {
-                "samples": 10**6, "error": 0.1, "budget": 10**7, "quantities": ["volume"],
-                "shell": 0.1, "method": "rejection",
-            },
-        ),
-        ("trajectory", {"duration": 5.0, "start": [0.0, 1.0]}),
-    ],
-)  # fmt: skip
-def test_every_option_reaches_the_function(name, given, monkeypatch):
+#: Arguments of functions that are options of their commands, and a value of each.
+OPTIONS = {
+    "error": 0.1, "duration": 5.0, "samples": 10**6, "budget": 10**7, "events": ["any_wall"],
+    "quantities": ["volume"], "start": [0.0, 1.0], "errors": [0.1, "paper"], "shell": 0.1,
+    "method": "rejection", "seed": 7, "name": "a", "cores": 2,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["simulate", "sample", "cost", "trajectory"])
+def test_every_option_reaches_the_function(name, monkeypatch):
     """Without the options it has its own defaults."""
-    given |= {"seed": 7, "name": "a"} | ({} if name == "trajectory" else {"cores": 2})
-    taken = {}
-
-    def function(scene, **options):
-        taken.update(options)
-        raise InputError("enough")
-
-    usual = inspect.signature(getattr(twodiscs, name)).parameters
+    usual = inspect.signature(getattr(twodiscs, name))
+    given = {option: value for option, value in OPTIONS.items() if option in usual.parameters}
+    function = Mock(side_effect=InputError("enough"))
     monkeypatch.setattr(twodiscs, name, function)
-    words = ["--radius", "0.2"]
+    words = [name, *BOX, "--radius", "0.2"]
+    assert command(monkeypatch, cli, *words) == 2
     for option, value in given.items():
         words += [f"--{option}", *(value if isinstance(value, list) else [value])]
-    assert command(monkeypatch, cli, name, *BOX, *map(str, words)) == 2
-    assert taken == given
-    assert command(monkeypatch, cli, name, *BOX, *words[:2]) == 2
-    assert taken == {name: usual[name].default for name in given}
+    assert command(monkeypatch, cli, *words) == 2
+    scene = Scene(1.5, 1, 0.2)
+    for call, options in zip(function.call_args_list, ({}, given), strict=True):
+        found, right = usual.bind(*call.args, **call.kwargs), usual.bind(scene, **options)
+        found.apply_defaults()
+        right.apply_defaults()
+        assert found == right
 
 
-def test_cost_prints_times_of_errors_as_a_table_and_for_scripts(shell):
-    words = "cost", *BOX, "--radius", "0.2", "--errors", "1e-2", "paper", "--shell", "0.1"
+def test_cost_prints_times_of_errors_as_a_table_and_for_scripts(shell, monkeypatch):
+    cost = twodiscs.cost(Scene(1.5, 1, 0.2), [1e-2, "paper"], shell=0.1)
+    monkeypatch.setattr(twodiscs, "cost", lambda *_, **__: cost)
+    words = "cost", *BOX, "--radius", "0.2"
     text = shell(*words)
     assert text.startswith(str(Scene(1.5, 1, 0.2)))
     assert " 0.01 0.0003 " in re.sub(" +", " ", text)
@@ -152,35 +143,31 @@ def test_effects_are_options_with_their_meanings(shell):
 EXACT = ("exact", *BOX, "--radius", "0.2")
 
 
-def installed(*words, redirected="", **environment):
-    """Return the completed process of ``twodiscs`` in a shell, with streams ``redirected``."""
-    line = shlex.join([str(Path(sys.executable).with_name("twodiscs")), *words])
-    return subprocess.run(
-        f"{line} {redirected}", shell=True, capture_output=True, check=False,
-        env={**os.environ, "PYTHONIOENCODING": "utf-8", **environment},
-    )  # fmt: skip
-
-
-def test_no_stream_loses_a_result(shell):
+def test_no_stream_loses_a_result(shell, monkeypatch, capsys):
     """An encoding without its letters, a closed standard error, a full device."""
     expected = shell(*EXACT)
     for encoding in ("ascii", "cp1252"):
-        done = installed(*EXACT, PYTHONIOENCODING=encoding)
-        assert (done.returncode, done.stderr) == (0, b"")
-        assert done.stdout == expected.encode(encoding, "backslashreplace")
-    assert installed(*EXACT, redirected="2>&-").stdout.decode() == expected
-    done = installed("exact", *BOX, redirected="2>&-")
-    assert (done.returncode, done.stdout) == (2, b"")
-    done = installed(*EXACT, redirected="> /dev/full")
-    *result, error = done.stderr.decode().splitlines()
+        output = TextIOWrapper(io.BytesIO(), encoding)
+        with monkeypatch.context() as patch:
+            patch.setattr(sys, "stdout", output)
+            assert command(monkeypatch, cli, *EXACT) == 0
+        assert output.buffer.getvalue() == expected.encode(encoding, "backslashreplace")
+    for words, status, result in ((EXACT, 0, expected), (("exact", *BOX), 2, "")):
+        monkeypatch.setattr(sys, "stderr", None)
+        assert command(monkeypatch, cli, *words) == status
+        assert capsys.readouterr().out == result
+    with open("/dev/full", "w") as full:
+        to = {"stdout": full, "stderr": subprocess.PIPE, "capture_output": False}
+        done = python("-X", "utf8", "-m", "twodiscs", *EXACT, **to)
     assert done.returncode == 2
-    assert error == "error: standard output: No space left on device"
-    assert result == expected.splitlines()
+    assert done.stderr == f"{expected}error: standard output: No space left on device\n"
 
 
-def test_a_closed_output_is_refused_before_the_work():
-    done = installed("simulate", *BOX, "--radius", "0.2", "--error", "1e-9", redirected=">&-")
-    assert (done.returncode, done.stderr) == (2, b"error: standard output is closed\n")
+def test_a_closed_output_is_refused_before_the_work(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "stdout", None)
+    monkeypatch.setattr(twodiscs, "simulate", None)
+    assert command(monkeypatch, cli, "simulate", *BOX, "--radius", "0.2") == 2
+    assert capsys.readouterr().err == "error: standard output is closed\n"
 
 
 @pytest.mark.parametrize("words", [EXACT, ("--version",)])
@@ -193,17 +180,14 @@ def test_who_reads_may_stop_reading(words):
     assert run.stderr == ""
 
 
-def test_run_turns_an_error_into_a_sentence_and_a_result_into_its_status(capsys):
-    for main, status, sentence in (
-        (Mock(side_effect=InputError("two\n  lines")), 2, "error: two lines\n"),
-        (Mock(side_effect=FileNotFoundError(2, "No file", "a.csv")), 2, "error: a.csv: No file\n"),
-        (Mock(side_effect=OSError("broken")), 2, "error: broken\n"),
-        (Mock(return_value=None), None, ""),
-        (Mock(return_value=1), 1, ""),
-    ):
-        with pytest.raises(SystemExit) as caught:
-            cli.run(main)
-        assert (caught.value.code, capsys.readouterr().err) == (status, sentence)
+ERRORS = [(InputError("two\n  lines"), "two lines"), (OSError("broken"), "broken")]
+
+
+@pytest.mark.parametrize(("error", "sentence"), ERRORS)
+def test_an_error_is_a_sentence(error, sentence, capsys):
+    with pytest.raises(SystemExit, match=r"^2$"):
+        cli.run(Mock(side_effect=error))
+    assert capsys.readouterr().err == f"error: {sentence}\n"
 
 
 # Builds -----------------------------------------------------------------------------------------
@@ -306,44 +290,32 @@ def test_targets_may_stand_behind_options(monkeypatch, capsys):
     assert given == [("my.yaml", options)]
 
 
-def _dag(targets, made):
-    """Return what ``closing`` asks of Snakemake: jobs that are targets, and all jobs."""
-    jobs = [SimpleNamespace(output=list(map(str, paths))) for paths in made]
-    return SimpleNamespace(
-        targetjobs=[
-            SimpleNamespace(rule=SimpleNamespace(name=name), output=output, input=files)
-            for name, output, files in targets
-        ],
-        jobs=jobs,
-    )
+def dag(*targets, made=()):
+    """Return what ``closing`` asks of Snakemake: jobs that are targets, and the files made."""
+    jobs = [
+        SimpleNamespace(rule=SimpleNamespace(name=name), output=output, input=files)
+        for name, output, files in targets
+    ]
+    return SimpleNamespace(targetjobs=jobs, jobs=[SimpleNamespace(output=made)])
 
 
-def test_a_build_ends_with_its_own_verdict_and_report(tmp_path, monkeypatch):
-    """Those of another build may be in the folder. They say so if the configuration is newer."""
-    passed, report, mine, other = (
-        tmp_path / n for n in ("check.passed", "report.html", "my.yaml", "other.yaml")
-    )
-    passed.write_text("a: 3 comparisons passed\n")
-    report.touch()
-    mine.touch()
-    os.utime(mine, (0, 0))
-    assert build.closing(tmp_path, _dag([], [["a.png"]]), [mine]) == ""
-    assert "report" not in build.closing(tmp_path, _dag([], [[passed], ["a.png"]]), [mine])
-    lines = build.closing(tmp_path, _dag([], [[passed], [report]]), [mine]).splitlines()
-    assert lines[0].startswith(f"{passed}, of 2")
-    assert lines[1:] == ["  a: 3 comparisons passed", f"The report is {report}"]
-    os.utime(passed, (1, 1))
-    os.utime(mine, (2, 2))
-    other.touch()
-    os.utime(other, (0, 0))
+def test_a_build_ends_with_what_is_older_than_its_configuration_or_not_reached(
+    tmp_path, monkeypatch
+):
+    """The verdict of another build may be in the folder; test_build has one of its own."""
+    passed, mine, other = (tmp_path / name for name in ("check.passed", "my.yaml", "other.yaml"))
+    (tmp_path / "report.html").touch()
+    for path, moment in ((passed, 1), (mine, 2), (other, 0)):
+        path.touch()
+        os.utime(path, (moment, moment))
     old = f"{passed} is older than the configuration; the target check renews it\n"
-    for paths in ([mine], [mine, other], [other, mine]):
-        assert build.closing(tmp_path, _dag([], []), paths) == old
-    assert old not in build.closing(tmp_path, _dag([], [[passed]]), [mine])
+    for configured in ([mine], [mine, other], [other, mine]):
+        assert build.closing(tmp_path, dag(), configured) == old
+    assert old not in build.closing(tmp_path, dag(made=[passed]), [mine])
     # Accuracies that were not reached, of the scenes whose times were built.
     monkeypatch.setattr(build, "missed", lambda results, scene: [f"{scene['name']}: missed"])
-    dag, scenes = _dag([], [[tmp_path / "a" / "mean_times.csv"]]), [{"name": "a"}, {"name": "b"}]
-    assert build.closing(tmp_path, dag, [mine], scenes) == f"{old}a: missed\n"
+    made, scenes = [tmp_path / "a" / "mean_times.csv"], [{"name": "a"}, {"name": "b"}]
+    assert build.closing(tmp_path, dag(made=made), [mine], scenes) == f"{old}a: missed\n"
 
 
 KILLED = "error: the job ended without a word: it was killed, or no memory was left"
@@ -390,22 +362,12 @@ def test_a_run_has_the_status_of_its_end(end, status, said, tmp_path, monkeypatc
     assert capsys.readouterr().err.startswith(said)
 
 
-def test_a_dry_run_counts_the_jobs_of_a_scene_and_names_a_reason():
-    edited, missing = Reason(), Reason()
-    edited.updated_input.update(["b.py", "a.py"])
-    missing.missing_output.add("c.json")
-    long = {"scene": "long"}
-    jobs = [
-        SimpleNamespace(rule=SimpleNamespace(name=rule), wildcards=of, why=why)
-        for rule, of, why in [("dynamics", long, missing)] * 2
-        + [("table", long, edited), ("code", {}, missing)]
-    ]
-    dag = SimpleNamespace(needrun_jobs=lambda exclude_finished: jobs, reason=lambda job: job.why)
-    assert [" ".join(line.split()) for line in build.planned(dag).splitlines()[2:]] == [
-        "code 1 output files have to be generated",
-        "long dynamics 2 output files have to be generated",
-        "long table 1 updated input files: a.py",
-    ]
+def test_a_dry_run_names_the_first_file_that_was_edited():
+    """test_run has a dry run after which files are missing."""
+    reason, jobs = Reason(), [SimpleNamespace(rule=SimpleNamespace(name="table"), wildcards={})]
+    reason.updated_input.update(["b.py", "a.py"])
+    dag = SimpleNamespace(needrun_jobs=lambda exclude_finished: jobs, reason=lambda job: reason)
+    assert build.planned(dag).endswith(" updated input files: a.py\n")
     jobs.clear()
     assert build.planned(dag) == "All files are up to date.\n"
 
@@ -413,7 +375,7 @@ def test_a_dry_run_counts_the_jobs_of_a_scene_and_names_a_reason():
 def test_a_build_ends_with_the_files_of_its_targets(tmp_path):
     targets = [("pressure", [], ["a.pdf", "a.png"]), ("explorer", ["e.html"], ["e.js"])]
     targets += [("report", ["r.html"], []), ("default", [], ["r.html"]), ("check", ["c"], [])]
-    lines = build.closing(tmp_path, _dag(targets, []), [])
+    lines = build.closing(tmp_path, dag(*targets), [])
     assert lines == "pressure: a.pdf, a.png\nexplorer: e.html\n"
 
 
@@ -428,26 +390,18 @@ COMPLETED = {
     "twodiscs run my.yaml volu": "volume",
 }
 
-#: Completes each line in a copy of the process.
-COMPLETE = """
-import os, sys
-from twodiscs.cli import main
 
-for line in sys.argv[2:]:
-    if not os.fork():
-        os.environ |= {"COMP_LINE": line, "COMP_POINT": str(len(line))}
-        main()
-    os.wait()
-    with open(sys.argv[1]) as proposed:
-        print(*proposed)
-"""
-
-
-def test_a_shell_completes(tmp_path):
-    shell = {
+@pytest.mark.parametrize("line", COMPLETED)
+def test_a_shell_completes(line, tmp_path, monkeypatch):
+    """In a copy of this process, which ends without a word."""
+    monkeypatch.chdir(REPOSITORY)
+    for name, value in {
         "_ARGCOMPLETE": "1", "_ARGCOMPLETE_IFS": "\n", "_ARGCOMPLETE_SUPPRESS_SPACE": "1",
         "_ARGCOMPLETE_STDOUT_FILENAME": str(tmp_path / "proposed"), "COMP_TYPE": "9",
-    }  # fmt: skip
-    words = "-c", COMPLETE, tmp_path / "proposed", *COMPLETED
-    found = python(*words, timeout=60, env=os.environ | shell, cwd=REPOSITORY, check=True).stdout
-    assert found.splitlines() == [*COMPLETED.values()]
+        "COMP_LINE": line, "COMP_POINT": str(len(line)),
+    }.items():  # fmt: skip
+        monkeypatch.setenv(name, value)
+    copy = get_context("fork").Process(target=cli.main)
+    copy.start()
+    copy.join(60)
+    assert (tmp_path / "proposed").read_text() == COMPLETED[line]

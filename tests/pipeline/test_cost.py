@@ -86,7 +86,7 @@ def test_shards_cover_all_blocks_once(stage):
         assert most == 1 or most * run.block_events * run.cost_ratio <= request.shard_events
 
 
-@settings(max_examples=30)
+@settings(max_examples=10)
 @given(st.floats(1e-5, 1e-3), st.floats(1.01, 10))
 def test_a_tighter_accuracy_keeps_the_shards_but_the_last(error, times):
     """They are ranges of one grid: of each component all but the last one stay."""

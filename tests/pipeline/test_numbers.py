@@ -9,6 +9,7 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_UP, Context, Decimal
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 import typst
 from factory import of
@@ -92,19 +93,6 @@ def test_thousands_of_numbers_are_formatted_as_by_decimal(tmp_path):
     assert measured == [with_error(x, error) for x, error in errors]
 
 
-def test_numbers_are_written_as_physicists_do(tmp_path):
-    cases = {
-        "digits(44312345678, 2)": "$4.4 times 10^(10)$",
-        "with-error(-0.6098, 0.1141)": "$-0.61 (11)$",
-        "integer(43)": "43",
-        "in-words(2)": "two",
-        "in-words(12)": "12",
-        "sides(1.5, 1)": "$1.5 times 1$",
-        'sides("3e-6", "1e-5")': "$(3 times 10^(-6)) times 10^(-5)$",
-    }
-    assert evaluated(tmp_path, *(f"{case}.text" for case in cases)) == [*cases.values()]
-
-
 # Rows ---------------------------------------------------------------------------------------------
 
 TAILS = """\
@@ -129,7 +117,7 @@ def rows(tmp_path):
     return texts
 
 
-def test_a_number_takes_its_rows(rows):
+def test_a_number_takes_its_rows_and_is_written_as_by_physicists(rows):
     cases = {
         'value(of(rows, event: "wall"), "estimate", 2)': "$8$",  # an empty cell is no row
         'value(of(rows, event: "hop", law: given), "estimate", 2)': "$-6$",
@@ -161,6 +149,11 @@ def test_a_number_takes_its_rows(rows):
         'power-of-two(first(rows), "stderr")': "$2^(-2)$",
         'shown(repr(grouped(rows, "event", "time").keys()))':
             '("hop_2.0", "hop_4.0", "wall_2.0", "wall_1.0")',
+        "integer(43)": "43",
+        "in-words(2)": "two",
+        "in-words(12)": "12",
+        "sides(1.5, 1)": "$1.5 times 1$",
+        'sides("3e-6", "1e-5")': "$(3 times 10^(-6)) times 10^(-5)$",
     }  # fmt: skip
     assert rows(*cases) == [*cases.values()]
 
@@ -222,96 +215,85 @@ def test_every_column_of_cells_has_rows_in_the_expected_tables(printed):
 
 @pytest.fixture(scope="module")
 def expected(results):
-    """Return {name: rows} of the same tables and of the long runs."""
-    paths = {name: results / f"{name}.csv" for name in STUDY_TABLES}
-    tables = {name: TABLES[name].read(path) for name, path in paths.items() if path.exists()}
-    for name in SCENE_TABLES:
-        paths = [results / scene["name"] / f"{name}.csv" for scene in SCENES]
-        tables[name] = [row for path in paths for row in TABLES[name].read(path)]
+    """Return {name: frame} of the same tables and of the long runs."""
     kept = PAPER / "long_run"
-    for name in ("files", "displacements"):
-        tables[name] = TABLES["passages"].read(kept / name / "passages.csv")
-    tables["kept"] = TABLES["passages"].read(kept / "passages" / "passages.csv")
-    path = kept / "calibration" / "calibration.csv"
-    tables["calibration"] = TABLES["calibration"].read(path)
-    return tables | {"long_run": MeanTimesTable.read(kept / "far" / "mean_times.csv")}
-
-
-def scores(rows):
-    """Return the sizes of the scores of ``rows``."""
-    return [abs(row["z"]) for row in rows if row["z"] is not None]
+    paths = {name: [results / f"{name}.csv"] for name in STUDY_TABLES}
+    for name in SCENE_TABLES:
+        paths[name] = [results / scene["name"] / f"{name}.csv" for scene in SCENES]
+    paths["calibration"] = [kept / "calibration" / "calibration.csv"]
+    tables = {name: (TABLES[name], some) for name, some in paths.items() if some[0].exists()}
+    for name in ("passages", "files", "displacements"):
+        tables[f"long_{name}"] = TABLES["passages"], [kept / name / "passages.csv"]
+    tables["long_run"] = MeanTimesTable, [kept / "far" / "mean_times.csv"]
+    return {
+        name: pd.DataFrame([row for path in some for row in table.read(path)])
+        for name, (table, some) in tables.items()
+    }
 
 
 def exponent(tables):
     """Return the slope of ln(1 − κ) against ln δ by the normal equations."""
-    rows = of(tables["passages"], scene="paper", event="horizontal_hop", quantity="coefficient")
-    rows = of(rows, moment_of_inertia=None, friction=None)[-5:]
-    columns = [[row[name] for row in rows] for name in ("distance", "estimate", "stderr")]
-    x, kappa, error = map(np.array, columns)
+    rows = tables["passages"].query(
+        "scene == 'paper' and event == 'horizontal_hop' and quantity == 'coefficient'"
+        " and moment_of_inertia.isna() and friction.isna()"
+    )
+    x, kappa, error = rows[["distance", "estimate", "stderr"]].to_numpy(float)[-5:].T
     return np.polyfit(np.log(x), np.log(1 - kappa), 1, w=(1 - kappa) / error)[0]
 
 
 def reach(tables):
     """Return the last time over the one at which 2Dt of hops, with friction, is as large as F√t."""
-    rows = of(tables["displacements"], distance=2.0**-5)
-    rows = [row for row in rows if row["friction"] is not None]
-    share, rate, single = (
-        of(rows, quantity=name)[0]["estimate"] for name in ("diffusion", "rate", "single_file")
-    )
-    time = max(row["time"] for row in of(rows, quantity="displacement"))
-    return (share * rate * time / (single * np.sqrt(time))) ** 2
+    rows = tables["long_displacements"].query("distance == 2**-5 and friction.notna()")
+    first = rows.groupby("quantity").first().estimate
+    time = rows.query("quantity == 'displacement'").time.max()
+    return (first.diffusion * first.rate * time / (first.single_file * np.sqrt(time))) ** 2
 
 
-#: Numbers by a second method, from {name: rows}.
+RATES = "scene == 'paper' and quantity == 'rate'"
+REDUCED = "scene == 'paper' and quantity == 'mean_time' and form == 'reduced'"
+SINGLE = "quantity == 'single_file'"
+LONG = "scene == 'h/4' and quantity == 'coefficient' and distance >= 2**-14"
+
+#: Numbers by a second method, from {name: frame}.
 BY_HAND = {
-    "tests": lambda t: sum(bool(r["passed"] is not None and r["independent"]) for r in t["check"]),
-    "tests_largest": lambda t: max(scores(of(t["check"], independent=True))),
-    "mean_time_largest": lambda t: max(scores(of(t["check"], comparison="mean_time"))),
-    "strips_longest": lambda t: max(r["estimate"] for r in of(t["mean_times"], starts="strip")),
-    "hazards": lambda t: len(of(t["distributions"], scene="paper", quantity="rate")),
-    "rates_nearest": lambda t: min(
-        scores(of(t["distributions"], scene="paper", quantity="rate"))
+    "tests": lambda t: t["check"].query("independent").passed.count(),
+    "tests_largest": lambda t: t["check"].query("independent").z.abs().max(),
+    "mean_time_largest": lambda t: t["check"].query("comparison == 'mean_time'").z.abs().max(),
+    "strips_longest": lambda t: t["mean_times"].query("starts == 'strip'").estimate.max(),
+    "hazards": lambda t: len(t["distributions"].query(RATES)),
+    "rates_nearest": lambda t: t["distributions"].query(RATES).z.abs().min(),
+    "decay_rate": lambda t: (
+        t["tails"].query("quantity == 'rate'").eval("estimate * exact_mean").iloc[0]
     ),
-    "decay_rate": lambda t: next(
-        r["estimate"] * r["exact_mean"] for r in of(t["tails"], quantity="rate")
+    "tail_hops_probability": lambda t: (
+        t["tails"].query("event == 'vertical_hop' and method == 'weighted'").estimate.iloc[-1]
     ),
-    "tail_hops_probability": lambda t: of(t["tails"], event="vertical_hop", method="weighted")[-1][
-        "estimate"
-    ],
-    "reduced_largest": lambda t: max(
-        scores(of(t["thresholds"], scene="paper", quantity="mean_time", form="reduced"))
-    ),
-    "never_met_rough": lambda t: max(
-        r["estimate"] for r in of(t["effects"], quantity="never_met_share", duration=1e4)
-        if r["estimate"] is not None
+    "reduced_largest": lambda t: t["thresholds"].query(REDUCED).z.abs().max(),
+    "never_met_rough": lambda t: (
+        t["effects"].query("quantity == 'never_met_share' and duration == 1e4").estimate.max()
     ),
     "passages_exponent": exponent,
-    "passages_last": lambda t: max(
-        r["estimate"]
-        for r in of(t["kept"], scene="h/4", quantity="coefficient")
-        if r["distance"] >= 2.0**-14
+    "passages_last": lambda t: t["long_passages"].query(LONG).estimate.max(),
+    "passages_files_error": lambda t: (
+        t["long_files"].query("quantity == 'diffusion' and discs in (4, 8)").stderr.max()
     ),
-    "passages_files_error": lambda t: max(
-        r["stderr"] for n in (4, 8) for r in of(t["files"], quantity="diffusion", discs=n)
-    ),
-    "long_files_law_error": lambda t: 100 * max(
-        r["stderr"] / r["estimate"] for r in of(t["displacements"], quantity="single_file")
+    "long_files_law_error": lambda t: (
+        t["long_displacements"].query(SINGLE).eval("100 * stderr / estimate").max()
     ),
     "long_files_last_reach": reach,
-    "more_discs_exact": lambda t: sum(
-        r["exact"] is not None and r["z"] is not None and r["event"] != "virial"
-        for r in t["more_discs"]
+    "more_discs_exact": lambda t: (
+        t["more_discs"].query("event != 'virial'")[["exact", "z"]].notna().all(axis=1).sum()
     ),
-    "longest_run": lambda t: max(r["count"] for r in of(t["stability"], part="dynamics")),
-    "overlap": lambda t: -min(r["value"] for r in of(t["stability"], quantity="smallest_gap")),
-    "calibrated_square": lambda t: np.mean([
-        r["mean_square"] for r in of(t["calibration"], size="usual", test="normal")
-    ]),
-    "long_run_events": lambda t: sum(
-        r["count"] for r in t["long_run"] if r["event"] in ("any_wall", "disc_collision")
+    "longest_run": lambda t: t["stability"].query("part == 'dynamics'")["count"].max(),
+    "overlap": lambda t: -t["stability"].query("quantity == 'smallest_gap'").value.min(),
+    "calibrated_square": lambda t: (
+        t["calibration"].query("size == 'usual' and test == 'normal'").mean_square.mean()
     ),
-    "long_run_rare": lambda t: max(r["exact"] for r in t["long_run"]),
-}  # fmt: skip
+    "long_run_events": lambda t: (
+        t["long_run"].query("event in ('any_wall', 'disc_collision')")["count"].sum()
+    ),
+    "long_run_rare": lambda t: t["long_run"].exact.max(),
+}
 
 
 @pytest.mark.parametrize("name", BY_HAND)

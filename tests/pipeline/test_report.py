@@ -14,39 +14,27 @@ from factory import empty
 from PIL import Image
 
 from twodiscs.analysis.tables import CostTable, MeanTimesTable
-from twodiscs_paper.pipeline.documents.report import (
-    ERRORS,
-    KEY,
-    KEY_OF_ALL,
-    accuracies,
-    agreement,
-    contents,
-    key_figures,
-    mean_times,
-    movie,
-    page,
-    short,
-)
+from twodiscs_paper.pipeline.documents import report
 from twodiscs_paper.pipeline.results.verdict import verdict
 
 
 def test_other_figures_stand_in_for_those_that_are_not_there():
     def key(*names, of_scene=True):
         paths = [PurePosixPath(f"a/figures/{name}.png") for name in sorted(names)]
-        return [path.stem for path in key_figures(paths, of_scene)]
+        return [path.stem for path in report.key_figures(paths, of_scene)]
 
     assert key("model", "volume", "mean_hop_time", "animation") == ["mean_hop_time", "volume"]
     assert key("model", "animation") == []
-    assert key("volume", *KEY) == [*KEY]
-    assert key("stability", *KEY_OF_ALL, of_scene=False) == [*KEY_OF_ALL]
+    assert key("volume", *report.KEY) == [*report.KEY]
+    assert key("stability", *report.KEY_OF_ALL, of_scene=False) == [*report.KEY_OF_ALL]
 
 
 @pytest.mark.parametrize("z", [2.41, 0.03456, 12.345])
 def test_the_largest_deviation_has_the_digits_of_the_verdict(z):
     row = {"bound": 99, "independent": True, "status": "sampled", "z": -z}
-    said = page("largest |z| {{ largest | three_digits }}\n", {"largest": z})
+    said = report.page("largest |z| {{ largest | three_digits }}\n", {"largest": z})
     assert said in verdict([("small", [row])])[1]
-    assert (short(999), short(43_870_000_000)) == ("999", "4.4 × 10<sup>10</sup>")
+    assert (report.short(999), report.short(43_870_000_000)) == ("999", "4.4 × 10<sup>10</sup>")
 
 
 def test_the_events_of_the_agreement_are_those_of_dynamics(tmp_path):
@@ -56,13 +44,15 @@ def test_the_events_of_the_agreement_are_those_of_dynamics(tmp_path):
     counts = {"dynamics": 7, "monte_carlo": 100}
     rows = [empty(CostTable, stage=stage, radius=0.1, events=n) for stage, n in counts.items()]
     CostTable.write(tmp_path / "paper" / "cost.csv", rows)
-    assert agreement(tmp_path, {"name": "paper"})["events"] == 7
+    assert report.agreement(tmp_path, {"name": "paper"})["events"] == 7
 
 
 def test_mean_times_are_those_of_their_table():
     folder = REPOSITORY / "paper" / "expected"
     scene = {"name": "paper", "width": 1.5, "height": 1.0, "effects": {}}
-    shown = [(radius, *row) for radius, rows in mean_times(folder, scene).items() for row in rows]
+    shown = [
+        (radius, *row) for radius, rows in report.mean_times(folder, scene).items() for row in rows
+    ]
     rows = MeanTimesTable.read(folder / "paper" / "mean_times.csv")
     for (radius, event, value, error, exact, z), row in zip(shown, rows, strict=True):
         assert (radius, event.replace(" ", "_")) == (row["radius"], row["event"])
@@ -75,7 +65,7 @@ def test_mean_times_are_those_of_their_table():
         if row["exact"] is not None:
             assert abs(float(exact) - row["exact"]) <= 0.0501 * row["stderr"]
             assert abs(float(z) - row["z"]) <= 0.00501
-    assert mean_times(folder, scene | {"name": "absent"}) == {}
+    assert report.mean_times(folder, scene | {"name": "absent"}) == {}
 
 
 def test_an_animation_stands_still_at_the_picture_that_is_shown_longest(tmp_path):
@@ -85,7 +75,7 @@ def test_an_animation_stands_still_at_the_picture_that_is_shown_longest(tmp_path
     times = [1500 if k == 12 else 50 for k in range(20)]
     frames[0].save(tmp_path / path, save_all=True, append_images=frames[1:], duration=times, loop=0)
     scene = {"name": "one", "box": "1.5 × 1", "width": 1.5, "height": 1.0, "effects": {}}
-    still = movie(tmp_path, path, {"one": scene})["still"]
+    still = report.movie(tmp_path, path, {"one": scene})["still"]
     with Image.open(BytesIO(b64decode(still.partition(",")[2]))) as image:
         assert image.convert("RGB").tobytes() == frames[12].tobytes()
 
@@ -100,11 +90,11 @@ def test_boxes_are_described_with_their_effects_and_events():
         {"name": "micro", "box": "3.25e-06 × 1.25e-05", "effects": {"mass_ratio": 0.5}},
     ]  # fmt: skip
     files = [f"{scene['name']}/mean_times.csv" for scene in scenes]
-    template = REPOSITORY / "workflow" / "report" / "front.html"
-    report = page(template.read_text(encoding="utf-8"), contents(REPOSITORY, files, scenes))
-    for text in ("1.2 × 0.8", "2 × 1, with 3 discs, periodic x", "with mass ratio 0.5"):
-        assert f"{text}.</p>" in report
-    plain, three, unequal = report.split("Effects compiled: ")[1:]
+    template = (REPOSITORY / "workflow/report/front.html").read_text(encoding="utf-8")
+    text = report.page(template, report.contents(REPOSITORY, files, scenes))
+    for said in ("1.2 × 0.8", "2 × 1, with 3 discs, periodic x", "with mass ratio 0.5"):
+        assert f"{said}.</p>" in text
+    plain, three, unequal = text.split("Effects compiled: ")[1:]
     assert plain.startswith("none. Events detected:\nnone.")
     assert three.startswith("periodic x. Events detected:\ndisc collision, top wall.")
     assert unequal.startswith("mass ratio 0.5.")
@@ -112,22 +102,22 @@ def test_boxes_are_described_with_their_effects_and_events():
 
 def test_the_section_on_accuracy_has_the_worst_error_and_the_time_of_others(tmp_path):
     scene = {"name": "a", "event_budget": None}
-    assert accuracies(tmp_path, scene) == []
+    assert report.accuracies(tmp_path, scene) == []
     (tmp_path / "a").mkdir()
     rows = [
         empty(MeanTimesTable, radius=0.2, event=event, estimate=2.0, stderr=error, target=1e-2)
         for event, error in (("any_wall", 0.001), ("top_wall", 0.02), ("right_wall", None))
     ]
     MeanTimesTable.write(tmp_path / "a" / "mean_times.csv", rows)
-    assert accuracies(tmp_path, scene) == []
+    assert report.accuracies(tmp_path, scene) == []
     # The job took three seconds, most of them to compile; at the speed of the other it takes one.
     jobs = [
         empty(CostTable, stage="dynamics", radius=radius, events=events, seconds=seconds)
         for radius, events, seconds in ((0.2, 10**7, 3.0), (0.3, 10**8, 10.0))
     ]
     CostTable.write(tmp_path / "a" / "cost.csv", jobs)
-    (row,) = accuracies(tmp_path, scene)
+    (row,) = report.accuracies(tmp_path, scene)
     assert (row["radius"], row["quantity"], row["asked"]) == (0.2, "top_wall_time", 1e-2)
     assert row["reached"] == pytest.approx(1e-2)
     assert (row["seconds"], row["times"]) == ("3 s", ["1.7 min", "2.8 h", "12 d", "3.2 years"])
-    assert ERRORS == (1e-3, 1e-4, 1e-5, 1e-6)
+    assert report.ERRORS == (1e-3, 1e-4, 1e-5, 1e-6)

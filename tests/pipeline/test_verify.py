@@ -5,17 +5,22 @@ Without these tests verification could miss a difference, or find one that is no
 
 import json
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pandas as pd
 import pytest
+from commands import python
 
+from twodiscs.analysis.tables import TheoryTable
+from twodiscs.model.scene import Scene
+from twodiscs.theory import exact
 from twodiscs_paper.configuration.yaml_files import load, read
 from twodiscs_paper.pipeline.results import verify
+from twodiscs_paper.studies.passages.models import file
+from twodiscs_paper.studies.stability.measure import EXTREMES
 
 REPOSITORY = Path(__file__).resolve().parents[2]
+EXPECTED = REPOSITORY / "paper" / "expected"
 POINT = {"counts": {"vertical_hop": 2**62, "bins": [3, 4]}, "duration": 0.5, "status": "ended"}
 TABLES = {
     "agreement.csv": "quantity,estimate,count\nmean_square,1.0,7\n",
@@ -148,41 +153,28 @@ def test_a_point_is_compared_value_by_value(results, expected, old, new, sentenc
     assert found(results, expected) == ({name: sentence} if sentence else {})
 
 
-#: Exact values, computed again and compared with those expected; rows of theory.csv and of passages
-#: by their columns, extremes by their case.
-EXACT_AGAIN = """
-import math
-import numpy as np, pandas as pd
-from twodiscs.model.scene import Scene
-from twodiscs.theory import exact
-from twodiscs_paper.configuration.yaml_files import load, read
-from twodiscs_paper.catalogue import TABLES
-from twodiscs_paper.pipeline.results import verify
-from twodiscs_paper.studies.passages.models import file
-from twodiscs_paper.studies.stability.measure import EXTREMES
-
-for scene in load(read("config/config.yaml")).scenes:
-    rows = TABLES["theory"].rows(scene.box, scene.exact_radii("theory"))
-    expected = verify.read(f"paper/expected/{scene.name}/theory.csv")
-    observed = pd.DataFrame(rows)[[*expected]].convert_dtypes()
-    assert verify.same("theory", "exact", observed["exact"], expected["exact"]).all()
-table = verify.read("paper/expected/stability.csv")
-times = table[(table["part"] == "extremes") & table["quantity"].str.endswith("_time")]
-exact_times = {case: exact.mean_times(scene) for case, scene in EXTREMES.items()}
-found = [exact_times[row.case][row.quantity.removesuffix("_time")] for row in times.itertuples()]
-observed = times.assign(exact=np.array(found, float))
-known = times["exact"].notna().to_numpy()
-close = verify.same("stability", "exact", observed["exact"].astype("Float64"), times["exact"])
-assert (close | verify.well_conditioned(observed, times))[known].all()
-table = verify.read("paper/expected/passages.csv")
-rows = table[(table["quantity"] == "file") & table["moment_of_inertia"].isna()]
-rows = rows[rows["distance"] < 0]
-for row in rows.to_dict("records"):
-    scene = Scene(row["width"], row["height"], row["radius"], discs=row["discs"], periodic="x")
-    friction = None if row["friction"] is pd.NA else row["friction"]
-    assert math.isclose(file.law(scene, friction, row["time"]), row["reference"], rel_tol=1e-12)
-assert len(rows) > 10
-"""
+def exact_again():
+    """Compare exact values, computed again, with those expected: of scenes, extremes and files."""
+    for scene in load(read(REPOSITORY / "config/config.yaml")).scenes:
+        rows = TheoryTable.rows(scene.box, scene.exact_radii("theory"))
+        expected = verify.read(EXPECTED / scene.name / "theory.csv")
+        observed = pd.DataFrame(rows)[[*expected]].convert_dtypes()
+        assert verify.table_difference("theory", observed, expected) == ""
+    times = verify.read(EXPECTED / "stability.csv").query(
+        "part == 'extremes' and quantity.str.endswith('_time') and exact.notna()"
+    )
+    known = {case: exact.mean_times(scene) for case, scene in EXTREMES.items()}
+    found = [known[row.case][row.quantity.removesuffix("_time")] for row in times.itertuples()]
+    observed, times = (t.reset_index(drop=True) for t in (times.assign(exact=found), times))
+    assert verify.table_difference("stability", observed, times) == ""
+    rows = verify.read(EXPECTED / "passages.csv").query(
+        "quantity == 'file' and moment_of_inertia.isna() and distance < 0"
+    )
+    assert len(rows) > 10
+    for row in rows.astype(object).where(rows.notna(), None).itertuples():
+        scene = Scene(row.width, row.height, row.radius, discs=row.discs, periodic="x")
+        law = file.law(scene, row.friction, row.time)
+        assert law == pytest.approx(row.reference, rel=1e-12, abs=0)
 
 
 @pytest.mark.slow
@@ -191,8 +183,9 @@ assert len(rows) > 10
 def test_exact_values_are_as_expected_with_every_kernel_of_the_linear_algebra(kernel, threads):
     """A kernel that the processor lacks is replaced by OpenBLAS with the best that it has."""
     chosen = {"OPENBLAS_CORETYPE": kernel, "OPENBLAS_NUM_THREADS": threads}
-    command = [sys.executable, "-c", EXACT_AGAIN]
-    subprocess.run(command, env=os.environ | chosen, cwd=REPOSITORY, check=True)
+    code = "import test_verify; test_verify.exact_again()"
+    done = python("-c", code, env=os.environ | chosen, cwd=Path(__file__).parent)
+    assert done.returncode == 0, done.stderr
 
 
 def test_missing_files_and_another_configuration_are_named(results, expected):
@@ -214,12 +207,11 @@ def test_nothing_expected_is_no_pass(results, tmp_path):
 
 
 def test_the_expected_results_are_those_of_the_default_configuration():
-    folder = REPOSITORY / "paper" / "expected"
     default = read(REPOSITORY / "config" / "config.yaml")
-    kept = json.loads((folder / "configuration.json").read_text())
+    kept = json.loads((EXPECTED / "configuration.json").read_text())
     assert all(kept[key] == default[key] for key in ("seed", "scenes"))
-    assert max(file.stat().st_size for file in folder.rglob("*.*")) < 1_000_000
+    assert max(file.stat().st_size for file in EXPECTED.rglob("*.*")) < 1_000_000
     for scene in load(default).scenes:
         for stage, keys in scene.keys.items():
-            points = folder / scene.name / "points" / f"{stage}.json"
+            points = EXPECTED / scene.name / "points" / f"{stage}.json"
             assert [*(json.loads(points.read_text()) if points.exists() else {})] == [*keys]
