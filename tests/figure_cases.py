@@ -10,6 +10,7 @@ from matplotlib.text import Text
 
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.dynamics.runs import wide_edges
+from twodiscs.figures import style
 from twodiscs.figures.draw import draw as draw_figure
 from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.model.events import HOPS
@@ -44,8 +45,8 @@ OTHERS = {
 
 def draw(name, box, tables):
     """Draw a figure of the catalogue as its job does, with the table that it reads."""
-    rows = [tables[table] for table in FIGURES[name].tables]
-    return draw_figure(name, box, *rows)
+    with style.context():
+        return draw_figure(name, box, *(tables[table] for table in FIGURES[name].tables))
 
 
 # Tables -------------------------------------------------------------------------------------------

@@ -64,28 +64,30 @@ def show(time, circles, others):
 # Which moments are shown -------------------------------------------------------------------------
 
 
-def test_the_first_lone_hop_of_the_rarer_kind_is_shown():
-    common = [(float(t), "vertical_hop") for t in range(5, 900, 7)]
-    rare = [(t, "horizontal_hop") for t in (120.0, 121.0, 400.0, 700.0)]
-    times, hop, centre = animation.frame_times(at(*common, *rare), 1.0)
-    assert (hop, centre) == ("horizontal_hop", 400.0)
-    assert times.tolist() == list(range(400 - BEFORE, 400 + AFTER + 1))
+COMMON = [(float(t), "vertical_hop") for t in range(5, 900, 7)]
+RARE = [(t, "horizontal_hop") for t in (120.0, 121.0, 400.0, 700.0)]
+TWO = [(3.0, "vertical_hop"), (4.0, "vertical_hop")]
 
 
-def test_hops_that_are_never_alone_and_trajectories_that_are_too_short():
-    """Many discs are shown from the start, for as long as a hop of two."""
-    rows = at((300.0, "vertical_hop"), (400.0, "disc_collision"))
-    times, hop, start = animation.frame_times(rows, 1.0, discs=3)
-    assert (hop, start) == (None, 0.0)
-    assert times.tolist() == list(range(BEFORE + AFTER + 1))
-    times, hop, centre = animation.frame_times(
-        at((3.0, "vertical_hop"), (4.0, "vertical_hop")), 1.0
-    )
-    assert (hop, centre) == ("vertical_hop", 3.0)
-    assert times.tolist() == list(range(3 + AFTER + 1))
-    times, hop, centre = animation.frame_times(at((3.0, "disc_collision"), end=9.5), 1.0)
-    assert (hop, centre) == (None, 0.0)
-    assert times.tolist() == list(range(10))
+@pytest.mark.parametrize(
+    ("rows", "discs", "hop", "centre", "frames"),
+    [
+        # The first lone hop of the rarer kind.
+        (at(*COMMON, *RARE), 2, "horizontal_hop", 400.0, range(400 - BEFORE, 400 + AFTER + 1)),
+        # Many discs are shown from the start, for as long as a hop of two.
+        (at((300.0, "vertical_hop")), 3, None, 0.0, range(BEFORE + AFTER + 1)),
+        # Hops that are never alone, and a trajectory that is too short.
+        (at(*TWO), 2, "vertical_hop", 3.0, range(4 + AFTER)),
+        (at((3.0, "disc_collision"), end=9.5), 2, None, 0.0, range(10)),
+    ],
+)  # fmt: skip
+def test_the_first_lone_hop_of_the_rarer_kind_is_shown(rows, discs, hop, centre, frames):
+    times, *found = animation.frame_times(rows, 1.0, discs=discs)
+    assert found == [hop, centre]
+    assert times.tolist() == [*frames]
+
+
+def test_a_file_of_another_kind_and_a_wrong_radius_are_refused():
     with pytest.raises(ValueError, match=r"path must be a \.gif, .*\.mp4 file, not 'a\.avi'"):
         animation.animate(BOX, RADIUS, [], ["a.gif", "a.avi"])
     with pytest.raises(ValueError, match="radius must be a positive"):
@@ -183,9 +185,6 @@ def test_headings_numbers_and_the_sign_of_a_hop_stand_clear(box, radius):
             show(time, circles, others)
             figure = others["sign"][0].figure
             assert [pair for pair in unclear(figure) if {*pair} != {"1", "2"}] == []
-
-
-# Files -------------------------------------------------------------------------------------------
 
 
 def test_what_leaves_a_ring_comes_in_at_the_other_end():

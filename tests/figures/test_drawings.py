@@ -14,15 +14,9 @@ from twodiscs.theory import exact
 UPRIGHT = BOXES["tall"]
 
 
-def drawn(name, box):
-    """Return the axes of a drawing."""
-    with style.context():
-        return draw(name, box, {}).axes
-
-
 @pytest.mark.parametrize("box", [PAPER, UPRIGHT, Box(3.0, 1.0)], ids=str)
 def test_the_largest_discs_touch_each_other_and_walls(box):
-    jammed, regimes = drawn("largest_radius", box)
+    jammed, regimes = draw("largest_radius", box, {}).axes
     discs = [patch for patch in jammed.patches if isinstance(patch, Circle)]
     (one, two), radius = (np.array(disc.center) for disc in discs), discs[0].radius
     assert radius == box.largest_radius
@@ -47,7 +41,7 @@ def test_the_largest_discs_touch_each_other_and_walls(box):
 @pytest.mark.parametrize("box", [PAPER, UPRIGHT, Box(2.5, 1.0)], ids=str)
 def test_the_regimes_have_the_areas_of_their_hops(box):
     """The coloured segments on the axes are A − σ and B − σ long; the arc ends on the rectangle."""
-    for axes in drawn("integration_regimes", box):
+    for axes in draw("integration_regimes", box, {}).axes:
         wide, high = axes.get_xlim()[1], axes.get_ylim()[1]
         areas = exact.areas(box.scene((box.width - wide) / 2))
         arc = next(patch for patch in axes.patches if isinstance(patch, Arc))
@@ -71,7 +65,7 @@ def test_the_regimes_have_the_areas_of_their_hops(box):
 
 @pytest.mark.parametrize("box", [PAPER, UPRIGHT], ids=str)
 def test_both_shells_are_equally_thick(box):
-    hop, collision = drawn("surface_shell", box)
+    hop, collision = draw("surface_shell", box, {}).axes
     diagonal, *edges = sorted(
         (line.get_xydata() for line in hop.lines), key=lambda ends: abs(ends[0] @ (1, -1))
     )

@@ -8,6 +8,7 @@ from itertools import groupby
 
 import numpy as np
 import pytest
+from factory import of
 from figure_cases import BOXES, OTHERS, PAPER, bars, covered, draw, points, tables_of, unclear
 from matplotlib.legend import Legend
 from matplotlib.markers import CARETUPBASE
@@ -56,32 +57,30 @@ def cases(quick, names=FIGURES):
 @cache
 def drawn(name, box):
     """Return a figure of one of the boxes."""
-    with style.context():
-        return draw(name, (BOXES | OTHERS)[box], tables_of(box))
+    return draw(name, (BOXES | OTHERS)[box], tables_of(box))
 
 
 @pytest.mark.parametrize(("name", "box"), [*cases(LAID_OUT), ("wall_area", "tall")])
 def test_texts_stand_clear(name, box):
     figure = drawn(name, box)
-    with style.context():
-        assert unclear(figure) == []
-        # In the tiny box every place of the legend crosses a line: that of a limit or a curve.
-        if name == "mean_collision_time" and box != "tiny":
-            assert covered(figure.axes[0]) == []
+    assert unclear(figure) == []
+    # In the tiny box every place of the legend crosses a line: that of a limit or a curve.
+    if name == "mean_collision_time" and box != "tiny":
+        assert covered(figure.axes[0]) == []
     assert figure.get_size_inches()[0] == (radius.WIDE if name == "all_areas" else style.COLUMN)
 
 
 def select_numbers(rows, quantity, factor=None, rooted=False):
     """Return (x, y, standard error, residual) of the rows of a quantity that have an error.
 
-    A ``factor`` of each row turns mean times to rates times this factor.
+    A ``factor`` at each radius turns mean times to rates times this factor.
     """
     found = []
     for row in rows:
         if row_quantity(row) == quantity and row["stderr"]:
             value, error, z = row["estimate"], row["stderr"] / row["estimate"], row["z"]
             if factor:
-                value, z = factor(row) / value, z and -z
+                value, z = factor(row["radius"]) / value, z and -z
             if rooted:
                 value, error = value**0.5, error / 2
             found.append((row["radius"], value, value * error, z))
@@ -110,14 +109,9 @@ def series(name, box, rows):
                     scene = box.scene(float(r))
                     return factor(scene, event) * scene.accessible_fraction(event)
 
-                times = columns[f"{event}_time"]
-                curve = [
-                    np.nan if np.isnan(time) else scale(r) / time
-                    for r, time in zip(radii, times, strict=True)
-                ]
-                due = select_numbers(
-                    rows, f"{event}_time", lambda row, scale=scale: scale(row["radius"])
-                )
+                times = zip(radii, columns[f"{event}_time"], strict=True)
+                curve = [np.nan if np.isnan(time) else scale(r) / time for r, time in times]
+                due = select_numbers(rows, f"{event}_time", scale)
                 yield panel, panel == "main" and "residuals", event, due, np.array(curve)
     else:
         shown = radius.CURVES[name]
@@ -140,9 +134,8 @@ def test_numbers_over_the_radius_are_those_of_the_rows(name, box):
     rows = tables_of(box)[FIGURES[name].tables[0]]
     needs = () if name == "pressure" else FIGURES[name].needs
     own = [row for row in rows if row_quantity(row) in needs]
-    named = {
-        text.get_text() for one in drawn(name, box).findobj(Legend) for text in one.get_texts()
-    }
+    texts = [text for one in drawn(name, box).findobj(Legend) for text in one.get_texts()]
+    named = {text.get_text() for text in texts}
     rough = any(row["estimate"] is not None and row["stderr"] is None for row in own)
     bound = any(row["estimate"] is None and row.get("bound") is not None for row in own)
     assert (rough, bound) == (panels.ROUGH[0] in named, panels.BOUND[0] in named)
@@ -189,23 +182,12 @@ def test_the_histogram_has_the_densities_of_its_bins(box):
 # Which figures ------------------------------------------------------------------------------------
 
 
-def test_a_figure_is_made_for_what_it_shows():
-    called = {n for n, entry in FIGURES.items() if entry.is_called({"right_wall_time"})}
-    drawings = {n for n, entry in FIGURES.items() if not entry.tables}
-    assert called == drawings | {n for n, e in FIGURES.items() if "right_wall_time" in e.needs}
-    assert {"mean_wall_time", "pressure"} <= called
-    assert called.isdisjoint({"mean_hop_time", "volume", "wall_area", "hop_histogram"})
-    called = {n for n, entry in FIGURES.items() if entry.is_called(QUANTITIES, {"field": 1.5})}
-    assert called == {n for n, e in FIGURES.items() if e.tables and "field" not in e.without}
-
-
 def test_a_table_without_the_quantity_of_a_figure_is_named():
-    rows = [row for row in tables_of("paper")["mean_times"] if row["event"] == "horizontal_hop"]
+    rows = of(tables_of("paper")["mean_times"], event="horizontal_hop")
     assert [row["status"] for row in rows[-2:]] == ["impossible"] * 2
-    with style.context():
-        draw("mean_hop_time", PAPER, {"mean_times": rows[-2:]}).draw_without_rendering()
-        with pytest.raises(ValueError, match=r"mean_wall_time has no row of right_wall"):
-            draw("mean_wall_time", PAPER, {"mean_times": rows})
+    draw("mean_hop_time", PAPER, {"mean_times": rows[-2:]}).draw_without_rendering()
+    with pytest.raises(ValueError, match=r"mean_wall_time has no row of right_wall"):
+        draw("mean_wall_time", PAPER, {"mean_times": rows})
 
 
 # Laws and corners ---------------------------------------------------------------------------------
@@ -239,7 +221,7 @@ def test_times_approach_the_end_of_their_hop():
         law = leading_law(PAPER, event)
         np.testing.assert_allclose(times, law.coefficient * (end * distances) ** -2, rtol=1e-5)
         assert distances.max() < radius.LAW
-    rows = [r for r in tables_of("paper")["mean_times"] if r["event"] == "horizontal_hop"]
+    rows = of(tables_of("paper")["mean_times"], event="horizontal_hop")
     shown = {x for line in lower.lines if line.get_marker() == "s" for x in line.get_xdata()}
     assert shown == {1 - row["radius"] / 0.25 for row in rows if row["stderr"]}
 
@@ -252,24 +234,17 @@ def test_blocked_hop_area_is_shown_as_zero():
 
 
 def test_an_estimate_above_the_curve_is_in_the_picture():
-    first, *others = [
-        r for r in tables_of("paper")["areas"] if r["quantity"] == "vertical_hop_area"
-    ]
+    first, *others = of(tables_of("paper")["areas"], quantity="vertical_hop_area")
     far = first | {"estimate": 1.2 * first["exact"], "stderr": 0.1 * first["exact"]}
-    with style.context():
-        main = draw("vertical_hop_area", PAPER, {"areas": [far, *others]}).axes[0]
+    main = draw("vertical_hop_area", PAPER, {"areas": [far, *others]}).axes[0]
     assert main.get_ylim()[1] > (1.2 * first["exact"]) ** 0.5
 
 
 def test_curves_are_drawn_to_their_end_without_any_residual():
     """Times from too few events for an error: a panel for them and one beneath."""
-    rows = [
-        row | {"stderr": None, "z": None, "status": "too-few"}
-        for row in tables_of("paper")["mean_times"]
-        if row["event"] in ("vertical_hop", "horizontal_hop") and row["estimate"]
-    ]
-    with style.context():
-        figure = draw("mean_hop_time", PAPER, {"mean_times": rows})
+    rough = {"stderr": None, "z": None, "status": "too-few"}
+    rows = [row | rough for row in tables_of("paper")["mean_times"] if row["estimate"]]
+    figure = draw("mean_hop_time", PAPER, {"mean_times": rows})
     assert [axes.get_label() for axes in figure.axes] == ["main", "beneath"]
 
 
@@ -278,8 +253,7 @@ def test_curves_are_drawn_to_their_end_without_any_residual():
 def test_a_single_value_has_an_ordinate_around_it(estimate):
     """And there is one where nothing is known at all."""
     alone = tables_of("paper")["volume"][0] | {"exact": None, "z": None, "estimate": estimate}
-    with style.context():
-        main = draw("volume", Box(3.0, 1.5, discs=8), {"volume": [alone]}).axes[0]
+    main = draw("volume", Box(3.0, 1.5, discs=8), {"volume": [alone]}).axes[0]
     low, high = main.get_ylim()
     assert low < (estimate or 1) < high
     assert 2.9 < high / low < 10

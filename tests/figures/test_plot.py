@@ -2,7 +2,6 @@
 
 import copy
 import pickle
-import warnings
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 
@@ -45,9 +44,8 @@ def test_all_events_of_a_scan_are_drawn_with_their_errors():
 
 def test_a_warning_names_what_is_not_drawn():
     found = td.sample(td.Scene(1.5, 1.0, 0.2), 2**20)
-    with pytest.warns(
-        UserWarning, match=r"volume does not show vertical_hop_area, .*areas"
-    ) as all_:
+    said = r"volume does not show vertical_hop_area, .*areas"
+    with pytest.warns(UserWarning, match=said) as all_:
         td.plot(found)
     assert all_[0].filename == __file__
     assert td.plot(found, figure="areas").axes[0].get_ylabel() == "area $S$"
@@ -96,35 +94,35 @@ def pixels(path):
 
 
 def test_a_returned_figure_is_saved_as_plot_saves_it(tmp_path):
-    """By its own method, after it was pickled, and as a notebook shows a copy that was changed."""
+    """By its own method, also after it was pickled."""
     figure = td.plot(scan(HOPS), tmp_path / "ours.png")
     pickle.loads(pickle.dumps(figure)).savefig(tmp_path / "own.png")
     np.testing.assert_array_equal(pixels(tmp_path / "own.png"), pixels(tmp_path / "ours.png"))
     figure.savefig(tmp_path / "own.pdf")
     assert b"/Type3" not in (tmp_path / "own.pdf").read_bytes()
-    other = copy.deepcopy(figure)
-    other.axes[0].set_title("another")
-    assert other._repr_png_() != figure._repr_png_()
 
 
 def test_plots_in_threads_are_those_of_one_thread():
-    """test_process looks at the settings of matplotlib afterwards."""
+    """As a notebook shows them; a copy can be changed. test_process looks at the settings."""
     table = td.exact_table(1.5, 1.0, [0.1])
     with ThreadPoolExecutor(2) as pool:
         first, second = pool.map(lambda _: td.plot(table, figure="volume")._repr_png_(), range(2))
-    assert first == second == td.plot(table, figure="volume")._repr_png_()
+    figure = td.plot(table, figure="volume")
+    assert first == second == figure._repr_png_()
+    other = copy.deepcopy(figure)
+    other.axes[0].set_title("another")
+    assert other._repr_png_() != first
 
 
-# Animations ---------------------------------------------------------------------------------------
+# Curves -------------------------------------------------------------------------------------------
 
 
+@pytest.mark.filterwarnings("error")  # nothing was measured, so nothing is left out
 def test_exact_values_alone_are_curves():
     """Lines without symbols and residuals; all quantities of the table can be chosen."""
     table = td.exact_table(1.5, 1.0, [0.1, 0.2, 0.6])
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")  # nothing was measured, so nothing is left out
-        main, *others = td.plot(table).axes
-        (volume,) = td.plot(table, figure="volume").axes
+    main, *others = td.plot(table).axes
+    (volume,) = td.plot(table, figure="volume").axes
     assert not others
     curves = [line for line in main.lines if len(line.get_xdata()) > 2]
     assert len(curves) == 6

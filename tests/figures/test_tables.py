@@ -117,15 +117,11 @@ def cases():
 
 
 def tail_cases():
-    """Return [(event, radius, rows of its survival with an error that is drawn)]."""
-    return [
-        (event, radius, [
-            row
-            for row in select(table("tails"), event=event, radius=radius, quantity="survival")
-            if row["stderr"] and row["stderr"] < 0.3 * row["estimate"]
-        ])
-        for event, radius in dict.fromkeys((r["event"], r["radius"]) for r in table("tails"))
-    ]  # fmt: skip
+    """Yield (event, radius, rows of its survival with an error that is drawn)."""
+    for event, radius in dict.fromkeys((r["event"], r["radius"]) for r in table("tails")):
+        rows = select(table("tails"), event=event, radius=radius, quantity="survival")
+        own = [row for row in rows if row["stderr"] and row["stderr"] < 0.3 * row["estimate"]]
+        yield event, radius, own
 
 
 def over_cube_root(row):
@@ -156,15 +152,11 @@ def passage_cases():
     for inertia, look in passages.LOOKS.items():
         own = select(ours, moment_of_inertia=inertia)
         kappa, times = select(own, quantity="coefficient"), select(own, quantity="passage_time")
-        built = select(
-            table("passages"), quantity="passage_time", moment_of_inertia=inertia, **plain
-        )
-        distances = {row["distance"] for row in built}
+        built = select(table("passages"), quantity="passage_time", **plain)
+        distances = {r["distance"] for r in select(built, moment_of_inertia=inertia)}
         times = [row for row in times if row["distance"] in distances]
         yield "passages", "times", look, columns(times, "distance")
-        due = columns(kappa, "distance")
-        if inertia is None:
-            due = [*map(over_cube_root, kappa)]
+        due = columns(kappa, "distance") if inertia else [*map(over_cube_root, kappa)]
         yield "transmission", "rough" if inertia else "smooth", look, due
         shown = [2.0**-n for n in passages.SHOWN.get(inertia, ())]
         curves = [row for row in select(own, quantity="correlation") if row["distance"] in shown]
@@ -191,10 +183,8 @@ def long_file_cases():
     for discs, look in diffusion.FILES.items():
         own = select(long_run("files"), quantity="diffusion", discs=discs)
         yield "diffusion", "files", look, columns(own, "distance")
-    order, moved = (
-        select(rows, quantity="diffusion", method="order"),
-        select(rows, quantity="displacement"),
-    )
+    order = select(rows, quantity="diffusion", method="order")
+    moved = select(rows, quantity="displacement")
     for is_kicked, look in ((False, diffusion.SMOOTH_FILE), (True, diffusion.KICKED_FILE)):
         own = [row for row in order if bool(row["friction"]) == is_kicked]
         yield "diffusion", "files", look, columns(own, "distance")
@@ -303,7 +293,7 @@ def test_a_table_without_a_figure_or_alone_is_one_sentence(tmp_path):
 def test_every_figure_of_a_study_is_compared():
     """Costs are times, which no table of the repository has: tests of the study compare them."""
     elsewhere = {"accuracy_cost", "accuracy_cost_by_radius", "stability", "stability_of_runs"}
-    elsewhere.add("calibration")
+    elsewhere |= {"calibration"}
     assert {name for name, *_ in CASES} | elsewhere >= STUDY_FIGURES.keys()
 
 
@@ -335,14 +325,10 @@ def test_the_laws_of_passages_with_friction_are_one_and_three_quarters_over_x():
     one, diffusive = (line.get_xydata() for line in dashed)
     assert np.all(one[:, 1] == 1)
     np.testing.assert_allclose(diffusive[:, 0] * diffusive[:, 1], 0.75, rtol=1e-12)
-    (b,) = (
-        row["estimate"] for row in long_run("passages") if row["quantity"] == "scaling_constant"
-    )
-    (fit,) = (
-        line for line in drawn("friction")["kappa"].lines if line.get_label() == friction.FORMULA
-    )
-    x, kappa = fit.get_data()
-    np.testing.assert_allclose(1 / kappa, 4 * x / 3 + 1 / (1 + b * x), rtol=1e-12)
+    (row,) = select(long_run("passages"), quantity="scaling_constant")
+    lines = {line.get_label(): line for line in drawn("friction")["kappa"].lines}
+    x, kappa = lines[friction.FORMULA].get_data()
+    np.testing.assert_allclose(1 / kappa, 4 * x / 3 + 1 / (1 + row["estimate"] * x), rtol=1e-12)
 
 
 def test_residuals_are_those_of_the_table():
@@ -474,12 +460,7 @@ def test_curves_of_thresholds_are_exact_and_crosses_are_first_passages():
             unit = law(radii) if axes is ratios else 1
             np.testing.assert_allclose(curve.get_ydata(), np.divide(due, unit), rtol=1e-9)
         if event in HOPS:
-            first = table("distributions")[0]["scene"]
-            rows = select(
-                table("distributions"), scene=first, event=event, quantity="first_passage"
-            )
-            due = {
-                (1 - row["radius"] / law.limit, row["estimate"])
-                for row in near(PAPER, law, select(rows, last=None))
-            }
+            rows = select(table("distributions"), event=event, quantity="first_passage", last=None)
+            rows = near(PAPER, law, select(rows, scene=rows[0]["scene"]))
+            due = {(1 - row["radius"] / law.limit, row["estimate"]) for row in rows}
             assert points(hops, colour, "x") == due != set()

@@ -8,13 +8,13 @@ fewer than 2e-5 of all seeds.
 
 import math
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 from factory import empty
 from marks import slow
-from scipy.stats import chi2
 
 from twodiscs.dynamics.two import strip
 from twodiscs.figures import style
@@ -22,6 +22,8 @@ from twodiscs.model.scene import Box, Scene
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.many import insertions
 from twodiscs.theory.flux import rates
+from twodiscs_paper.catalogue import STUDIES
+from twodiscs_paper.configuration.yaml_files import load
 from twodiscs_paper.studies.estimates import sample_mean
 from twodiscs_paper.studies.passages import figure, figure_diffusion, figure_transmission, measure
 from twodiscs_paper.studies.passages.measure import passing_rate
@@ -40,18 +42,6 @@ def power_rows(power, sizes, inertia=None):
         row |= {"scene": "paper", "event": HOP, "discs": 2, "moment_of_inertia": inertia}
         rows.append(empty(PassagesTable, **row, estimate=value if inertia else 1 - value))
     return rows
-
-
-def test_errors_of_the_slope_are_those_of_its_spread():
-    """Scores of 64 seeds have the mean square 1, by the law of χ² within a false alarm of 1e-6."""
-    scene = BOX.scene(measure.radius_at(0.25, 4))
-    hop = measure.NearThreshold("paper", scene, HOP, 4, 0)
-    scores = []
-    for hop.seed in range(64):
-        (row,) = hop.slope(64)
-        scores.append(row["z"])
-    square = sum(z**2 for z in scores)
-    assert 5e-7 < chi2.sf(square, len(scores)) < 1 - 5e-7
 
 
 def test_a_power_is_fitted_to_the_last_octaves():
@@ -77,9 +67,13 @@ def test_a_power_is_fitted_to_the_last_octaves():
     assert (second["moment_of_inertia"], second["quantity"]) == (0.5, "last_exponent")
 
 
-def smooth(scene):
-    """Return a scene of smooth discs without friction, whose kernels are compiled in any case."""
-    return replace(scene, moment_of_inertia=None, friction=0.0)
+def smooth(function):
+    """Return a ``function`` that takes smooth discs without friction for those of its scene.
+
+    Their kernels are compiled in any case.
+    """
+    plain = partial(replace, moment_of_inertia=None, friction=0.0)
+    return lambda scene, *given, **how: function(plain(scene), *given, **how)
 
 
 @pytest.fixture
@@ -91,6 +85,8 @@ def small(monkeypatch):
         "LONG_FILE": 18, "LONG_REPLICAS": 8, "RECORDS": 64,
     }.items():  # fmt: skip
         monkeypatch.setattr(measure, name, value)
+    monkeypatch.setattr("twodiscs_paper.studies.passages.study.INERTIAS", (0.5, 1.0))
+    monkeypatch.setattr("twodiscs_paper.studies.passages.study.BLOCKED", (0.28,))
 
 
 # A file of discs ----------------------------------------------------------------------------------
@@ -238,19 +234,13 @@ LONG_RUNS = {"kept": []} | {
 }
 
 
-def joined(name, box, inertias=(0.5,)):
-    """Return the rows of all parts that there are for a box."""
-    own, parts = {"name": name, "box": box, "events": 2**18, "seed": 1}, []
-    for hop in measure.thresholds(box):
-        some = inertias if hop == [*measure.thresholds(box)][-1] else (0.5,)
-        parts.append({"part": "near_threshold", "hop": hop, "inertias": some, **own})
-    if box.fits(box.height / 4):
-        parts.append({"part": "on_ring", **own})
-    if box.fits(0.28 * box.height):
-        given = {"name": name, "box": box, "blocked": [0.28 * box.height], "seed": 1}
-        parts.append({"part": "in_long_file", **given})
-    parts.append({"part": "in_the_limit", "seed": 1})
-    found = [empty(PassagesTable, **row) for given in parts for row in PassagesTable.part(**given)]
+def joined(name, box):
+    """Return the rows of all parts that there are for a box, except those with friction."""
+    scene = {"name": name, "box": {"width": box.width, "height": box.height}, "radii": [0.1]}
+    parts = STUDIES["passages"].parts(load({"seed": 1, "scenes": [scene]}))
+    given = [one | ({"box": box} if "box" in one else {}) for one in parts.values()]
+    parts = [PassagesTable.part(**one) for one in given if one["part"] != "with_friction"]
+    found = [empty(PassagesTable, **row) for part in parts for row in part]
     return [empty(PassagesTable, **row) for row in PassagesTable.rows({"all": found})]
 
 
@@ -258,13 +248,10 @@ def joined(name, box, inertias=(0.5,)):
 def test_the_table_is_written(rough, tmp_path, small, monkeypatch):
     """The fast one takes the hops of smooth discs for those of rough discs, which has no score."""
     if not rough:
-        count = measure.hop_sums
-        monkeypatch.setattr(
-            measure, "hop_sums", lambda scene, *given, **how: count(smooth(scene), *given, **how)
-        )
+        monkeypatch.setattr(measure, "hop_sums", smooth(measure.hop_sums))
     seeds, seed_of = [], measure.hop_seed
     monkeypatch.setattr(measure, "hop_seed", lambda *of: seeds.append(seed_of(*of)) or seeds[-1])
-    PassagesTable.write(tmp_path / "passages.csv", joined("paper", BOX, (0.5, 1.0)))
+    PassagesTable.write(tmp_path / "passages.csv", joined("paper", BOX))
     rows = PassagesTable.read(tmp_path / "passages.csv")
     assert len({*seeds}) == len(seeds) > 20  # every estimate has separate streams
     judged = [row for row in rows if rough or row["moment_of_inertia"] is None]
@@ -284,8 +271,9 @@ def test_the_table_is_written(rough, tmp_path, small, monkeypatch):
         assert time["estimate"] * fraction["estimate"] == pytest.approx(time["exact_mean"])
 
 
-def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small):
+def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small, monkeypatch):
     """Along a ring of its width the discs would be jammed before they cannot pass."""
+    monkeypatch.setattr(measure, "hop_sums", smooth(measure.hop_sums))
     rows = joined("square", Box(1.0, 4.0))
     assert {row["event"] for row in rows} == {"vertical_hop", None}
     with style.context():
@@ -312,8 +300,7 @@ def test_rows_with_friction(kicked, monkeypatch):
     Friction does not change the rate, and in the strip it has another kernel.
     """
     if not kicked:
-        run = strip.run_blocks
-        monkeypatch.setattr(strip, "run_blocks", lambda scene, *of: run(smooth(scene), *of))
+        monkeypatch.setattr(strip, "run_blocks", smooth(strip.run_blocks))
     rows = list(measure.one_friction("paper", BOX, 40.0, (6, 8, 12), 2**19, 3))
     (rate,) = (row for row in rows if row["quantity"] == "rate")
     assert abs(rate["z"]) <= 5

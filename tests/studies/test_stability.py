@@ -25,6 +25,8 @@ from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.initial_states import states
 from twodiscs.theory import exact
+from twodiscs_paper.studies.distributions import measure as distributions
+from twodiscs_paper.studies.passages import measure as passages
 from twodiscs_paper.studies.stability import calibration, figure, figure_runs
 from twodiscs_paper.studies.stability import measure as stability
 from twodiscs_paper.studies.stability.study import CalibrationTable, StabilityTable
@@ -314,10 +316,9 @@ SOME = (
     "r = 0.2", "r = 0.2499", "field 0.8", "moment_of_inertia 0.5", "periodic x", "friction 10.0",
     "three discs", "100 × 1",
 )  # fmt: skip
-COUNTED = [(study, ("plain discs",)) for study in ("distributions", "passages")]
-COUNTED += [("simulate", ("r = 0.2499",))]
-COUNTED += [("cost", ("r = 0.2", "r = 0.38")), *(slow(call, SOME) for call in calibration.CALLS)]
-COUNTED += [slow(study, (k,)) for study, k in calibration.STUDIES if (study, (k,)) not in COUNTED]
+COUNTED = [("simulate", ("r = 0.2499",)), ("cost", ("r = 0.2", "r = 0.38"))]
+COUNTED += [slow(call, SOME) for call in calibration.CALLS]
+COUNTED += [slow(study, (kind,)) for study, kind in calibration.STUDIES]
 
 
 @pytest.mark.filterwarnings("ignore::twodiscs.AccuracyWarning")
@@ -326,6 +327,29 @@ def test_errors_are_what_they_say(call, cases):
     """16 fresh seeds: no mean square is beyond five sigma of chance, at Bonferroni's bound."""
     rows = calibration.rows(16, 990_000, cases, (call,))
     check_mean_squares([row for row in rows if row["scores"] >= 8])
+
+
+def few_intervals(seed):
+    """Return rows of distributions.csv from few intervals."""
+    return distributions.measured({}, PAPER.scene(0.1), "vertical_hop", seed, 2**17)
+
+
+def few_passages(seed):
+    """Return rows of passages.csv from few hops, at two distances."""
+    rows = [*passages.one_hop("", PAPER, "horizontal_hop", (6, 7), None, 2**12, seed)]
+    return [*rows, *passages.fits([dict.fromkeys(passages.HOP) | row for row in rows])]
+
+
+@pytest.mark.parametrize("make", [few_intervals, few_passages])
+def test_errors_of_few_are_what_they_say(make, monkeypatch):
+    """64 fresh seeds tell mean squares of 4 and of 1/4 from 1, for seven quantities of a study."""
+    monkeypatch.setattr(passages, "MOST_HOPS", 2**11)
+    monkeypatch.setattr(distributions, "FEWEST", 100)
+    monkeypatch.setattr(distributions, "FEWEST_IN_BIN", 30)
+    monkeypatch.setattr(calibration, "STUDIES", {("few", ""): make})
+    rows = [row for row in calibration.rows(64, 990_000, calls=("few",)) if row["scores"] >= 32]
+    assert len({row["quantity"].split()[0] for row in rows}) == 7
+    check_mean_squares(rows)
 
 
 def check_mean_squares(rows):

@@ -19,33 +19,24 @@ from twodiscs_paper.studies.thresholds.study import ThresholdsTable
 PAPER, LONG = Box(1.5, 1.0), Box(3.0, 1.0)
 
 
-def times_of(event, radii, noise=0.0, relative=1e-3, box=PAPER, seed=2):
+def times_of(event, radii, noise=0.0, box=PAPER):
     """Return rows of mean_times.csv, as far as they are used: exact times with noise."""
-    rng = np.random.default_rng(seed)
-    rows = []
+    rng, rows = np.random.default_rng(2), []
     for radius in radii:
         time = exact.mean_times(box.scene(radius))[event]
-        value = time * (1 + noise * relative * rng.standard_normal())
-        rows.append(
-            empty(
-                MeanTimesTable,
-                radius=radius,
-                event=event,
-                exact=time,
-                estimate=value,
-                stderr=relative * time,
-            )
-        )
+        found = {"exact": time, "stderr": 1e-3 * time}
+        found["estimate"] = time + noise * found["stderr"] * rng.standard_normal()
+        rows.append(empty(MeanTimesTable, radius=radius, event=event, **found))
     return rows
 
 
 def passages_of(name, box, rows, last=None):
     """Return rows of distributions.csv: first passages half as long again as the mean times."""
     return [
-        empty(DistributionsTable, scene=name, width=box.width, height=box.height,
-            radius=row["radius"],
-            event=row["event"], quantity="first_passage", last=last, exact_mean=row["exact"],
-            estimate=1.5 * row["exact"], stderr=row["stderr"], count=9,
+        empty(
+            DistributionsTable, scene=name, width=box.width, height=box.height,
+            radius=row["radius"], event=row["event"], quantity="first_passage", last=last,
+            exact_mean=row["exact"], estimate=1.5 * row["exact"], stderr=row["stderr"], count=9,
         )
         for row in rows
     ]  # fmt: skip
