@@ -182,6 +182,12 @@ def test_the_histogram_has_the_densities_of_its_bins(box):
 # Which figures ------------------------------------------------------------------------------------
 
 
+def test_drawings_are_those_of_all_plain_scenes():
+    drawings = [entry for entry in FIGURES.values() if not entry.tables]
+    assert all(one.is_called({"volume"}) for one in drawings)
+    assert not any(one.is_called(QUANTITIES, {"field": 1.5}) for one in drawings)
+
+
 def test_a_table_without_the_quantity_of_a_figure_is_named():
     rows = of(tables_of("paper")["mean_times"], event="horizontal_hop")
     assert [row["status"] for row in rows[-2:]] == ["impossible"] * 2
