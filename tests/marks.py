@@ -10,8 +10,8 @@
   with kicks are fast.
 * 2e7 events without drift, many more scenes of theory and Monte Carlo, all figures in all boxes:
   some are fast.
-* 16 seeds of each call and each study, whole animations: seeds of two calls, and of two studies with
-  few events, are fast, and so are short animations.
+* 16 seeds of each call and each study, whole animations: seeds of two calls, and of two studies
+  with few events, are fast, and so are short animations.
 * Other processors, an empty environment, the network, a type checker, the whole site.
 * A second build: on one core, as a module, in a storage, with the manuscript, with Slurm, in a
   queue. Fast are dry runs of the same, shards of others, minutes by attempt, the script of a queue.
