@@ -1,16 +1,12 @@
-"""Compiled kernels: which are kept, and which effects they contain.
+"""Compiled kernels: which are kept, and what compilation leaves as it was.
 
-Without these tests compiled code could be that of other sources, or of effects that a scene does
-not have.
+Without these tests compiled code could be that of other sources, or change a user's process.
 """
 
-import json
 import os
 import shutil
 from pathlib import Path
-from subprocess import CalledProcessError
 
-import pytest
 from commands import python
 
 import twodiscs
@@ -25,39 +21,28 @@ print(draw_velocity(open_stream(np.uint64(1), 0)))
 """
 
 
-@pytest.fixture
-def package(tmp_path):
-    """A copy of the package to edit, and an environment that uses it with an empty cache.
-
-    The environment has a user's choice of where Numba keeps code.
-    """
-    shutil.copytree(
-        Path(twodiscs.__file__).parent, tmp_path / "twodiscs",
-        ignore=shutil.ignore_patterns("__pycache__"),
-    )  # fmt: skip
-    environment = os.environ | {
-        "PYTHONPATH": str(tmp_path),
-        "NUMBA_CACHE_DIR": str(tmp_path / "cache"),
-        "NUMBA_CACHE_LOCATOR_CLASSES": "InTreeCacheLocator",
-        "PYTHONDONTWRITEBYTECODE": "1",
-    }
-    return tmp_path / "twodiscs", environment
-
-
 def output(environment, script=SCRIPT):
     return python("-c", script, env=environment, check=True).stdout
 
 
-def test_an_edit_of_what_a_kernel_imports_changes_the_result(package):
+def test_an_edit_of_what_a_kernel_imports_changes_the_result(tmp_path):
     """Numba alone would go on as before: the file of the kernel is the same.
 
     The edited file has the size and the time of the old one, as from an archive with fixed times.
+    A user's choice of where Numba keeps code is kept.
     """
-    sources, environment = package
+    sources, cache = tmp_path / "twodiscs", tmp_path / "cache"
+    ignore = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(Path(twodiscs.__file__).parent, sources, ignore=ignore)
+    environment = os.environ | {
+        "PYTHONPATH": str(tmp_path),
+        "NUMBA_CACHE_DIR": str(cache),
+        "NUMBA_CACHE_LOCATOR_CLASSES": "InTreeCacheLocator",
+        "PYTHONDONTWRITEBYTECODE": "1",
+    }
     before = output(environment)
 
     def kernels():
-        cache = sources.parent / "cache"
         return {path: path.stat().st_mtime_ns for path in cache.rglob("*.nb?")}
 
     kept = kernels()
@@ -66,7 +51,7 @@ def test_an_edit_of_what_a_kernel_imports_changes_the_result(package):
     assert kernels() == kept
 
     # If no code can be kept, a sentence says so.
-    (blocked := sources.parent / "file").touch()
+    (blocked := tmp_path / "file").touch()
     done = python("-c", SCRIPT, env=environment | {"NUMBA_CACHE_DIR": str(blocked)})
     assert done.stdout == before
     assert done.stderr.startswith("Compiled code cannot be kept, so every process compiles again: ")
@@ -147,45 +132,6 @@ product = lambda a: np.dot(a, a.T)
 print(np.allclose(numba.njit(product)(a), product(a), rtol=1e-9, atol=0))
 """
     assert output(os.environ, script).split() == ["False", "True"]
-
-
-# Absent effects are not compiled ----------------------------------------------------------------
-
-#: Print how often each machine instruction stands in the kernel that counts all events of a scene.
-INSTRUCTIONS = """
-import collections, json, re, sys
-from twodiscs.dynamics.two.follow import compile_loop
-from twodiscs.dynamics.two.event_counts import Counts, run_blocks
-from twodiscs.model.events import EVENTS
-from twodiscs.model.scene import Scene
-scene = Scene(1.5, 1.0, 0.2, **json.loads(sys.argv[1]))
-run_blocks(scene, EVENTS, 1, 0, 1, 1.0, replicas=1)
-(assembly,) = compile_loop(Counts).inspect_asm().values()
-names = re.findall(r"^\\t([a-z]\\w+)", assembly, re.MULTILINE)
-json.dump(collections.Counter(names), sys.stdout)
-"""
-
-
-def instructions(environment, script, **effects):
-    words = "-c", script, json.dumps(effects)
-    return json.loads(python(*words, env=environment, check=True).stdout)
-
-
-@pytest.mark.slow
-def test_absent_effects_leave_no_instruction(tmp_path):
-    """The kernel of the plain scene is the same in an engine that has no effects.
-
-    There the compiler never sees the code of the effects, so it cannot compile one either.
-    """
-    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}  # kept code has no assembly
-    present = instructions(environment, INSTRUCTIONS)
-    assert present["vsqrtpd" if "vsqrtpd" in present else "sqrtpd"] > 0
-
-    without = f"import twodiscs_paper.studies.effects.engine_without_effects\n{INSTRUCTIONS}"
-    assert instructions(environment, without) == present
-    with pytest.raises(CalledProcessError) as failed:
-        instructions(environment, without, moment_of_inertia=0.5)
-    assert "numba.core.errors" in failed.value.stderr
 
 
 def test_inlined_functions_are_kept_but_those_within_a_function():

@@ -14,14 +14,12 @@ from sampling.uniformity import FALSE_ALARM
 from scipy.special import bdtr
 from theory.antiderivatives import TURNED
 
-from twodiscs.model.events import EVENTS, HOPS, SHELLS, WALLS
+from twodiscs.model.events import HOPS, SHELLS, WALLS
 from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
 
 PAPER = Scene(1.5, 1.0, 0.2)
-EVERYTHING = ["volume", *(f"{event}_area" for event in EVENTS)]
-SAMPLES = 8 * montecarlo.BLOCK
 
 
 def assert_binomial(hits, samples, probability):
@@ -31,21 +29,60 @@ def assert_binomial(hits, samples, probability):
     assert 2 * min(low, high) > FALSE_ALARM, (hits, samples * probability)
 
 
+#: Without effects.
+PLAIN = [
+    *(PAPER.with_radius(r) for r in (0.01, 0.05, 0.2, 0.24, 0.2501, 0.3, 0.36, 0.376, 0.38)),
+    *(Scene(3.0, 1.0, 0.4), Scene(1.0, 1.5, 0.3), Scene(1.0, 1.0, 0.1), Scene(1.0, 1.0, 0.28)),
+    *(Scene(2.0, 1.0, 0.4), Scene(1e3, 1.0, 0.3), Scene(1.0, 1e3, 0.3)),
+]
+
+#: Blocked hops, discs that hardly fit, a large disc that passes nowhere but reaches all walls, and
+#: fields that keep discs from passing, or from the top.
+MORE_SCENES = [
+    slow(Scene(1.5, 1.0, 0.3, periodic="x")),
+    slow(Scene(1.5, 1.0, 0.3, periodic="y")),
+    slow(Scene(1.0, 1.0, 0.34, periodic="xy")),
+    Scene(1.5, 0.9, 0.4, radius_ratio=0.2, mass_ratio=1e-3),
+    Scene(1.5, 1.0, 0.1, radius_ratio=4.0, mass_ratio=1e3),
+    Scene(1.5, 1.0, 0.05, field=1.5),
+    Scene(1.5, 1.0, 0.3, field=1.5),
+    slow(Scene(1.5, 1.0, 0.3, field=0.1, periodic="x", moment_of_inertia=1.0)),
+    Scene(1.5, 1.0, 0.37, moment_of_inertia=0.1),
+    Scene(1.0, 1.0, 0.26, depth=1.0),
+    slow(Scene(1.0, 1.0, 0.3, depth=1.0, periodic="xyz")),
+]
+
+
+def everything(scene):
+    return ["volume", *(f"{event}_area" for event in scene.events)]
+
+
+@pytest.mark.parametrize("thick", [False, True])
 @pytest.mark.parametrize(
-    ("width", "height", "radius"),
-    [(1.5, 1.0, r) for r in (0.01, 0.05, 0.2, 0.24, 0.2501, 0.3, 0.36, 0.376, 0.38)]
-    + [(3.0, 1.0, 0.4), (1.0, 1.5, 0.3), (1.0, 1.0, 0.1), (1.0, 1.0, 0.28), (2.0, 1.0, 0.4)]
-    + [(1e3, 1.0, 0.3), (1.0, 1e3, 0.3)],
+    "scene",
+    [
+        *PLAIN,
+        *(slow(s) if n in ("torus", "channel") else s for n, s in SCENES.items()),
+        *MORE_SCENES,
+    ],
+    ids=repr,
 )
-@pytest.mark.parametrize("shell", [0.02, 0.3])
-def test_hits_have_their_exact_probability(width, height, radius, shell):
-    """Also for thick shells, whose bias is large: the expectation is that of the shell."""
-    scene = Scene(width, height, radius)
-    point = sample_point(scene, EVERYTHING, SAMPLES, shell, 21)
+def test_hits_have_their_exact_probability(scene, thick):
+    """Also for thick shells, whose bias is large: the expectation is that of the shell.
+
+    Without effects all walls have the shells of two, and samples are cheap.
+    """
+    thin_and_thick, blocks, shells = (0.05, 0.8), 2, scene.events
+    if scene.is_plain:
+        thin_and_thick, blocks, shells = (0.02, 0.3), 8, SHELLS
+    number = blocks * montecarlo.BLOCK
+    point = sample_point(scene, everything(scene), number, thin_and_thick[thick], 21)
     samples, found = point.samples, point.quantities
+    assert found.keys() == {"volume", *(f"{event}_area" for event in shells)}
+    assert (point.right_and_top is not None) == scene.is_plain
     volume = found["volume"]
     assert_binomial(volume.hits, samples, exact.volume(scene) / volume.measure)
-    for event in SHELLS:
+    for event in shells:
         sampled = found[f"{event}_area"]
         expected = exact.shell_expectation(scene, event, sampled.epsilon)
         assert_binomial(sampled.hits, samples, expected / sampled.measure)
@@ -53,7 +90,7 @@ def test_hits_have_their_exact_probability(width, height, radius, shell):
 
 def test_joint_hits_of_two_walls():
     """Disc 1 in the corner, where the shells of two walls overlap, and disc 2 out of its way."""
-    point = sample_point(PAPER, ["any_wall_area"], SAMPLES, 0.3, 1)
+    point = sample_point(PAPER, ["any_wall_area"], 8 * montecarlo.BLOCK, 0.3, 1)
     assert point.quantities.keys() == {"right_wall_area", "top_wall_area"}
     epsilon = point.quantities["right_wall_area"].epsilon
     assert epsilon == point.quantities["top_wall_area"].epsilon
@@ -103,45 +140,6 @@ def test_a_radius_on_the_threshold_has_a_shell():
 
 
 # Scenes with effects ----------------------------------------------------------------------------
-
-#: Blocked hops, discs that hardly fit, a large disc that passes nowhere but reaches all walls, and
-#: fields that keep discs from passing, or from the top.
-MORE_SCENES = [
-    slow(Scene(1.5, 1.0, 0.3, periodic="x")),
-    slow(Scene(1.5, 1.0, 0.3, periodic="y")),
-    slow(Scene(1.0, 1.0, 0.34, periodic="xy")),
-    Scene(1.5, 0.9, 0.4, radius_ratio=0.2, mass_ratio=1e-3),
-    Scene(1.5, 1.0, 0.1, radius_ratio=4.0, mass_ratio=1e3),
-    Scene(1.5, 1.0, 0.05, field=1.5),
-    Scene(1.5, 1.0, 0.3, field=1.5),
-    slow(Scene(1.5, 1.0, 0.3, field=0.1, periodic="x", moment_of_inertia=1.0)),
-    Scene(1.5, 1.0, 0.37, moment_of_inertia=0.1),
-    Scene(1.0, 1.0, 0.26, depth=1.0),
-    slow(Scene(1.0, 1.0, 0.3, depth=1.0, periodic="xyz")),
-]
-
-
-def everything(scene):
-    return ["volume", *(f"{event}_area" for event in scene.events)]
-
-
-@pytest.mark.parametrize(
-    "scene",
-    [*(slow(s) if n in ("torus", "channel") else s for n, s in SCENES.items()), *MORE_SCENES],
-    ids=repr,
-)
-@pytest.mark.parametrize("shell", [0.05, 0.8])
-def test_weighted_hits_have_their_exact_probability(scene, shell):
-    point = sample_point(scene, everything(scene), 2 * montecarlo.BLOCK, shell, 21)
-    samples, found = point.samples, point.quantities
-    assert found.keys() == set(everything(scene))
-    assert point.right_and_top is None
-    volume = found.pop("volume")
-    assert_binomial(volume.hits, samples, exact.volume(scene) / volume.measure)
-    for quantity, sampled in found.items():
-        event = quantity.removesuffix("_area")
-        expected = exact.shell_expectation(scene, event, sampled.epsilon)
-        assert_binomial(sampled.hits, samples, expected / sampled.measure)
 
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)

@@ -6,6 +6,7 @@ Without these tests shares of unmet starts, plain times or costs of effects coul
 import json
 from functools import cache
 from pathlib import Path
+from subprocess import CalledProcessError
 
 import numpy as np
 import pytest
@@ -232,3 +233,6 @@ def test_the_engine_without_effects_counts_the_same_events_with_as_many_instruct
     assert price.result_without_effects("lockstep(2)")[0] == price.lockstep(2)[0]
     found = price.result_without_effects("instructions(lockstep)")
     assert found == price.instructions(price.lockstep)
+    rough = "__import__('twodiscs').Scene(1.5, 1, 0.2, moment_of_inertia=0.5)"
+    with pytest.raises(CalledProcessError):  # the compiler never sees the code of an effect
+        price.result_without_effects(f"lockstep(1, {rough}, ('any_wall',))")
