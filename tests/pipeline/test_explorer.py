@@ -12,8 +12,10 @@ import re
 import pytest
 from browser import ABSENT, BROWSER, browser
 from checkout import REPOSITORY
+from factory import empty
 from py_mini_racer import MiniRacer
 
+from twodiscs.analysis.tables import AreasTable, VolumeTable
 from twodiscs.model.scene import Box
 from twodiscs.theory import exact
 from twodiscs_paper.pipeline.documents import explorer
@@ -260,18 +262,21 @@ def test_points_are_those_of_the_tables():
 
 
 @pytest.mark.parametrize("effects", EFFECTS[:4])
-def test_times_by_monte_carlo_know_the_conserved_momenta(effects):
+def test_times_by_monte_carlo_know_the_conserved_momenta(effects, tmp_path):
     scene = Box(1.5, 1, **effects).scene(0.2)
-    common = {"radius": 0.2, "stderr": 1e-3, "bias": 0.0}
+    given = {"radius": 0.2, "stderr": 1e-3, "bias": 0.0}
     areas = [
-        common | {"quantity": f"{event}_area", "estimate": area, "exact": area}
+        empty(AreasTable, quantity=f"{event}_area", estimate=area, exact=area, **given)
         for event, area in exact.areas(scene).items()
     ]
-    volume = common | {"estimate": exact.volume(scene)}
-    found = explorer.monte_carlo_times([volume], areas, scene.velocity_components)
+    volume = empty(VolumeTable, estimate=exact.volume(scene), **given)
+    paths = {name: tmp_path / f"{name}.csv" for name in ("volume", "areas")}
+    VolumeTable.write(paths["volume"], [volume])
+    AreasTable.write(paths["areas"], areas)
     times = exact.mean_times(scene)
-    for event, rows in found.items():
-        assert [row[1] for row in rows] == pytest.approx([times[event]] if times[event] else [])
+    for event, by in explorer.points(paths, effects.get("periodic", "")).items():
+        found = [row[1] for row in by["monte_carlo"]]
+        assert found == pytest.approx([times[event]] if times[event] else [])
 
 
 @pytest.mark.parametrize(("some", "shown"), [((0, 1, 2), (0, 2)), ((0,), (0,)), ((1,), ())])

@@ -69,9 +69,10 @@ def test_no_figure_is_shown_twice_and_those_that_are_shown_are_there_and_spoken_
 def paper(tmp_path_factory, tables_of):
     """Return a function that typesets the manuscript from the expected tables.
 
-    It returns the bytes and {name: text} of the numbers. ``figures`` are those of a scene and
-    ``common`` the others; the ``empty`` tables have no rows. ``edit`` is (file, old text, new text)
-    for a file of the results or of the manuscript. All figures are empty pages.
+    It returns the bytes and {name: text} of the numbers. ``figures`` are those of a scene, and
+    ``common`` the others. The first scene has tables, of which the ``empty`` ones have no rows.
+    ``edit`` is (file, old text, new text) for a file of the results or of the manuscript. All
+    figures are empty pages.
     """
     page = tmp_path_factory.mktemp("page") / "page.pdf"
     with style.context():
@@ -81,9 +82,9 @@ def paper(tmp_path_factory, tables_of):
         tmp_path = tmp_path_factory.mktemp("paper")
         results, folder = tmp_path / "results", tmp_path / "elsewhere"
         names = ["paper", "other", "third"][:scenes]
-        tables_of(results, dict.fromkeys(names, "paper"), empty)
+        tables_of(results, {"paper": "paper"}, empty)
         for own, some in {**dict.fromkeys(names, figures), ".": common}.items():
-            (results / own / "figures").mkdir()
+            (results / own / "figures").mkdir(parents=True)
             for name in some:
                 shutil.copy(page, results / own / "figures" / f"{name}.pdf")
         shutil.copytree(PAPER, folder, ignore=shutil.ignore_patterns("expected", "shards"))
@@ -93,10 +94,11 @@ def paper(tmp_path_factory, tables_of):
             text = (tmp_path / file).read_text()
             assert text.count(old) == 1
             (tmp_path / file).write_text(text.replace(old, new))
-        one = {"width": 1.5, "height": 1.0, "figures": figures, "tables": list(SCENE_TABLES)}
+        one = {"width": 1.5, "height": 1.0, "figures": figures, "tables": []}
         output = tmp_path / "results" / "paper.pdf"
         given = {"figures": common, "seed": 1908, "configuration": "0123456789abcdef"}
         given["scenes"] = [one | {"name": name} for name in names]
+        given["scenes"][0]["tables"] = list(SCENE_TABLES)
         numbers = manuscript.typeset(folder / "paper.typ", output, **given)
         return output.read_bytes(), {number["name"]: number["text"] for number in numbers}
 
