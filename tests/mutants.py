@@ -319,7 +319,7 @@ def nearest(mutated):
     path = file_scene(mutated)
     for beginning, files in READERS.items():
         if path.startswith(beginning):
-            return [file for file in files if (REPOSITORY / file).exists()]
+            return files
     distance, border = {path: 0}, [path]
     while border:
         border = sorted(

@@ -283,9 +283,8 @@ def test_what_cannot_be_built_is_refused(tmp_path, monkeypatch, capsys):
 def test_targets_may_stand_behind_options(monkeypatch, capsys):
     given = []
     monkeypatch.setattr(build, "build", lambda path, **words: given.append((path, words)))
-    assert not command(
-        monkeypatch, cli, "run", "my.yaml", "volume", "-n", "pressure", "--cores", "2"
-    )
+    words = "run", "my.yaml", "volume", "-n", "pressure", "--cores", "2"
+    assert not command(monkeypatch, cli, *words)
     options = {"targets": ["volume", "pressure"], "cores": 2, "dry_run": True, "unlock": False}
     assert given == [("my.yaml", options)]
 
