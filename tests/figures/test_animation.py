@@ -5,6 +5,7 @@ import re
 import sys
 from base64 import b64decode
 from io import BytesIO
+from itertools import chain
 
 import numpy as np
 import pytest
@@ -51,13 +52,12 @@ def drawn(box, radius, rows):
     """Return the motion of a trajectory, the circles and the other moving parts of its picture."""
     motion = animation.MovingDiscs(box, radius, rows)
     with style.context():
-        _, circles, others = animation.draw(motion)
-    return motion, circles, others
+        return motion, *animation.draw(motion)[1:]
 
 
 def show(time, circles, others):
     """Move all parts to their places at a ``time``."""
-    for _, move in [*others.values(), *(part for parts in circles.values() for part in parts)]:
+    for _, move in [*others.values(), *chain(*circles.values())]:
         move(time)
 
 
@@ -180,11 +180,10 @@ def test_headings_numbers_and_the_sign_of_a_hop_stand_clear(box, radius):
     """Discs are where they are: beside each other their numbers may meet."""
     rows = TrajectoryTable.rows(box, radius, 1908)
     motion, circles, others = drawn(box, radius, rows)
-    with style.context():
-        for time in [*motion.frames[::80], motion.centre]:
-            show(time, circles, others)
-            figure = others["sign"][0].figure
-            assert [pair for pair in unclear(figure) if {*pair} != {"1", "2"}] == []
+    for time in [*motion.frames[::80], motion.centre]:
+        show(time, circles, others)
+        texts = unclear(others["sign"][0].figure)
+        assert [pair for pair in texts if {*pair} != {"1", "2"}] == []
 
 
 def test_what_leaves_a_ring_comes_in_at_the_other_end():

@@ -52,15 +52,13 @@ def test_the_regimes_have_the_areas_of_their_hops(box):
             assert (x if along_x else y) == pytest.approx(0, abs=1e-12) or (
                 y / high if along_x else x / wide
             ) == pytest.approx(1, rel=1e-12)
-        segments = {style.BLUE: 0.0, style.VERMILLION: 0.0}
-        for line in axes.lines:
-            if line.get_color() in segments:
-                segments[line.get_color()] = np.ptp(line.get_data(), axis=1).max()
-        lengths = [
-            math.sqrt(areas[hop] / (math.sqrt(2) * across))
-            for hop, across in (("vertical_hop", high), ("horizontal_hop", wide))
-        ]
-        assert [*segments.values()] == pytest.approx(lengths, rel=1e-9)
+        lines = {line.get_color(): line.get_data() for line in axes.lines}
+        for colour, hop, across in (
+            (style.BLUE, "vertical_hop", high), (style.VERMILLION, "horizontal_hop", wide)
+        ):  # fmt: skip
+            length = np.ptp(lines[colour], axis=1).max() if colour in lines else 0.0
+            due = math.sqrt(areas[hop] / (math.sqrt(2) * across))
+            assert length == pytest.approx(due, rel=1e-9)
 
 
 @pytest.mark.parametrize("box", [PAPER, UPRIGHT], ids=str)
@@ -69,10 +67,8 @@ def test_both_shells_are_equally_thick(box):
     diagonal, *edges = sorted(
         (line.get_xydata() for line in hop.lines), key=lambda ends: abs(ends[0] @ (1, -1))
     )
-    rim, shell = (
-        next(p for p in collision.patches if isinstance(p, Wedge) and bool(p.width) == has_width)
-        for has_width in (False, True)
-    )
+    wedges = {bool(one.width): one for one in collision.patches if isinstance(one, Wedge)}
+    rim, shell = wedges[False], wedges[True]
     assert abs(diagonal[0] @ (1, -1)) < 1e-12
     distances = [abs(ends @ (1, -1)) / math.sqrt(2) for ends in edges]
     np.testing.assert_allclose(distances, shell.width, rtol=1e-12)

@@ -18,9 +18,8 @@ def test_the_panels_beneath_show_most_hops_and_a_hop_that_is_not_undone():
     assert motion._densest_stretch(hops[:1], 10.0, 0.0, 100.0) == (0.0, 10.0)
     assert motion._densest_stretch(hops[:0], 10.0, 0.0, 100.0) == (0.0, 10.0)
     assert motion._loneliest_hop(hops, 10.0, 0.0, 100.0) == 90
-    assert (
-        motion._loneliest_hop(hops, 10.0, 0.0, 92.0) is None
-    )  # its stretch would go beyond the end
+    # Its stretch would go beyond the end.
+    assert motion._loneliest_hop(hops, 10.0, 0.0, 92.0) is None
     assert motion._loneliest_hop(hops[1:4], 10.0, 0.0, 100.0) is None
     assert motion._loneliest_hop(hops[:1], 10.0, 0.0, 100.0) is None
 
@@ -42,7 +41,7 @@ def test_the_longer_side_that_ends_at_walls_is_shown_with_its_hops(box, axis):
     rows = tables_of("paper")["trajectory"][:120]
     with style.context():
         figure = motion.draw_trajectory(box, rows, radius=0.24)
-        assert unclear(figure) == []
+    assert unclear(figure) == []
     hop = "horizontal_hop" if axis == "x" else "vertical_hop"
     times = [row["time"] for row in rows if row["event"] == hop]
     for axes in figure.axes:
@@ -59,10 +58,11 @@ def test_the_longer_side_that_ends_at_walls_is_shown_with_its_hops(box, axis):
 @pytest.mark.parametrize(("discs", "radius"), [(3, 0.2), (9, 0.1)])
 def test_lines_of_many_discs_are_those_of_the_trajectory(discs, radius):
     """Few enough bends to follow. Hops are no bends: without them the lines are the same."""
-    rows = TrajectoryTable.rows(Box(1.5, 1.0, discs=discs), radius, 1908)
+    box = Box(1.5, 1.0, discs=discs)
+    rows = TrajectoryTable.rows(box, radius, 1908)
     with style.context():
-        figure = motion.draw_trajectory(Box(1.5, 1.0, discs=discs), rows, radius=radius)
-        assert unclear(figure) == []
+        figure = motion.draw_trajectory(box, rows, radius=radius)
+    assert unclear(figure) == []
     whole, close = figure.axes
     times = [row["time"] for row in rows if row["time"] <= whole.get_xlim()[1]]
     for axes in figure.axes:
@@ -91,16 +91,14 @@ def test_of_very_many_discs_some_lines_are_drawn():
 
 
 def test_a_curve_ends_before_a_bin_that_holds_too_few():
-    rows = [
-        {"left": i / 4, "right": (i + 1) / 4, "count": n, "density": 2.0 * n, "stderr": 1.0 * n}
-        | {"exact_mean": 0.5}
-        for i, n in enumerate([500, 400, 9, 30])
-    ]
+    counts, rows = [500, 400, 9, 30], []
+    for i, n in enumerate(counts):
+        row = {"left": i / 4, "right": (i + 1) / 4, "count": n, "exact_mean": 0.5}
+        rows.append(row | {"density": 2.0 * n, "stderr": 1.0 * n})
     for fewest, shown in ((10, 2), (1, 4), (1000, 0)):
         edges, density, errors = motion.curve(rows, fewest)
         assert edges.tolist() == [i / 2 for i in range(shown + 1)]
-        assert density.tolist() == [row["count"] for row in rows[:shown]]
-        assert errors.tolist() == [row["count"] / 2 for row in rows[:shown]]
+        assert density.tolist() == (2 * errors).tolist() == counts[:shown]
 
 
 def test_a_density_that_bins_are_too_wide_for_is_not_marked():

@@ -5,8 +5,9 @@ Without these tests the agreement could count what is no test, or weigh it wrong
 
 import math
 
+import numpy as np
 import pytest
-from factory import empty, written
+from factory import empty, of, written
 
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.model.events import HOPS
@@ -28,16 +29,12 @@ TEST |= {"passed": True, "independent": True, "bound": 4.25}
 def check_rows():
     """Return tests at four radii, and rows that are no tests with a normal law."""
     start = TEST | {"quantity": "any_wall_time", "radius": 0.1, "z": 9.0}
-    rows = [
-        TEST | {"quantity": f"{event}_time", "radius": 0.1 * (i + 1), "z": value}
-        for event, values in SCORES.items()
-        for i, value in enumerate(values)
-    ]
-    for other in (
-        {"independent": False}, {"test": "exact-tail"}, {"method": "monte_carlo"},
-        {"comparison": "flux"}, {"passed": None},
-    ):  # fmt: skip
-        rows.append(start | other)
+    others = {"independent": False, "test": "exact-tail", "method": "monte_carlo"}
+    others |= {"comparison": "flux", "passed": None}
+    rows = [start | {name: value} for name, value in others.items()]
+    for event, values in SCORES.items():
+        for i, value in enumerate(values):
+            rows.append(TEST | {"quantity": f"{event}_time", "radius": 0.1 * (i + 1), "z": value})
     return [empty(SCENE_TABLES["check"], **row) for row in rows]
 
 
@@ -76,16 +73,13 @@ def effect_rows():
 @pytest.fixture
 def rows():
     """Return the rows of two scenes that have the same tests, as the table has them."""
-    tables = {
-        "a/check": check_rows(),
-        "a/hop_histogram": histogram_rows(),
-        "effects": effect_rows(),
-    }
-    return [*AgreementTable.rows(tables | {"b/check": check_rows()})]
+    tables = {"a/check": check_rows(), "a/hop_histogram": histogram_rows()}
+    tables |= {"effects": effect_rows(), "b/check": check_rows()}
+    return [*AgreementTable.rows(tables)]
 
 
 def one(rows, **where):
-    (row,) = [row for row in rows if where.items() <= row.items()]
+    (row,) = of(rows, **where)
     return row["count"], row["estimate"], row.get("stderr")
 
 
@@ -95,8 +89,7 @@ def test_rows_are_as_by_hand(rows):
     A bin of half of all intervals has the error √(n/4)/n/width if they are independent. The
     parabola p − at² whose means over (0, 1) and (1, 2) are 1.3 and 1 begins at 1.35.
     """
-    squares = sum(z**2 for values in SCORES.values() for z in values)
-    due = 32, squares / 16, math.sqrt(2 / 32)
+    due = 32, np.mean(np.square([*SCORES.values()])), math.sqrt(2 / 32)
     assert one(rows, quantity="mean_square") == pytest.approx(due)
     assert one(rows, event="right_wall") == (8, pytest.approx(-1), None)
     assert one(rows, event="vertical_hop", other="disc_collision") == (8, pytest.approx(0), None)

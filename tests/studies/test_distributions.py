@@ -13,9 +13,10 @@ from itertools import pairwise
 import mpmath
 import numpy as np
 import pytest
-from factory import written
+from factory import of, written
 
 from twodiscs.analysis.scores import student_deviate
+from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Box, Scene
 from twodiscs.theory import laws
 from twodiscs_paper.studies.distributions import measure as distributions
@@ -29,11 +30,6 @@ PAPER = BOX.scene(0.24)
 def complete(rows):
     """Return rows with their empty cells."""
     return [dict.fromkeys(DistributionsTable.columns) | row for row in rows]
-
-
-def measured(*given):
-    """Return the rows on one hop, with their empty cells."""
-    return complete(distributions.measured({}, *given))
 
 
 def bins_of(edges, chances, intervals, rng):
@@ -120,7 +116,7 @@ def test_bins_of_a_hazard_follow_one_another():
 def test_what_is_measured_meets_what_is_exact(box, radius, hop):
     """The mean interval, the density at 0, and Palm's relation between intervals and passages."""
     scene = Scene(*box, radius)
-    rows = measured(scene, hop, 4, 2**20)
+    rows = complete(distributions.measured({}, scene, hop, 4, 2**20))
     by_name = {(row["quantity"], row["last"] is None): row for row in rows}
     assert abs(by_name["mean", True]["z"]) < 5
     room = min(box) - 4 * radius if hop == "horizontal_hop" and box[0] > box[1] else 1
@@ -155,32 +151,23 @@ def test_the_table_is_written(tmp_path):
     scene = {"name": "paper", "box": BOX.parameters(), "event": "vertical_hop", "radii": [0.2]}
     other = scene | {"name": "other", "box": Box(3.0, 1.0).parameters()}
     rows = written(tmp_path, DistributionsTable, events=2**16, scenes=[scene, other], seed=9)
-    cases = list(dict.fromkeys((row["scene"], row["event"], row["radius"]) for row in rows))
-    near = [
-        ("paper", hop, radius)
-        for hop in ("vertical_hop", "horizontal_hop")
-        for radius in distributions.near_threshold(BOX, hop)
-    ]
-    assert cases == [("paper", "vertical_hop", 0.2), *near, ("other", "vertical_hop", 0.2)]
+    cases = dict.fromkeys((row["scene"], row["event"], row["radius"]) for row in rows)
+    near = [("paper", hop, r) for hop in HOPS for r in distributions.near_threshold(BOX, hop)]
+    assert [*cases] == [("paper", "vertical_hop", 0.2), *near, ("other", "vertical_hop", 0.2)]
     # A case does not depend on the others.
     alone = complete(DistributionsTable.rows([scene], 9, 2**16))
-    assert alone == [row for row in rows if row["scene"] == "paper"]
+    assert alone == of(rows, scene="paper")
 
 
 def case(event, radius, p, trend, counts=(), mean=0.5):
     """Return the rows of one hop: a rate fitted over 20 mean times, bins of 2 mean times."""
     start = {"scene": "main", "width": 3.0, "height": 1.0, "event": event, "radius": radius}
     start |= {"exact_mean": mean}
-    rows = [
-        {"quantity": "rate", "last": 20 * mean, "estimate": 0.8 / mean, "p": p}
-        | {"first": 4 * mean, "stderr": 0.02, "count": 9},
-        {"quantity": "trend", "p": trend},
-        *(
-            {"quantity": "hazard", "first": 2 * i * mean, "last": 2 * (i + 1) * mean}
-            | {"count": count, "estimate": rate}
-            for i, (count, rate) in enumerate(counts)
-        ),
-    ]
+    rate = {"quantity": "rate", "first": 4 * mean, "last": 20 * mean, "estimate": 0.8 / mean}
+    rows = [rate | {"stderr": 0.02, "count": 9, "p": p}, {"quantity": "trend", "p": trend}]
+    for i, (count, rate) in enumerate(counts):
+        ends = {"quantity": "hazard", "first": 2 * i * mean, "last": 2 * (i + 1) * mean}
+        rows.append(ends | {"count": count, "estimate": rate})
     return [start | row for row in rows]
 
 

@@ -10,7 +10,7 @@ from subprocess import CalledProcessError
 
 import numpy as np
 import pytest
-from factory import Laws, empty, written
+from factory import Laws, empty, of, written
 from marks import slow
 
 from twodiscs.analysis.tables import MeanTimesTable
@@ -71,15 +71,13 @@ def request(name):
     return scene
 
 
-def tables_of(names, rng):
+def tables_of(*names):
     """Return {<name>/mean_times: rows} of scenes, drawn from the exact theory."""
-    tables = {}
+    tables, rng = {}, np.random.default_rng(1)
     for name in names:
-        box, radii = request(name).box, request(name).radii
-        laws = [Laws(box.scene(radius)) for radius in radii]
+        laws = [Laws(request(name).box.scene(radius)) for radius in request(name).radii]
         points = [law.dynamics(rng, relative=1e-2, events=law.scene.events) for law in laws]
-        rows = MeanTimesTable.rows(points)
-        tables[f"{name}/mean_times"] = rows
+        tables[f"{name}/mean_times"] = MeanTimesTable.rows(points)
     return tables
 
 
@@ -93,21 +91,18 @@ def rows(tmp_path_factory):
     def survivors(scene, times, blocks, seed):
         return [2400, 2000, 1900] if scene.has_effects else [15, 1, 0]
 
-    tables = tables_of(NAMES, np.random.default_rng(1))
+    given = {"tables": tables_of(*NAMES), "scenes": BOXES, "seed": SEED}
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(effects, "survivors", survivors)
-        return written(
-            tmp_path_factory.mktemp("effects"), EffectsTable, tables=tables, scenes=BOXES, seed=SEED
-        )
+        return written(tmp_path_factory.mktemp("effects"), EffectsTable, **given)
 
 
 def test_starts_that_have_not_met_are_counted_at_every_radius_where_discs_meet_soon(monkeypatch):
     """By streams of the scene's name and of the radius, for rough and for smooth discs."""
     asked = []
     monkeypatch.setattr(effects, "survivors", lambda *given: asked.append(given) or [9, 5, 3])
-    tables = tables_of(["rough"], np.random.default_rng(1))
     given = {"scenes": {"rough": BOXES["rough"]}, "seed": SEED, "blocks": 1}
-    rows = [row for row in effects.rows(tables, **given) if row["quantity"] == "never_met_share"]
+    rows = of(effects.rows(tables_of("rough"), **given), quantity="never_met_share")
     scenes = [
         scene
         for radius in request("rough").radii
@@ -137,14 +132,14 @@ def test_rows_have_the_exact_times_with_and_without_effects(rows):
             plain = exact.mean_times(box.scene(radius))[event] if box.fits(radius) else None
             assert row["plain"] == plain
         assert seen == [(r, event) for r in asked.radii for event in asked.quantities.mean_times]
-    assert any(row["plain"] is None for row in rows if row["scene"] == "torus")
-    assert {row["status"] for row in rows if row["scene"] == "field"} == {"reached", "impossible"}
+    assert of(rows, scene="torus", plain=None)
+    assert {row["status"] for row in of(rows, scene="field")} == {"reached", "impossible"}
 
 
 def test_rows_of_shares(rows):
-    rows = [row for row in rows if row["quantity"] == "never_met_share"]
+    rows = of(rows, quantity="never_met_share")
     assert {row["scene"] for row in rows} == {"rough"}
-    rows = [row for row in rows if row["radius"] == 0.24]
+    rows = of(rows, radius=0.24)
     assert [row["duration"] for row in rows] == 2 * [1e2, 1e3, 1e4]
     rough, smooth, starts = rows[2], rows[3], effects.BLOCKS * REPLICAS
     share = 1900 / starts
@@ -169,10 +164,8 @@ RATIOS = {"without_effects": 1.0, "plain": 0.99, "plain_walls": 1.05}
 def costs():
     """Return rows of effects_cost.csv: ratios of 0.5, 0.6, … in their order."""
     ratios = RATIOS | {name: 0.5 + 0.1 * i for i, name in enumerate((*NAMES, *price.MORE))}
-    given = enumerate((ratios | {"all effects": 0.007}).items())
-    return [
-        empty(EffectsCostTable, variant=v, ratio=r, instructions=4000 + i) for i, (v, r) in given
-    ]
+    rows = [{"variant": v, "ratio": r} for v, r in (ratios | {"all effects": 0.007}).items()]
+    return [empty(EffectsCostTable, instructions=4000 + i, **row) for i, row in enumerate(rows)]
 
 
 def test_curves_go_through_the_exact_ratios(rows, monkeypatch):
@@ -182,7 +175,7 @@ def test_curves_go_through_the_exact_ratios(rows, monkeypatch):
     for event in figure.SHOWN_EVENTS:
         for name in names:
             x, y = figure._curve(table, name, event)
-            own = [r for r in rows if r["scene"] == name and r["quantity"] == f"{event}_time"]
+            own = of(rows, scene=name, quantity=f"{event}_time")
             inside = np.isfinite(y)
             assert inside.any() == bool(own)
             for row in [r for r in own if r["exact"] and r["plain"]]:
@@ -225,7 +218,7 @@ def test_costs_are_of_every_scene_and_of_what_is_watched(monkeypatch):
     }  # fmt: skip
     assert (True, ("disc_collision",)) in watched
     assert (False, (*WALLS, "any_wall")) in watched
-    assert {row["variant"] for row in rows if row["instructions"] == 10} == {"without_effects"}
+    assert [row["variant"] for row in of(rows, instructions=10)] == ["without_effects"]
 
 
 @pytest.mark.slow

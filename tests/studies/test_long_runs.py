@@ -125,25 +125,19 @@ def test_files_diffuse_by_passages_if_hops_are_rare():
 @pytest.mark.parametrize(
     ("name", "table", "quantity", "keys", "fewest"),
     [
-        (
-            "passages",
-            PassagesTable,
-            "coefficient",
-            ("distance", "friction", "moment_of_inertia"),
-            24,
-        ),
-        ("tails", TailsTable, "survival", ("radius", "method"), 10),
+        ("passages", PassagesTable, "coefficient", "distance friction moment_of_inertia", 24),
+        ("tails", TailsTable, "survival", "radius method", 10),
         # The same streams: the radii of the build are among those of the long run.
-        ("displacements", PassagesTable, "displacement", ("radius", "friction", "discs"), 21),
+        ("displacements", PassagesTable, "displacement", "radius friction discs", 21),
     ],
 )
 def test_long_runs_agree_with_the_build(name, table, quantity, keys, fewest):
     _, found, _ = kept(name, table)
     rows = of(table.read(PAPER / "expected" / f"{table.name()}.csv"), quantity=quantity)
-    expected = [row for row in rows if row.get("scene", "paper") == "paper"]
+    expected = of(rows, scene="paper") or rows
     compared = 0
     for row in of(found, quantity=quantity):
-        for other in of(expected, **{key: row[key] for key in ("event", *keys)}):
+        for other in of(expected, **{key: row[key] for key in ("event", *keys.split())}):
             if other["time"] == pytest.approx(row["time"]) and other["stderr"]:
                 assert deviation(row, other) < 5
                 compared += 1
@@ -172,16 +166,13 @@ def test_reflected_discs_have_the_exponents_of_both_theories():
 
 
 def test_a_small_run_counts_every_hop_once():
-    one = {
-        "name": "small", "width": 1.5, "height": 1.0, "hop": "horizontal_hop",
-        "first": 7, "last": 7, "hops": 2 * HOPS_OF_BLOCK - 1, "seed": 1, "pauses": [1, 2],
-    }  # fmt: skip
+    one = {"name": "small", "width": 1.5, "height": 1.0, "hop": "horizontal_hop", "seed": 1}
+    one |= {"first": 7, "last": 7, "hops": 2 * HOPS_OF_BLOCK - 1, "pauses": [1, 2]}
     counts = passages.cluster_counts(one)
     assert [sum(hops for _, hops in count["sizes"]) for count in counts] == [2 * HOPS_OF_BLOCK] * 2
     assert counts[1]["events"] > counts[0]["events"]
-    assert [row["quantity"] for row in passages.cluster_rows(one, counts)] == [
-        "coefficient", "passage_time", "coefficient", "passage_time",
-    ]  # fmt: skip
+    quantities = [row["quantity"] for row in passages.cluster_rows(one, counts)]
+    assert quantities == 2 * ["coefficient", "passage_time"]
 
 
 def test_errors_of_joined_runs_are_those_of_as_many_replicas():
