@@ -44,10 +44,8 @@ def table(name):
     """Return the rows of a committed table; costs, which are times, are made up."""
     if name == "effects_cost":
         variants = ["plain", *dict.fromkeys(row["scene"] for row in table("effects"))]
-        return [
-            empty(TABLES[name], variant=v, ratio=1 / (1 + i), instructions=4000 + i)
-            for i, v in enumerate(variants)
-        ]
+        made = enumerate({"variant": v, "ratio": 1.0} for v in variants)
+        return [empty(TABLES[name], **row, instructions=4000 + i) for i, row in made]
     folder = EXPECTED / "paper" if name in SCENE_TABLES else EXPECTED
     return TABLES[name].read(folder / f"{name}.csv")
 
@@ -57,9 +55,8 @@ def drawn(name):
     """Return {label of the panel, or its place: axes} of a figure of the committed tables."""
     entry = (FIGURES | STUDY_FIGURES)[name]
     tables = {name: table(name) for name in (*entry.tables, *entry.main_tables)}
-    tables |= {
-        name: read_table(EXPECTED.parents[1] / path) for name, path in entry.long_runs.items()
-    }
+    for name_of_run, path in entry.long_runs.items():
+        tables[name_of_run] = read_table(EXPECTED.parents[1] / path)
     with style.context():
         figure = DRAW[name](PAPER, tables) if name in DRAW else draw(name, PAPER, tables)
     return {axes.get_label() or i: axes for i, axes in enumerate(figure.axes)}
@@ -83,10 +80,7 @@ def cases():
     yield from distribution_cases()
     for (_, _, own), look in zip(tail_cases(), tails.LOOKS, strict=False):
         law = own[0]["law"]
-        due = [
-            symbol(row["time"] / row["exact_mean"], row, 1 / row["law"] if law else 1.0)
-            for row in own
-        ]
+        due = [symbol(r["time"] / r["exact_mean"], r, 1 / r["law"] if law else 1.0) for r in own]
         yield "tails", "ratio" if law else "exponential", look, due
     rows = [row for row in table("more_discs") if row["dynamics"]]
     for radius in {row["radius"] for row in rows}:
@@ -292,9 +286,8 @@ def test_a_table_without_a_figure_or_alone_is_one_sentence(tmp_path):
 
 def test_every_figure_of_a_study_is_compared():
     """Costs are times, which no table of the repository has: tests of the study compare them."""
-    elsewhere = {"accuracy_cost", "accuracy_cost_by_radius", "stability", "stability_of_runs"}
-    elsewhere |= {"calibration"}
-    assert {name for name, *_ in CASES} | elsewhere >= STUDY_FIGURES.keys()
+    elsewhere = "accuracy_cost accuracy_cost_by_radius calibration stability stability_of_runs"
+    assert {name for name, *_ in CASES} | {*elsewhere.split()} >= STUDY_FIGURES.keys()
 
 
 def test_what_passages_leave_falls_at_twice_their_rate():
@@ -302,17 +295,12 @@ def test_what_passages_leave_falls_at_twice_their_rate():
     first = table("passages")[0]
     same = {"width": first["width"], "height": first["height"], "event": "horizontal_hop"}
     rows = select([row for some in passage_rows() for row in some], **same, friction=None)
-    shown = [
-        line.get_data()
-        for line in drawn("passages")["curves"].lines
-        if line.get_color() == style.BLACK and len(line.get_xdata()) == 30
-    ]
-    due = [
-        row
-        for inertia, halvings in passages.SHOWN.items()
-        for n in halvings
-        for row in select(rows, quantity="coefficient", moment_of_inertia=inertia, distance=2.0**-n)
-    ]
+    lines = [n for n in drawn("passages")["curves"].lines if n.get_color() == style.BLACK]
+    shown = [line.get_data() for line in lines if len(line.get_xdata()) == 30]
+    due = []
+    for inertia, halvings in passages.SHOWN.items():
+        own = select(rows, quantity="coefficient", moment_of_inertia=inertia)
+        due += [row for n in halvings for row in select(own, distance=2.0**-n)]
     assert len(shown) == len(due) > 2
     for (times, values), row in zip(shown, due, strict=True):
         kappa, rate = row["estimate"], 1 / row["exact_mean"]
@@ -344,21 +332,16 @@ def test_residuals_are_those_of_the_table():
 
 def test_the_mean_squares_of_calibration_are_those_of_the_long_run():
     """Every row with enough scores, except those of long calls, has a symbol in its line."""
-    axes = drawn("calibration")["calibration"]
-    shown = sorted(
-        (round(y), x) for line in axes.lines if line.get_marker() in "os^"
-        for x, y in zip(*line.get_data(), strict=True)
-    )  # fmt: skip
+    lines = [n for n in drawn("calibration")["calibration"].lines if n.get_marker() in "os^"]
+    shown = sorted((round(y), x) for line in lines for x, y in line.get_xydata())
     path, fewest = "calibration/calibration.csv", figure_calibration.FEWEST
     rows = read_table(EXPECTED.parent / "long_run" / path)
     rows = [row for row in rows if row["scores"] >= fewest and row["size"] != "long"]
-    due = sorted(
-        (level, row["mean_square"])
-        for level, (call, part) in enumerate(figure_calibration.ESTIMATORS.values())
-        for row in select(rows, call=call)
-        if re.search(part, row["quantity"])
-    )
-    assert shown == due
+    due = []
+    for level, (call, part) in enumerate(figure_calibration.ESTIMATORS.values()):
+        own = [row for row in select(rows, call=call) if re.search(part, row["quantity"])]
+        due += [(level, row["mean_square"]) for row in own]
+    assert shown == sorted(due)
     assert len(due) == len(rows)  # each in one line
 
 
@@ -377,10 +360,8 @@ def test_the_panels_of_stability_are_those_of_the_table():
     assert law.get_data().values.sum() == pytest.approx(sum(map(sum, counts)), rel=1e-6)
     assert law.get_data().values[5] / law.get_data().values[6] == pytest.approx(2.5116, rel=1e-4)
     theory, end = select(rows, part="theory"), "largest radius"
-    for panel, own in (
-        ("a", select(theory, case=end)),
-        ("b", [row for row in theory if row["case"] != end]),
-    ):
+    others = [row for row in theory if row["case"] != end]
+    for panel, own in (("a", select(theory, case=end)), ("b", others)):
         for look, series in (
             ((style.VERMILLION, "s"), select(own, method="closed-form", quantity="volume")),
             ((style.ORANGE, "D"), select(own, method="closed-form", quantity="areas")),
@@ -388,10 +369,9 @@ def test_the_panels_of_stability_are_those_of_the_table():
         ):
             worst = {}
             for row in series:
-                errors = worst.setdefault(abs(row["distance"]), [1e-17])
-                errors.append(row["value"])
-            due = {(distance, max(errors)) for distance, errors in worst.items()}
-            assert points(drawn("stability")[panel], *look) == due != set()
+                distance = abs(row["distance"])
+                worst[distance] = max(row["value"], worst.get(distance, 1e-17))
+            assert points(drawn("stability")[panel], *look) == {*worst.items()} != set()
 
 
 def test_the_panels_of_stability_of_runs_are_those_of_the_table():
@@ -451,10 +431,8 @@ def test_curves_of_thresholds_are_exact_and_crosses_are_first_passages():
         if law is None:
             continue
         for axes in (hops, ratios)[event not in HOPS :]:
-            curve = max(
-                (line for line in axes.lines if line.get_color() == colour),
-                key=lambda line: (line.get_linestyle() == "-", len(line.get_xdata())),
-            )
+            lines = [line for line in axes.lines if line.get_color() == colour]
+            curve = max(lines, key=lambda n: (n.get_linestyle() == "-", len(n.get_xdata())))
             radii = law.limit * (1 - np.array(curve.get_xdata()))
             due = [exact.mean_times(PAPER.scene(radius))[event] for radius in radii]
             unit = law(radii) if axes is ratios else 1

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from factory import empty
+from factory import empty, of
 from marks import slow
 
 from twodiscs.dynamics.two import strip
@@ -55,9 +55,8 @@ def test_a_power_is_fitted_to_the_last_octaves():
     # The line through two points, from the far one on.
     assert steps[1]["estimate"] == pytest.approx(1 / 3)
     assert steps[1]["stderr"] == pytest.approx(math.hypot(0.01, 0.01) / math.log(2))
-    assert (step["estimate"], step["stderr"]) == pytest.approx(
-        (second["estimate"], second["stderr"])
-    )
+    assert step["estimate"] == pytest.approx(second["estimate"])
+    assert step["stderr"] == pytest.approx(second["stderr"])
     assert first["estimate"] == pytest.approx(1 / 3)
     assert (first["distance"], first["replicas"]) == (2.0**-8, 5)
     # Five equal errors at distances of one octave: Σ(x − x̄)² is 10 (ln 2)².
@@ -109,7 +108,7 @@ def test_two_discs_in_a_file_move_as_their_hops_are_correlated():
     """Against the exact rate, and D by correlations of hops, which another kernel counts."""
     scene = Box(1.5, 1.0, periodic="x").scene(0.21875)
     rows = list(measure.one_ring("ring", BOX, None, 2**18, 1))
-    due = next(row for row in rows if row["quantity"] == "diffusion" and row["method"] == "hops")
+    due, *_ = of(rows, quantity="diffusion", method="hops")
     assert due["radius"] == scene.radius
     moved, hops = walked(Scene(1.5, 1.0, scene.radius, discs=2, periodic="x"), 64.0, 4096, 2)
     assert abs(hops.value - passing_rate(scene, HOP)) < 5 * hops.stderr
@@ -187,13 +186,11 @@ def test_long_files_have_the_law_of_their_density(inertia, small, monkeypatch):
     assert [row["quantity"] for row in judged] == ["single_file"] * 3
     assert all(abs(row["z"]) < 5 for row in judged)
     # Blocked: no exchange, so that discs and places move alike.
-    moved, place = (
-        [r["estimate"] for r in rows if r["quantity"] == q and r["radius"] == 0.28]
-        for q in ("displacement", "file")
-    )
-    assert moved == pytest.approx(place, rel=1e-9)
+    moved, place = (of(rows, quantity=name, radius=0.28) for name in ("displacement", "file"))
+    for one, other in zip(moved, place, strict=True):
+        assert one["estimate"] == pytest.approx(other["estimate"], rel=1e-9)
     # F is ∝ √S.
-    (bulk,) = (row for row in rows if row["quantity"] == "density")
+    (bulk,) = of(rows, quantity="density")
     (law,) = (row for row in judged if row["distance"] > 0)
     relative = bulk["stderr"] / bulk["estimate"] / 2
     assert law["reference_stderr"] == pytest.approx(relative * law["reference"], rel=1e-12)
@@ -262,11 +259,10 @@ def test_the_table_is_written(rough, tmp_path, small, monkeypatch):
         "file", "amplitude",
     }  # fmt: skip
     # Hops of rough discs come in crowds: fewer than 256 blocks have no error.
-    rates = [row for row in rows if row["quantity"] == "rate"]
+    rates = of(rows, quantity="rate")
     assert all((row["stderr"] is None) == (row["moment_of_inertia"] is not None) for row in rates)
     # Nothing but the passages tells time between passages from time between hops.
-    times = [row for row in rows if row["quantity"] == "passage_time"]
-    kappa = [row for row in rows if row["quantity"] == "coefficient"]
+    times, kappa = of(rows, quantity="passage_time"), of(rows, quantity="coefficient")
     for time, fraction in zip(times, kappa, strict=True):
         assert time["estimate"] * fraction["estimate"] == pytest.approx(time["exact_mean"])
 
@@ -302,11 +298,10 @@ def test_rows_with_friction(kicked, monkeypatch):
     if not kicked:
         monkeypatch.setattr(strip, "run_blocks", smooth(strip.run_blocks))
     rows = list(measure.one_friction("paper", BOX, 40.0, (6, 8, 12), 2**19, 3))
-    (rate,) = (row for row in rows if row["quantity"] == "rate")
+    (rate,) = of(rows, quantity="rate")
     assert abs(rate["z"]) <= 5
     assert rate["stderr"] < 0.05 * rate["reference"]
-    kappa = [row for row in rows if row["quantity"] == "coefficient"]
-    slopes = [row for row in rows if row["quantity"] == "local_exponent"]
+    kappa, slopes = of(rows, quantity="coefficient"), of(rows, quantity="local_exponent")
     for before, after, slope in zip(kappa, kappa[1:], slopes, strict=False):
         x = [math.sqrt((1 - 4 * row["radius"]) * 2 * row["radius"]) for row in (before, after)]
         octaves = abs(math.log2(x[0] / x[1]))
