@@ -35,12 +35,11 @@ BOXES = {
 PAPER = BOXES["paper"]
 
 #: With effects, as many as a figure has to name with three digits each, and with many discs.
+EFFECTS = {"radius_ratio": 0.625, "mass_ratio": 0.125, "moment_of_inertia": 0.375}
 OTHERS = {
-    "effects": Box(
-        1.55, 1.05, periodic="x", radius_ratio=0.625, mass_ratio=0.125, moment_of_inertia=0.375,
-    ),
+    "effects": Box(1.55, 1.05, periodic="x", **EFFECTS),
     "five": Box(1.5, 1.0, discs=5),
-}  # fmt: skip
+}
 
 
 def draw(name, box, tables):
@@ -149,12 +148,9 @@ def trajectory(rng, box, events=400):
 
 def points(axes, colour, marker):
     """Return the set of all (x, y) of the symbols of one look."""
-    return {
-        (float(x), float(y))
-        for line in axes.lines
-        if (line.get_color(), line.get_marker()) == (colour, marker)
-        for x, y in zip(line.get_xdata(), line.get_ydata(), strict=True)
-    }
+    look = colour, marker
+    lines = [line for line in axes.lines if (line.get_color(), line.get_marker()) == look]
+    return {(float(x), float(y)) for n in lines for x, y in zip(*n.get_data(), strict=True)}
 
 
 def bars(axes, colour, marker):

@@ -10,7 +10,7 @@ from itertools import chain
 import numpy as np
 import pytest
 from effect_scenes import SCENES
-from figure_cases import unclear
+from figure_cases import EFFECTS, unclear
 from PIL import Image
 
 import twodiscs as td
@@ -128,10 +128,8 @@ def test_the_hop_is_a_frame_and_the_only_one_that_stops(rows, tmp_path, monkeypa
     assert marked == list(range(FEW, FEW + MARKED))
 
 
-#: Effects that need a long heading.
-ROUGH = {"radius_ratio": 0.625, "mass_ratio": 0.125, "moment_of_inertia": 0.375}
 #: Paths that are straight, that bend and go on beyond the box, and of discs that turn.
-DRAWN = [td.Scene(1.5, 1.0, 0.2), SCENES["combination"], td.Scene(1.5, 1.0, 0.2, **ROUGH)]
+DRAWN = [td.Scene(1.5, 1.0, 0.2), SCENES["combination"], td.Scene(1.5, 1.0, 0.2, **EFFECTS)]
 
 
 @pytest.mark.parametrize("scene", DRAWN, ids=str)
@@ -167,8 +165,8 @@ def test_discs_are_where_the_trajectory_has_them(scene):
 @pytest.mark.parametrize(
     ("box", "radius"),
     [
-        (Box(1.0, 4.0, **ROUGH), 0.125),
-        (Box(3.0, 1.0, **ROUGH), 0.125),
+        (Box(1.0, 4.0, **EFFECTS), 0.125),
+        (Box(3.0, 1.0, **EFFECTS), 0.125),
         (Box(12.0, 1.0), 0.2),
         (Box(50.0, 1.0), 0.2),
         (Box(1e-5, 3e-6), 6e-7),

@@ -67,9 +67,6 @@ def test_limits_have_their_radii_and_names(effects, expected):
     *found, (largest, name) = limits(box)
     assert name == LARGEST
     assert largest == pytest.approx(box.largest_radius, rel=1e-14)
-    named = {
-        index: radius
-        for radius, text in found
-        for index in re.findall(r"(?:\{|=|^(?=[hw]))([\w/]+)", text)
-    }
+    names = {radius: re.findall(r"(?:\{|=|^(?=[hw]))([\w/]+)", text) for radius, text in found}
+    named = {index: radius for radius, some in names.items() for index in some}
     assert named == pytest.approx(expected, rel=1e-15)

@@ -167,8 +167,7 @@ def test_the_histogram_has_the_densities_of_its_bins(box):
         for axes, bins in ((whole, "wide"), (short, "equal")):
             due = [
                 ((r["left"] + r["right"]) / 2 / mean, r["density"] * mean, r["stderr"] * mean)
-                for r in own
-                if r["bins"] == bins
+                for r in of(own, bins=bins)
             ]
             shown = np.array(bars(axes, *style.SERIES[i]))
             assert len(shown) > 5
@@ -234,9 +233,8 @@ def test_times_approach_the_end_of_their_hop():
 
 def test_blocked_hop_area_is_shown_as_zero():
     axes = drawn("horizontal_hop_area", "paper").axes[0]
-    blocked = {r["radius"] for r in tables_of("paper")["volume"] if r["radius"] > 0.25}
-    shown = points(axes, *style.SERIES[0])
-    assert {(r, 0.0) for r in blocked} <= shown != set()
+    blocked = {(r["radius"], 0.0) for r in tables_of("paper")["volume"] if r["radius"] > 0.25}
+    assert blocked <= points(axes, *style.SERIES[0]) != set()
 
 
 def test_an_estimate_above_the_curve_is_in_the_picture():
@@ -268,17 +266,15 @@ def test_a_single_value_has_an_ordinate_around_it(estimate):
 def test_every_status_has_its_symbol():
     """A cross without an error, a caret for a bound, triangles for residuals beyond the panel."""
     look, empty = style.SERIES[0], dict.fromkeys(("estimate", "stderr", "z", "bound"))
-    rows = [
-        {"radius": r, "test": "normal"} | empty | values
-        for r, values in {
-            0.1: {"estimate": 1.0, "stderr": 0.1, "z": 1.0},
-            0.15: {"estimate": 1.2, "z": -0.5},
-            0.2: {"bound": 3.0},
-            0.25: {"z": 0.0, "test": "certain"},
-            0.3: {"estimate": 2.0, "stderr": 0.1, "z": 9.0},
-            0.35: {"estimate": 2.0, "stderr": 0.1, "z": -40.0},
-        }.items()
-    ]
+    values = {
+        0.1: {"estimate": 1.0, "stderr": 0.1, "z": 1.0},
+        0.15: {"estimate": 1.2, "z": -0.5},
+        0.2: {"bound": 3.0},
+        0.25: {"z": 0.0, "test": "certain"},
+        0.3: {"estimate": 2.0, "stderr": 0.1, "z": 9.0},
+        0.35: {"estimate": 2.0, "stderr": 0.1, "z": -40.0},
+    }
+    rows = [{"radius": r, "test": "normal"} | empty | some for r, some in values.items()]
     with style.context():
         _, main, lower, _ = panels.radius_panels(PAPER, "")
         one = panels.Series("", rows, np.array([1.0, 1.0]))

@@ -157,7 +157,7 @@ def test_reflected_discs_have_the_exponents_of_both_theories():
     """A neck of 8 steps and more, and one of 1/8 and less, have theirs from each seed."""
     _, found, _ = kept("brownian", BrownianTable)
     fits = of(found, program="reflected", method="crossings", quantity="exponent")
-    long, short = ([r for r in fits if (r["neck"] > 1) == long] for long in (True, False))
+    long, short = ([r for r in fits if (r["neck"] > 1) == is_long] for is_long in (True, False))
     assert {row["seed"] for row in long} == {row["seed"] for row in short} == {None, 1, 2}
     assert max(row["stderr"] for row in fits) < 0.03
     assert all(abs(row["estimate"] + 1.5) < 5 * row["stderr"] for row in long)

@@ -42,7 +42,7 @@ any_box = pytest.mark.parametrize("box", [*BOXES, *map(slow, OTHERS)], ids=str)
 
 
 def failed(rows):
-    return [row for row in rows if row["passed"] is False]
+    return of(rows, passed=False)
 
 
 # Radii ------------------------------------------------------------------------------------------
@@ -52,10 +52,10 @@ def failed(rows):
 def test_all_radii_fit_and_ordinary_ones_visit_every_regime(box):
     radii = stability.ordinary_radii(box)
     assert radii == sorted(radii)
-    regimes = {box.scene(radius).regime for radius in radii}
     limits = sorted(stability.limits(box).values())
     middles = [(a + b) / 2 for a, b in zip([0.0, *limits], limits, strict=False)]
-    assert regimes == {box.scene(radius).regime for radius in middles}
+    visited, every = ({box.scene(radius).regime for radius in some} for some in (radii, middles))
+    assert visited == every
     for _, _, radius in stability.hard_radii(box):
         box.scene(radius)
 
@@ -199,9 +199,9 @@ def test_a_bound_that_says_something_is_judged(monkeypatch):
     found = [cells | {"quantity": "a_time", "z": 6.0}, cells | {"quantity": "b_time", "z": 0.0}]
     found.append(cells | {"quantity": "c_time", "z": 0.0, "test": "certain"})
     monkeypatch.setattr(stability, "comparisons", lambda *_: found)
-    one, other = stability.extreme_rows(1, {"ordinary": stability.PAPER})
-    assert (one["quantity"], one["z"], one["passed"]) == ("a_time", 6.0, False)
-    assert (other["quantity"], other["z"], other["passed"]) == ("b_time", None, None)
+    rows = stability.extreme_rows(1, {"ordinary": stability.PAPER})
+    judged = [(row["quantity"], row["z"], row["passed"]) for row in rows]
+    assert judged == [("a_time", 6.0, False), ("b_time", None, None)]
 
 
 # Long runs and paths back ------------------------------------------------------------------------
@@ -296,13 +296,11 @@ def test_scores_of_values_with_errors_that_are_right_and_wrong():
 
 def test_a_row_of_calibration_counts_what_the_face_prints():
     """One seed of few bodies: scores of simulate are the deviations over the printed errors."""
-    rows = [*calibration.rows(2, 5, ("r = 0.2",), ("simulate",))]
-    found = {row["quantity"]: row for row in rows if row["size"] == "least"}
-    z = []
+    rows, name, z = calibration.rows(2, 5, ("r = 0.2",), ("simulate",)), "disc_collision_time", []
     for seed in (5, 6):
-        one = td.simulate(td.Scene(1.5, 1.0, 0.2), budget=1, seed=seed)["disc_collision_time"]
+        one = td.simulate(td.Scene(1.5, 1.0, 0.2), budget=1, seed=seed)[name]
         z.append((one.value - one.exact) / one.stderr)
-    row = found["disc_collision_time"]
+    (row,) = of(rows, quantity=name, size="least")
     assert (row["scores"], row["withheld"]) == (2, 0)
     assert row["mean"] == pytest.approx(np.mean(z))
     assert row["mean_square"] == pytest.approx(np.mean(np.square(z)))

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from factory import written
+from factory import of, written
 
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Box
@@ -159,13 +159,13 @@ def test_the_table_is_written(tmp_path, monkeypatch):
     rows, again, other = (written(tmp_path, TailsTable, **given, seed=seed) for seed in (1, 1, 2))
     assert rows == again != other
     assert [row["quantity"] for row in rows].count("rate") == 1
-    assert {row["law"] is None for row in rows if row["radius"] == 0.3} == {True, False}
+    assert {row["law"] is None for row in of(rows, radius=0.3)} == {True, False}
 
 
 def test_counts_without_a_longer_interval_have_the_error_of_one():
     """Ten replicas have about 80 intervals, and none lasts ten mean times."""
     rows = tails.rows(BOX, 1, 10, 1)
-    empty = [row for row in rows if row["method"] == "counted" and not row["estimate"]]
+    empty = of(rows, method="counted", estimate=0)
     assert len(empty) > 5
     assert {row["stderr"] for row in empty} == {1 / 80}
     assert "rate" not in {row["quantity"] for row in rows}
