@@ -122,6 +122,8 @@ td.scan(1.5, 1, [0.1], gravity=1) → got an unexpected keyword argument 'gravit
 td.exact_table(1.5, 1, [0.1], feild=1) → argument 'feild'; did you mean field?
 td.scan(1.5, 1, [0.2, 0.2]) → radii must differ, because one scene, … time, not [0.2, 0.2]; to
 td.scan(1.5, 1, 0.2, field=[0, None, 1]) → radii and field must differ, … and [0, None, 1]; to
+td.scan(1.5, 1, [0.9]) → radius 0.9 does not fit
+td.exact_table(1.5, 1, [0.9]) → radius 0.9 does not fit
 td.scan(1.5, 1, 0.2, field=[]) → field must have at least one value, but has none
 td.scan(1.5, 1, 0.2, field=[1, 'x']) → field must be a positive number, or 0, not 'x'
 td.scan(1.5, [1, -1], 0.2) → height must be a positive, finite number, not -1.0
@@ -141,6 +143,9 @@ td.simulate(PAPER, duration=1, method='strips') → method must be one of dynami
 td.sample(PAPER, 1).more(budget=1e7) → to go on, give samples=
 td.simulate(PAPER, 0.5, budget=1).more(duration=10) → duration must be left out for a result of …
 td.trajectory(RING, start=ROUND_THE_RING) → must have the discs apart
+td.trajectory(PAPER, start=td.starts(PAPER, 2)) → numbers x1, …; start[0] is one of these states
+td.trajectory(PAPER, start=td.trajectory(PAPER, 1)) → …; states_at(times)[0] is a state of a traj…
+td.trajectory(PAPER, start=td.trajectory(PAPER, 1).iloc[-1]) → …; states_at(times)[0] is a state of
 td.trajectory(PAPER, 1e9) → must be below 2.71e6, where 1e7 events are due and fill 0.98 GB
 td.intervals(Scene(1.5, 1, 0.3), 'horizontal_hop') → has no intervals: it is blocked at radius 0.3
 td.intervals(Scene(1.6, 0.6, 0.18, discs=4), 'horizontal_hop') → is blocked

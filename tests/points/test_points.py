@@ -16,7 +16,14 @@ from factory import BOX, Laws, bins_point, counts_point, hits_point
 import twodiscs as td
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.checks import InputError
-from twodiscs.points.base import KEY, digest_line, read_json, require_logged, write_json
+from twodiscs.points.base import (
+    KEY,
+    digest_line,
+    file_content,
+    read_json,
+    require_logged,
+    write_json,
+)
 from twodiscs.points.dynamics_point import StripCount
 from twodiscs.points.intervals_point import Bins
 from twodiscs.points.monte_carlo_point import Hits, InsertionPoint, MonteCarloPoint, Weights
@@ -151,7 +158,8 @@ def test_the_area_of_all_walls_is_as_sure_as_that_of_the_rarer_wall():
     assert area.relative_stderr == pytest.approx(point.estimate("top_wall_area").relative_stderr)
 
 
-CONTENT = {"radius": 0.1, "counts": {"hop": 2**62 + 1}, "mean": 0.1 + 0.2, "sums": [[1, 2], [3]]}
+PART = {"mean": 0.1 + 0.2, "sums": {(0, 1): [[2**62 + 1], [3]]}}
+CONTENT = file_content("simulate", {"radius": 0.1}, {"seed": 1}, {"all": PART})
 SENTENCE = "is not what its job wrote; delete it, and it is made again"
 
 
