@@ -294,17 +294,15 @@ def test_what_changes_with_time_is_drawn_with_its_errors(tmp_path):
 
     averages = td.observe(SCENE, seen, [0, 1, 2], replicas=1)
     (axes,) = td.plot(averages, tmp_path / "averages.png").axes
-    for k, drawn in enumerate(axes.containers):
-        assert np.array_equal(drawn.lines[0].get_xydata().T, [[0, 1, 2], averages.mean[:, k]])
-        (bars,) = drawn.lines[2]
-        half = [np.ptp(bar[:, 1]) / 2 for bar in bars.get_segments()]
-        assert np.allclose(half, averages.stderr[:, k], rtol=1e-9)
-    assert len(axes.containers) == len(axes.get_legend().texts) == 2
     moved = td.diffusion(td.Scene(1.5, 1.0, 0.2, periodic="x"), [1, 2], 1)
-    for k, panel in enumerate(td.plot(moved).axes):
-        (drawn,) = panel.containers
-        assert panel.get_ylabel() == moved.names[k].replace("_", " ")
-        assert np.array_equal(drawn.lines[0].get_xydata().T, [[1, 2], moved.mean[:, k]])
+    panels = td.plot(moved).axes
+    for found, drawn in ((averages, axes.containers), (moved, [p.containers[0] for p in panels])):
+        for symbols, *columns in zip(drawn, found.mean.T, found.stderr.T, strict=True):
+            line, _, (bars,) = symbols.lines
+            half = [np.ptp(bar[:, 1]) / 2 for bar in bars.get_segments()]
+            np.testing.assert_allclose([*line.get_data(), half], [found.times, *columns], rtol=1e-9)
+    assert len(axes.get_legend().texts) == 2
+    assert [p.get_ylabel() for p in panels] == [name.replace("_", " ") for name in moved.names]
     for small in (moved, averages.more(5000)):
         for panel in td.plot(small).axes:
             panel.figure.draw_without_rendering()

@@ -439,11 +439,7 @@ def test_times_are_any_iterable():
 
 @pytest.mark.parametrize(
     "scene",
-    [
-        SCENE,
-        *(SCENES[name] for name in ("combination", "rough", "friction")),
-        td.Scene(6, 1.0, 0.2, discs=5),
-    ],
+    [SCENE, *map(SCENES.get, ("combination", "rough", "friction")), td.Scene(6, 1, 0.2, discs=5)],
     ids=str,
 )
 def test_states_show_that_rows_are_missing(scene, tmp_path):

@@ -47,7 +47,7 @@ CALLS = [
 ]
 
 
-def stop(code, seconds=0.3):
+def stop(code, seconds=0.1):
     """Run ``code``, interrupt it some seconds after each "ready"; return its status and output."""
     with subprocess.Popen(
         [sys.executable, "-c", code],

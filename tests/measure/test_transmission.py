@@ -11,13 +11,7 @@ import numpy as np
 import pytest
 
 import twodiscs as td
-from twodiscs.dynamics.two.hop_clusters import (
-    HOPS_OF_BLOCK,
-    LARGEST_CLUSTER,
-    SUMS,
-    cluster_sizes,
-    hop_sums,
-)
+from twodiscs.dynamics.two import hop_clusters
 from twodiscs.measure import transmission
 from twodiscs.model.formats import texts_with_error
 from twodiscs.points.estimates import Estimate
@@ -27,7 +21,7 @@ from twodiscs_paper.studies.passages.measure import coefficients_at_times, order
 
 def test_clusters_are_weighed_by_their_sizes():
     """Hops in clusters of 1, 2 and 3 are 1, 0 and 1/3 passages each."""
-    sizes = np.zeros(LARGEST_CLUSTER + 1, np.int64)
+    sizes = np.zeros(hop_clusters.LARGEST_CLUSTER + 1, np.int64)
     sizes[1:4] = 600, 200, 300
     kappa = transmission.cluster_coefficient(sizes)
     values = np.repeat([1, 0, 1 / 3], [600, 200, 300])
@@ -38,10 +32,10 @@ def test_clusters_are_weighed_by_their_sizes():
 
 
 def test_errors_of_a_correlation_between_walls_are_binomial():
-    sums = np.zeros((2, SUMS, 1), np.int64)
+    sums = np.zeros((2, hop_clusters.SUMS, 1), np.int64)
     sums[:, 0, 0], sums[:, 1, 0] = -10, 10  # 20 of the replicas have changed sides
     (found,) = coefficients_at_times(sums)
-    n = 2 * HOPS_OF_BLOCK
+    n = 2 * hop_clusters.HOPS_OF_BLOCK
     assert found.value == 1 - 2 * 20 / n
     assert found.stderr == pytest.approx(math.sqrt((1 - found.value**2) / n), rel=1e-14)
 
@@ -126,12 +120,13 @@ def test_a_pause_is_long_against_diffusion():
 def test_calls_add_up_to_separate_blocks(monkeypatch):
     """One call a block gives what one call gives for all of them."""
     monkeypatch.setattr(rounds, "CALL", 1.0)
-    given, hops = (td.Scene(1.5, 1.0, 0.246), "horizontal_hop"), 2**10
-    found, blocks = td.transmission(*given, hops, seed=1, name="a"), hops // HOPS_OF_BLOCK
+    given, blocks = (td.Scene(1.5, 1.0, 0.246), "horizontal_hop"), 16
+    hops = blocks * hop_clusters.HOPS_OF_BLOCK
+    found = td.transmission(*given, hops, seed=1, name="a")
     seeds = [transmission.hop_seed(*given, "a", 1, part) for part in ("clusters", "times")]
-    sizes, _ = cluster_sizes(*given, found.gap, blocks, seeds[0])
+    sizes, _ = hop_clusters.cluster_sizes(*given, found.gap, blocks, seeds[0])
     assert found.clusters == {n: hops for n, hops in enumerate(sizes.tolist()) if hops}
-    sums, _ = hop_sums(*given, found.times, blocks, seeds[1])
+    sums, _ = hop_clusters.hop_sums(*given, found.times, blocks, seeds[1])
     assert found.curve == transmission.time_estimates(sums.sum(axis=0), hops)
 
 
@@ -140,7 +135,7 @@ def test_more_discs_have_a_coefficient_too():
     three, four = (td.Scene(0.75 * n, 1.0, 0.247, discs=n) for n in (3, 4))
     found = td.transmission(three, "horizontal_hop", 2**12)
     assert found.neighbour_mean == pytest.approx(2 * found.exact_mean, rel=1e-14)
-    sizes = np.zeros(LARGEST_CLUSTER + 1, np.int64)
+    sizes = np.zeros(hop_clusters.LARGEST_CLUSTER + 1, np.int64)
     sizes[[*found.clusters]] = [*found.clusters.values()]
     raw, law = (
         transmission.cluster_coefficient(sizes),

@@ -22,14 +22,7 @@ from twodiscs.analysis.check import sum_rule
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
-from twodiscs.points.estimates import (
-    LEAST_FRACTION,
-    PARTS,
-    Estimate,
-    fraction_below,
-    fractions_of_speeds,
-    stratified_mean,
-)
+from twodiscs.points.estimates import Estimate
 from twodiscs_paper.reference import exact_numbers
 from twodiscs_paper.studies.distributions.measure import density_at_zero
 from twodiscs_paper.studies.estimates import LinearFit, sample_mean
@@ -237,16 +230,14 @@ def test_shares_of_directions_and_speeds_are_those_of_the_beta_law(components):
     """The square of a component is of (1/2, (n − 1)/2). Only the fastest starts are together."""
     for cosine in (0.0, 0.125, 0.5, 0.9, 1.0):
         expected = betainc(0.5, (components - 1) / 2, cosine**2)
-        assert fraction_below(cosine, components) == pytest.approx(expected, rel=1e-13)
-    shares = fractions_of_speeds(components)
+        assert estimates.fraction_below(cosine, components) == pytest.approx(expected, rel=1e-13)
+    shares = estimates.fractions_of_speeds(components)
     assert math.fsum(shares) == pytest.approx(1, rel=1e-15)
-    assert shares[-1] >= LEAST_FRACTION
-    below = np.cumsum(shares)[:-1]
-    assert below == pytest.approx(
-        [fraction_below((part + 1) / PARTS, components) for part in range(below.size)], rel=1e-13
-    )
-    if len(shares) < PARTS:
-        assert 1 - fraction_below(len(shares) / PARTS, components) < LEAST_FRACTION
+    assert shares[-1] >= estimates.LEAST_FRACTION
+    parts = [part / estimates.PARTS for part in range(1, len(shares) + 1)]
+    below = [estimates.fraction_below(part, components) for part in parts]
+    assert np.cumsum(shares)[:-1] == pytest.approx(below[:-1], rel=1e-13)
+    assert 1 - below[-1] < estimates.LEAST_FRACTION
 
 
 SHARES = np.outer([0.1, 0.2, 0.3, 0.25, 0.15], [0.5, 0.3, 0.2])
@@ -268,9 +259,8 @@ def test_means_have_no_bias(starts, number):
     """
     rng = np.random.default_rng(starts)
     fillings = [filled(rng, starts) for _ in range(number)]
-    off = (
-        np.array([stratified_mean(SHARES, n, n * MEANS, n * MEANS**2)[0] for n in fillings]) - TRUE
-    )
+    found = [estimates.stratified_mean(SHARES, n, n * MEANS, n * MEANS**2)[0] for n in fillings]
+    off = np.array(found) - TRUE
     # With enough starts to keep all strata, the mean has no variance.
     assert abs(off.mean()) <= 5 * off.std() / math.sqrt(off.size) + 1e-15
 
@@ -280,13 +270,13 @@ def test_strata_of_few_starts_are_taken_together_and_one_start_has_no_error():
     # 16 are expected in each of 6 strata as soon as there are 96 starts, whatever there were.
     for last, parts in ((21, 6), (20, 2)):
         starts = np.array([[15, 15, 15], [15, 15, last]])
-        mean, _ = stratified_mean(shares, starts, counts, counts)
+        mean, _ = estimates.stratified_mean(shares, starts, counts, counts)
         pairs = 2 / 3 * 8 / 60 + 1 / 3 * 7 / (15 + last)
         assert mean == pytest.approx(pairs if parts == 2 else np.mean(counts / starts))
     # A stratum that is almost empty has no separate mean.
     starts = np.array([[99, 99, 99], [99, 99, 1]])
-    mean, _ = stratified_mean(shares, starts, counts, counts)
+    mean, _ = estimates.stratified_mean(shares, starts, counts, counts)
     assert mean == pytest.approx(2 / 3 * 8 / 396 + 1 / 3 * 7 / 100)
     one = np.zeros((2, 3), int)
     one[1, 1] = 1
-    assert stratified_mean(shares, one, 3 * one, 9 * one) == (3.0, math.inf)
+    assert estimates.stratified_mean(shares, one, 3 * one, 9 * one) == (3.0, math.inf)

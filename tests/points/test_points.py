@@ -16,14 +16,7 @@ from factory import BOX, Laws, bins_point, counts_point, hits_point
 import twodiscs as td
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.checks import InputError
-from twodiscs.points.base import (
-    KEY,
-    digest_line,
-    file_content,
-    read_json,
-    require_logged,
-    write_json,
-)
+from twodiscs.points.base import digest_line, file_content, read_json, require_logged, write_json
 from twodiscs.points.dynamics_point import StripCount
 from twodiscs.points.intervals_point import Bins
 from twodiscs.points.monte_carlo_point import Hits, InsertionPoint, MonteCarloPoint, Weights
@@ -178,7 +171,7 @@ def test_what_is_written_is_read_unless_it_was_edited(tmp_path):
 
 @pytest.mark.parametrize(
     "text",
-    ["", "{", "[]", "1", "{}", '{"sha256": "0"}', json.dumps(CONTENT), json.dumps({KEY: None})],
+    ["", "{", "[]", "1", "{}", '{"sha256": "0"}', json.dumps(CONTENT), '{"sha256": null}'],
 )
 def test_what_is_no_such_file_is_refused(tmp_path, text):
     (tmp_path / "a.json").write_text(text)

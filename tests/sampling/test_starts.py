@@ -12,14 +12,7 @@ import numpy as np
 import pytest
 from effect_scenes import SCENES
 from marks import slow
-from sampling.uniformity import (
-    FALSE_ALARM,
-    assert_uniform,
-    assert_uniform_on_sphere,
-    energy_left,
-    parts,
-    scaled_components,
-)
+from sampling import uniformity
 from scipy.stats import chisquare
 
 from twodiscs.dynamics.two import strip
@@ -42,14 +35,6 @@ STARTS = {
     "balls between plates": Scene(1.5, 1.0, 0.2, depth=0.8, periodic="xz", mass_ratio=5.0),
     "strong field": Scene(1.5, 1.0, 0.15, field=1.5, mass_ratio=0.5),
 }
-
-
-def on_surface(scene, surface, n):
-    """Return n starts on the surface of a hop along the axis ``surface``, 0 or 1."""
-    found = np.zeros((COMPONENTS, n))
-    sampler = start_sampler(scene, surface=surface)
-    draw_states(open_stream(np.uint64(17), 0), sampler, found)
-    return found
 
 
 # The law ----------------------------------------------------------------------------------------
@@ -79,7 +64,7 @@ def rejected(scene, surface, n):
         if axis == surface:
             places[axis][:] = rng.uniform(-min(half), min(half), n)
             power += 1 / 2
-    weight = np.maximum(energy_left(scene, *places["y"]), 0.0) ** power
+    weight = np.maximum(uniformity.energy_left(scene, *places["y"]), 0.0) ** power
     kept = distance_square(scene, places) >= scene.contact_distance**2
     kept &= rng.random(n) < weight
     return {axis: both[:, kept] for axis, both in places.items()}
@@ -102,11 +87,11 @@ def assert_same_law(scene, drawn, plain):
 
 @pytest.mark.parametrize("scene", [PLAIN, *STARTS.values()], ids=["plain", *STARTS])
 def test_starts_have_the_law_of_the_invariant_measure(scene):
-    found, spins = parts(scene, states(scene, 50_000, 17))
+    found, spins = uniformity.parts(scene, states(scene, 50_000, 17))
     places = {axis: both[:2] for axis, both in found.items()}
     assert_same_law(scene, places, rejected(scene, None, 300_000))
-    unit = scaled_components(scene, found, spins)
-    assert_uniform_on_sphere(unit)
+    unit = uniformity.scaled_components(scene, found, spins)
+    uniformity.assert_uniform_on_sphere(unit)
     # The direction of motion does not depend on the place.
     for a in (distance_square(scene, places), found["y"][0]):
         assert np.max(np.abs(np.corrcoef([a, *unit**2])[0, 1:])) <= 5 / math.sqrt(a.size)
@@ -125,15 +110,17 @@ SURFACES = [
 @pytest.mark.parametrize(("name", "hop"), SURFACES)
 def test_starts_on_a_surface_have_the_law_of_the_flux(name, hop):
     scene = SMOOTH.get(name) or STARTS[name]
-    found, spins = parts(scene, on_surface(scene, "xy".index(hop), 50_000))
+    sampler, drawn = start_sampler(scene, surface="xy".index(hop)), np.zeros((COMPONENTS, 50_000))
+    draw_states(open_stream(np.uint64(17), 0), sampler, drawn)
+    found, spins = uniformity.parts(scene, drawn)
     places = {axis: both[:2] for axis, both in found.items()}
     assert np.array_equal(*places[hop])
     assert_same_law(scene, places, rejected(scene, hop, 300_000))
-    normal, *others = scaled_components(scene, found, spins, hop)
+    normal, *others = uniformity.scaled_components(scene, found, spins, hop)
     rest = np.sqrt(1 - normal**2)
-    assert_uniform(rest ** (scene.velocity_components - 1))
+    uniformity.assert_uniform(rest ** (scene.velocity_components - 1))
     assert abs(np.mean(np.sign(normal))) <= 5 / math.sqrt(normal.size)
-    assert_uniform_on_sphere(np.array(others) / rest)
+    uniformity.assert_uniform_on_sphere(np.array(others) / rest)
 
 
 # States -----------------------------------------------------------------------------------------
@@ -211,9 +198,9 @@ def test_separations_have_the_invariant_law(width, height, radius):
     order = np.argsort(masses)
     cells = [0, *range(1 + np.count_nonzero(n * masses < 10), masses.size)]
     seen, expected = (np.add.reduceat(of[order], cells) for of in (counts, n * masses))
-    assert chisquare(seen, expected).pvalue > FALSE_ALARM
+    assert chisquare(seen, expected).pvalue > uniformity.FALSE_ALARM
     # Given u, the slack in y is (B − k)√U.
-    assert_uniform((slack_y[:2000] / rooms) ** 2)
+    uniformity.assert_uniform((slack_y[:2000] / rooms) ** 2)
 
 
 @pytest.mark.parametrize("radius", [0.2, 0.3, 0.38, JAM * (1 - 1e-9)])

@@ -8,39 +8,30 @@ import math
 import numpy as np
 from sampling.uniformity import assert_uniform
 
+from twodiscs.sampling import streams
 from twodiscs.sampling.conditioned import draw_second_largest
-from twodiscs.sampling.streams import (
-    GOLDEN,
-    draw_largest,
-    exponential,
-    next_bits,
-    open_stream,
-    signed_uniform,
-    splitmix,
-    uniform,
-)
 
 
 def test_order_statistics():
     for n in (2, 3, 6):
-        state = open_stream(np.uint64(n), 0)
+        state = streams.open_stream(np.uint64(n), 0)
         largest, second = np.array(
-            [(draw_largest(state, n), draw_second_largest(state, n)) for _ in range(50_000)]
+            [(streams.draw_largest(state, n), draw_second_largest(state, n)) for _ in range(50_000)]
         ).T
         assert_uniform(largest**n)
         assert_uniform(n * second ** (n - 1) - (n - 1) * second**n)
 
 
 def test_exponential_numbers():
-    state = open_stream(np.uint64(7), 0)
-    values = np.array([exponential(state) for _ in range(50_000)])
+    state = streams.open_stream(np.uint64(7), 0)
+    values = np.array([streams.exponential(state) for _ in range(50_000)])
     assert_uniform(np.exp(-values))
     # They do not know of one another.
     assert abs(np.corrcoef(values[1:], values[:-1])[0, 1]) <= 5 / math.sqrt(values.size)
 
 
 def test_streams_differ_by_seed_and_by_block():
-    states = [tuple(open_stream(np.uint64(s), b)) for s in range(40) for b in range(40)]
+    states = [tuple(streams.open_stream(np.uint64(s), b)) for s in range(40) for b in range(40)]
     assert len(set(states)) == len(states)
     bits = np.array(states, dtype=np.uint64).view(np.uint8)
     ones = np.unpackbits(bits).mean()
@@ -50,20 +41,20 @@ def test_streams_differ_by_seed_and_by_block():
 def test_the_generators_are_those_of_their_authors():
     """First numbers of the reference implementations in C."""
     state = np.array([1, 2, 3, 4], np.uint64)
-    assert [int(next_bits(state)) for _ in range(5)] == [
+    assert [int(streams.next_bits(state)) for _ in range(5)] == [
         41943041, 58720359, 3588806011781223, 3591011842654386, 9228616714210784205
     ]  # fmt: skip
     with np.errstate(over="ignore"):
-        counters = [np.uint64(1234567) + np.uint64(i) * GOLDEN for i in (1, 2)]
-    assert [int(splitmix(counter)) for counter in counters] == [
+        counters = [np.uint64(1234567) + np.uint64(i) * streams.GOLDEN for i in (1, 2)]
+    assert [int(streams.splitmix(counter)) for counter in counters] == [
         6457827717110365317, 3203168211198807973
     ]  # fmt: skip
 
 
 def test_uniform_numbers_are_multiples_of_two_to_the_minus_53():
-    state = open_stream(np.uint64(1), 0)
-    for low, draw in ((0, uniform), (-1, signed_uniform)):
+    state = streams.open_stream(np.uint64(1), 0)
+    for low, draw in ((0, streams.uniform), (-1, streams.signed_uniform)):
         found = np.array([draw(state) for _ in range(1000)])
         assert_uniform((found - low) / (1 - low))
         assert np.array_equal(found * 2**53, np.round(found * 2**53))
-    assert uniform(np.array([0, 0, 0, 0], np.uint64)) == 0.0
+    assert streams.uniform(np.array([0, 0, 0, 0], np.uint64)) == 0.0
