@@ -7,6 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from factory import of
 from figure_cases import bars, points
 from matplotlib.figure import Figure
 from PIL import Image
@@ -24,19 +25,23 @@ def scan(*events, width=1.5):
     return td.scan(width, 1.0, RADII, error=0.1, events=events)
 
 
+def due_bars(found, event):
+    """Return (radius, estimate, standard error) of the rows of a scan on an event."""
+    rows = [row for result in found for row in of(result.rows, event=event)]
+    return [(row["radius"], row["estimate"], row["stderr"]) for row in rows]
+
+
 @pytest.mark.filterwarnings("error")
 def test_all_events_of_a_scan_are_drawn_with_their_errors():
     found = scan(HOPS, COLLISIONS)
     figure = td.plot(found)
     main, lower = figure.axes
     assert [axes.get_label() for axes in figure.axes] == ["main", "residuals"]
-    rows = [row for result in found for row in result.rows]
     for event in (HOPS, COLLISIONS):
-        own = [row for row in rows if row["event"] == event]
-        due = [(row["radius"], row["estimate"], row["stderr"]) for row in own]
-        assert len(due) == len(RADII)
-        np.testing.assert_allclose(bars(main, *LOOKS[event]), due, rtol=1e-9)
-        assert {(row["radius"], row["z"]) for row in own} <= points(lower, *LOOKS[event])
+        np.testing.assert_allclose(bars(main, *LOOKS[event]), due_bars(found, event), rtol=1e-9)
+        z = {(row["radius"], row["z"]) for one in found for row in of(one.rows, event=event)}
+        assert z <= points(lower, *LOOKS[event])
+        assert len(z) == len(RADII)
     both = td.plot([scan(HOPS), scan(COLLISIONS)]).axes[0]
     for event in (HOPS, COLLISIONS):
         assert bars(both, *LOOKS[event]) == bars(main, *LOOKS[event])
@@ -61,9 +66,7 @@ def test_two_boxes_are_drawn_in_axes_of_the_user(tmp_path):
     assert (tmp_path / "two.pdf").stat().st_size > 5000
     assert axes.get_ylim()[0] <= low[0] < low[1] <= axes.get_ylim()[1]
     for found, look in zip((one, two), LOOKS.values(), strict=False):
-        rows = [row for result in found for row in result.rows]
-        due = [(row["radius"], row["estimate"], row["stderr"]) for row in rows]
-        np.testing.assert_allclose(bars(axes, *look), due, rtol=1e-9)
+        np.testing.assert_allclose(bars(axes, *look), due_bars(found, HOPS), rtol=1e-9)
         exact = curves.exact_curves(found[0].scene.box)[1][f"{HOPS}_time"]
         drawn = [line.get_ydata() for line in axes.lines if line.get_color() == look[0]]
         assert any(np.array_equal(line, exact, equal_nan=True) for line in drawn)

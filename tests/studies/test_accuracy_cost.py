@@ -228,9 +228,9 @@ def given(monkeypatch):
 
 def test_rows_are_those_of_all_methods_and_of_all_distances(given, monkeypatch):
     price = SimpleNamespace(quantity="volume", method="rejection", c=2.0, floor=0.5)
-    exact_one = SimpleNamespace(quantity="all", method="exact", c=0.0, floor=0.0)
-    of_cost = SimpleNamespace(prices=[price, exact_one])
-    monkeypatch.setattr(costs.twodiscs, "cost", lambda scene: of_cost, raising=False)
+    free = SimpleNamespace(quantity="all", method="exact", c=0.0, floor=0.0)
+    cost = SimpleNamespace(prices=[price, free])
+    monkeypatch.setattr(costs.twodiscs, "cost", lambda scene: cost, raising=False)
     rows = [empty(AccuracyCostTable, **row) for row in AccuracyCostTable.rows(seconds=7.0, seed=1)]
     assert len(of(rows, part="error")) == len(costs.methods(1))
     assert sum(seconds for seconds, _ in given) == pytest.approx(7)
@@ -279,8 +279,8 @@ def rows(long):
 def panels(long, rows):
     tables = {"accuracy_cost": rows, "kept": long}
     with style.context():
-        figures = [module.draw(None, tables) for module in (figure, figure_by_radius)]
-    return {axes.get_label(): axes for drawn in figures for axes in drawn.axes}
+        both = [*figure.draw(None, tables).axes, *figure_by_radius.draw(None, tables).axes]
+    return {axes.get_label(): axes for axes in both}
 
 
 RADII = [costs.EASY.radius, costs.HARD.radius]
@@ -300,13 +300,11 @@ def test_symbols_are_errors_and_times_and_lines_are_c_over_the_square(
         for some in figure.select(table, one, RADII).values():
             thinned = [*some[::-1][:: figure.THINNED], some[-1]]
             assert {(row["error"], row["seconds"]) for row in thinned} <= shown
-    curves = [[*map(np.asarray, line.get_data())] for line in mine if len(line.get_xdata()) > 100]
-    for some in figure.select(long, one, RADII).values():
-        c, floor, found = some[0]["c"], some[0]["floor"], False
-        for x, y in curves:
-            far = (x > 2 * floor) & (x < 0.5)
-            found |= np.allclose(c / y[far], x[far] ** 2 - floor**2, rtol=1e-9)
-        assert found
+    curves = [line.get_xydata() for line in mine if len(line.get_xdata()) > 100]
+    for first, *_ in figure.select(long, one, RADII).values():
+        c, floor = first["c"], first["floor"]
+        far = [xy[(xy[:, 0] > 2 * floor) & (xy[:, 0] < 0.5)].T for xy in curves]
+        assert any(np.allclose(c / y, x**2 - floor**2, rtol=1e-9) for x, y in far)
 
 
 def test_the_textbook_near_the_threshold_is_slower_by_the_factor_of_its_engine(long, panels):

@@ -92,12 +92,8 @@ def test_fits_keep_to_one_regime_and_to_honest_errors():
 def test_first_passages_are_fitted_without_a_curve():
     """Those that are cut are left out, and so are those of another scene."""
     rows = times_of("horizontal_hop", RADII)
-    passages = [
-        *passages_of("paper", PAPER, rows),
-        *passages_of("paper", PAPER, rows, last=1.0),
-        *passages_of("other", PAPER, rows),
-    ]
-    found = fitted([], passages=passages)
+    passages = passages_of("paper", PAPER, rows) + passages_of("other", PAPER, rows)
+    found = fitted([], passages=passages + passages_of("paper", PAPER, rows, last=1.0))
     assert set(found) == {("first_passage", form, "exponent") for form in ("plain", "reduced")}
     row = found["first_passage", "reduced", "exponent"]
     assert row["estimate"] == pytest.approx(-2, abs=1e-10)
@@ -113,10 +109,8 @@ def test_the_table_is_written(box, tmp_path):
     """The main scene may measure no mean times; then the fits are those of the passages."""
     rows = times_of("horizontal_hop", RADII, noise=1.0, box=box)
     passages = {"distributions": passages_of("a", box, rows)}
-    for read, quantities in (
-        ({"a/mean_times": rows} | passages, {"mean_time", "first_passage"}),
-        (passages, {"first_passage"}),
-    ):
+    both, one = {"mean_time", "first_passage"}, {"first_passage"}
+    for read, quantities in ((passages | {"a/mean_times": rows}, both), (passages, one)):
         found = written(tmp_path, ThresholdsTable, tables=read, scenes={"a": box.parameters()})
         assert {row["quantity"] for row in found} == quantities
         with style.context():
