@@ -20,7 +20,7 @@ from twodiscs.model.scene import Box, Scene
 from twodiscs.model.seeds import job_seed, stream_seed
 from twodiscs_paper.configuration import scene_block, schema, yaml_files
 from twodiscs_paper.configuration.request import RequestedQuantities
-from twodiscs_paper.configuration.yaml_files import read
+from twodiscs_paper.configuration.yaml_files import ConfigError, read
 
 ROOT = Path(__file__).resolve().parents[2]
 PLAIN = {"scenes": [{"name": "one", "box": {"width": 1.5, "height": 1}}]}
@@ -96,10 +96,8 @@ def test_the_check_and_the_cost_of_a_scene_read_the_points_of_all_stages():
 
 def test_a_watch_block_is_everything_that_is_watched():
     request = one(watch={"mean_times": ["top_wall", "right_wall"]})
-    assert request.quantities == RequestedQuantities(
-        False, (), ("right_wall", "top_wall"), (), None
-    )
     assert request.quantities.names == {"right_wall_time", "top_wall_time"}
+    assert request.quantities.mean_times == ("right_wall", "top_wall")
     assert request.keys["monte_carlo"] == request.keys["intervals"] == {}
     assert tuple(request.keys["dynamics"].values()) == request.radii
     assert request.exact_radii("theory") == request.exact_radii("grid") == [*request.radii]
@@ -167,10 +165,7 @@ def test_numbers_have_one_form():
 def jobs(request):
     """The parameters of every job of a scene, beside the box, by job."""
     every = {(table,): request.exact_radii(table) for table in ("theory", "grid")}
-    every["trajectory",] = {
-        "radius": request.quantities.trajectory,
-        "seed": request.trajectory_seed,
-    }
+    every["trajectory",] = request.quantities.trajectory, request.trajectory_seed
     return every | {
         (stage, key): request.arguments(stage) for stage in STAGES for key in request.keys[stage]
     }
@@ -297,12 +292,10 @@ def test_what_is_about_a_plain_scene_needs_one():
     alone = yaml_files.load({"scenes": [field]})
     assert alone.main is None
     assert alone.shared == ("report",)
-    with pytest.raises(
-        yaml_files.ConfigError, match="shared must leave out 'tails' if every scene"
-    ):
+    with pytest.raises(ConfigError, match="shared must leave out 'tails' if every scene"):
         yaml_files.load({"scenes": [field], "shared": ["report", "tails"]})
     tiny = plain | {"box": {"width": 1e-50, "height": 1e-50}, "watch": {"volume": True}}
-    with pytest.raises(yaml_files.ConfigError, match="shared must leave out 'stability' unless"):
+    with pytest.raises(ConfigError, match="shared must leave out 'stability' unless"):
         yaml_files.load({"scenes": [tiny], "shared": ["stability"]})
     assert yaml_files.load({"scenes": [tiny], "shared": ["errata"]}).main.name == "plain"
 
@@ -314,9 +307,7 @@ def test_the_fewest_intervals_are_a_block():
 def test_radii_too_close_to_the_largest_are_refused_for_dynamics_alone():
     largest = Box(1.5, 1.0).largest_radius
     close, far = largest * (1 - 3e-14), largest * (1 - 1.01e-12)
-    with pytest.raises(
-        yaml_files.ConfigError, match=rf"{close!r} must not exceed 0\.3839745962\d+ for"
-    ):
+    with pytest.raises(ConfigError, match=rf"{close!r} must not exceed 0\.3839745962\d+ for"):
         one(radii=[close])
     assert one(radii=[far]).radii == (far,)
     assert one(radii=[close], watch={"volume": True}).radii == (close,)
@@ -346,7 +337,7 @@ def test_results_are_a_folder_that_holds_no_sources(tmp_path, monkeypatch):
     for good in ("out", "out/new", "results", f"{tmp_path}/out"):
         yaml_files.check_results(good, tmp_path)
     for bad in ("README.md", "README.md/new", f"{tmp_path}/docs", f"{tmp_path}/docs/new"):
-        with pytest.raises(yaml_files.ConfigError, match=f"results must be .*, not '{bad}'"):
+        with pytest.raises(ConfigError, match=f"results must be .*, not '{bad}'"):
             yaml_files.check_results(bad, tmp_path)
 
 

@@ -327,6 +327,12 @@ def assert_right(page, asked, box, radius):
         assert error == pytest.approx(100 * seen["error"] / seen["time"], rel=0.06)
 
 
+def test_every_control_has_a_name(driven):
+    controls = "[...document.querySelectorAll('input, select, summary')]"
+    names = driven().look(f"{controls}.map(e => e.ariaLabel ?? e.labels[0].innerText)")
+    assert len({*names} - {""}) == len(names) == 16
+
+
 def test_who_wants_no_motion_starts_it_himself_and_it_can_be_paused(driven):
     page = driven("seed=7", reduced=True)
     page.look("new Promise(done => setTimeout(done, 300))")
@@ -353,10 +359,13 @@ def in_box(*sides):
     return [dict(zip(("name", "width", "height", "effects"), ("a", *sides, {}), strict=True))]
 
 
+@pytest.mark.parametrize("width", [1280, 390])
 @pytest.mark.parametrize(("sides", "radius", "next_radius"), UNITS)
-def test_lengths_are_in_any_unit(driven, sides, radius, next_radius):
-    box, page = Box(*sides), driven("seed=7&runs=2000", scenes=in_box(*sides))
+def test_lengths_are_in_any_unit_and_fit_the_window(driven, sides, radius, next_radius, width):
+    box, page = Box(*sides), driven("seed=7&runs=2000", scenes=in_box(*sides), width=width)
     assert_right(page, 2000, box, float(radius))
+    right = "[...document.querySelectorAll('main *')].map(e => e.getBoundingClientRect().right)"
+    assert page.look(f"Math.max(document.documentElement.scrollWidth, ...{right})") <= width
     shown = "LENGTHS.map(name => numberOf(name).value)"
     assert [*map(float, page.look(shown))] == [*sides, float(radius)]
     low, high = page.look("[at('radius').min, at('radius').max].map(value => unit * value)")
@@ -369,18 +378,6 @@ def test_lengths_are_in_any_unit(driven, sides, radius, next_radius):
         assert all(low < found[event] < high for event in explorer.COUNTED if found[event])
     page.look("at('radius').stepUp(), at('radius').dispatchEvent(new Event('input'))")
     assert page.look(f"{shown}[2]") == page.look("at('radius').ariaValueText") == next_radius
-
-
-@pytest.mark.parametrize("width", [1280, 390])
-def test_nothing_is_wider_than_the_window_and_every_control_has_a_name(driven, width):
-    page = driven("seed=7", scenes=in_box(3e-6, 1e-5), width=width)
-    page.until("runs.done > 200")
-    right = "[...document.querySelectorAll('main *')].map(e => e.getBoundingClientRect().right)"
-    assert page.look("document.documentElement.scrollWidth") <= width
-    assert page.look(f"Math.max(...{right})") <= width
-    controls = "[...document.querySelectorAll('input, select, summary')]"
-    names = page.look(f"{controls}.map(e => e.ariaLabel ?? e.labels[0].innerText)")
-    assert len({*names} - {""}) == len(names) == 16
 
 
 def type_number(page, name, text):
