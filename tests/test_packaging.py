@@ -9,6 +9,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 import tarfile
 import tomllib
 from zipfile import ZipFile
@@ -41,7 +42,7 @@ NO_RULE_READS = ("schema.json", "references.md")
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory):
-    """Build a wheel without a network, install it into an empty folder, and return that."""
+    """Build a wheel without a network, install it into a folder with a blank, and return that."""
     folder = tmp_path_factory.mktemp("wheel")
     pip, offline = ("-m", "pip", "--quiet"), ("--no-deps", "--no-index")
     source = folder / "source"
@@ -53,7 +54,7 @@ def installed(tmp_path_factory):
     wheel = "wheel", *offline, "--no-build-isolation", "--wheel-dir", folder, source
     python(*pip, *wheel, check=True)
     (built,) = folder.glob("*.whl")
-    target = folder / "target"
+    target = folder / "my packages"
     python(*pip, "install", *offline, "--target", target, built, check=True)
     absent = {{"pyyaml": "yaml"}.get(name, name) for name in EXTRAS}
     (folder / "blocked").mkdir()
@@ -97,14 +98,24 @@ def test_the_wheel_carries_the_workflow(installed):
 
 
 def test_twodiscs_run_finds_the_workflow_of_a_wheel(installed, tmp_path):
-    """Also where pip had a --target, with records of files that are elsewhere."""
-    options = {"cwd": tmp_path, "env": os.environ | {"PYTHONPATH": str(installed)}, "check": True}
-    python("-m", "twodiscs", "new", "my.yaml", **options)
-    run = python("-m", "twodiscs", "run", "my.yaml", "--dry-run", **options)
-    assert f"--snakefile {installed}/share/twodiscs/Snakefile" in run.stdout
-    assert "dynamics" in run.stdout
+    """Also where pip had a --target, with records of files that are elsewhere.
+
+    The environment is in a folder with a blank, too: its Python is a word of each job's command.
+    """
+    paper, target = tmp_path / "my paper", "results/mine/grid.csv"
+    venv = paper / ".venv"
+    python("-m", "venv", "--without-pip", venv, check=True)
+    (packages,) = venv.glob("lib/python*/site-packages")
+    (packages / "all.pth").write_text(f"{installed}\nimport sys; sys.path += {sys.path[1:]!r}\n")
+    (paper / "my.yaml").write_text("scenes: [{name: mine, box: {width: 1.5, height: 1}}]\n")
+    words = [venv / "bin/python", "-m", "twodiscs", "run", "my.yaml", target, "--cores", "1"]
+    options = {"cwd": paper, "capture_output": True, "text": True}
+    run = subprocess.run(words, check=False, **options)
+    assert run.returncode == 0, run.stderr
+    assert f"--snakefile '{installed}/share/twodiscs/Snakefile'" in run.stdout
+    assert (paper / target).exists()
     (installed / "share").rename(tmp_path / "share")
-    run = python("-m", "twodiscs", "run", "my.yaml", **options | {"check": False})
+    run = subprocess.run(words, check=False, **options)
     (tmp_path / "share").rename(installed / "share")
     said = "the workflow is not installed: twodiscs comes without its Snakefile here"
     assert (run.returncode, run.stderr) == (2, f"error: {said}\n")

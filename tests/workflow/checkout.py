@@ -3,6 +3,7 @@
 import gc
 import os
 import re
+import runpy
 import shutil
 import subprocess
 import sys
@@ -11,6 +12,7 @@ from multiprocessing import get_context
 from pathlib import Path
 
 import pydantic  # noqa: F401
+import smart_open  # noqa: F401
 import yaml
 from snakemake import cli
 
@@ -43,7 +45,8 @@ rule mine:
 
 #: The studies whose rows a build takes from the expected tables, because their tests measure.
 #: Rows of seconds are fabricated, and a part of a table is empty.
-EXPECTED = "errata", "distributions", "more_discs", "passages", "stability", "tails"
+EXPECTED = ["errata", "distributions", "more_discs", "passages", "stability", "tails"]
+EXPECTED += ["effects_curves"]
 KEPT = f"""
 from pathlib import Path
 
@@ -99,43 +102,30 @@ def first(sources):
     return os.pathsep.join(filter(None, [sources, os.environ.get("PYTHONPATH")]))
 
 
-def forked(arguments, folder, sources):
-    """Run snakemake in ``folder`` in a copy of this process; return the completed one."""
+def forked(words, folder, sources):
+    """Run a command in ``folder`` in a copy of this process; return the completed one."""
     with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as error:
-        given = arguments, folder, sources, (out, error)
-        child = get_context("fork").Process(target=snakemake, args=given)
+        child = get_context("fork").Process(target=run, args=(words, folder, sources, out, error))
         child.start()
         child.join()
         for file in (out, error):
             file.seek(0)
-        return subprocess.CompletedProcess(arguments, child.exitcode, out.read(), error.read())
+        return subprocess.CompletedProcess(words, child.exitcode, out.read(), error.read())
 
 
-def snakemake(arguments, folder, sources, files):
-    """Be the command ``snakemake``, with standard output and error in ``files``."""
+def run(words, folder, sources, *files):
+    """Be the command ``words`` of a module, with standard output and error in ``files``."""
     gc.freeze()  # or each collection reads, and so copies, all objects of the tests
     for number, file in enumerate(files, 1):
         os.dup2(file.fileno(), number)
     sys.stdout, sys.stderr = (os.fdopen(os.dup(number), "w") for number in (1, 2))
     os.chdir(folder)
-    sys.argv = ["snakemake", *arguments]
+    sys.argv = [*words]
     os.environ["PYTHONPATH"] = first(sources)
     for name in [name for name in sys.modules if name.startswith("twodiscs")]:
         del sys.modules[name]
     sys.path.insert(0, sources)
-    cli.main([*arguments])
-
-
-def run_twodiscs(place, *words):
-    """Return the completed process of ``twodiscs run`` with some words in a ``Checkout``."""
-    return subprocess.run(
-        [sys.executable, "-P", "-m", "twodiscs", "run", *words],
-        cwd=place.path,
-        env=os.environ | {"PYTHONPATH": first(str(place.home.path / "src"))},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    runpy.run_module(words[0], run_name="__main__")
 
 
 class Checkout:
@@ -157,10 +147,17 @@ class Checkout:
         """
         if not (self.path / "Snakefile").exists():
             arguments = "--snakefile", str(self.home.path / "Snakefile"), *arguments
-        run = forked(arguments, self.path, str(self.home.path / "src"))
-        if passes:
-            assert run.returncode == 0, run.stdout + run.stderr
-        return run
+        return self.completed(passes, "snakemake", *arguments)
+
+    def twodiscs_run(self, *words, passes=True):
+        """Run ``twodiscs run`` here, as ``snakemake`` does it."""
+        return self.completed(passes, "twodiscs", "run", *words)
+
+    def completed(self, passes, *words):
+        """Return the completed process of a command, which has the status 0 if it ``passes``."""
+        done = forked(words, self.path, str(self.home.path / "src"))
+        assert (done.returncode == 0) == passes, done.stdout + done.stderr
+        return done
 
     def jobs(self, *arguments):
         """Return the jobs of a dry run, sorted: (rule, wildcards as a tuple of "name=value").

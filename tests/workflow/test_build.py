@@ -8,7 +8,7 @@ import re
 import subprocess
 
 import pytest
-from checkout import fresh, run_twodiscs
+from checkout import fresh
 
 import twodiscs as td
 from twodiscs.analysis.tables import TrajectoryTable
@@ -70,16 +70,6 @@ def test_the_manifest_is_one_of_sha256sum(complete):
     assert sorted(names) == names
 
 
-def test_a_table_that_was_cut_is_in_no_manifest_and_not_loaded(built):
-    path = built.path / "results/full/grid.csv"
-    path.write_bytes(b"".join(path.read_bytes().splitlines(keepends=True)[:-1]))
-    run = built.snakemake("--cores", "1", "manifest", passes=False)
-    said = "results/full/grid.csv is not what its job wrote; delete it, and it is made again"
-    assert said in run.stdout + run.stderr
-    with pytest.raises(td.InputError, match=said):
-        td.load(path.parent)
-
-
 @pytest.mark.slow
 def test_on_one_core_the_bytes_are_the_same(complete, tmp_path_factory):
     again = fresh(tmp_path_factory.mktemp("again") / "checkout")
@@ -100,8 +90,7 @@ def test_a_formula_off_by_one_percent_fails_the_check_and_is_named(built):
         f"scene, exact = point.scene, {wrong}",
     )
     # Points do not change: tables are made again, and all comparisons with them.
-    run = run_twodiscs(built, "config/config.yaml", "check", "--cores", "2")
-    assert run.returncode != 0
+    run = built.twodiscs_run("config/config.yaml", "check", "--cores", "2", passes=False)
     failed = "error: full: comparison mean_time, quantity disc_collision_time"
     assert f"{failed}, method dynamics, radius 0.2 has z" in run.stderr
     assert "Traceback" not in run.stderr
@@ -118,7 +107,6 @@ def test_verify_builds_nothing_and_names_what_differs(built):
     path.write_text(json.dumps(content))
     before = built.results()
     run = built.snakemake("--cores", "1", "verify", passes=False)
-    assert run.returncode == 1
     log = (built.path / "results/logs/verify.log").read_text().splitlines()
     assert log[:-1] == [
         "full/theory.csv: is missing",

@@ -5,12 +5,11 @@ Without these tests an edit could leave what depends on it, or rerun what does n
 
 import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 from checkout import REPOSITORY, first
+from commands import python
 from test_layout import FILES, imported_modules, imports_of
 
 from twodiscs_paper.catalogue import STUDIES
@@ -31,18 +30,14 @@ def expected(*jobs):
     return {(rule, tuple(wildcards)) for rule, *wildcards in jobs}
 
 
-def test_after_a_full_build_and_if_files_are_touched_there_is_nothing_to_do(complete, built):
+def test_after_a_full_build_and_if_files_are_touched_there_is_nothing_to_do(built):
     for folder, _, names in os.walk(built.path):
         if ".snakemake" not in folder:
             for name in names:
                 os.utime(os.path.join(folder, name))
-    run = built.snakemake("--dry-run")
-    assert "Nothing to be done" in run.stdout + run.stderr
-    words = sys.executable, "-X", "importtime", "-m", "snakemake", "--dry-run"
-    environment = os.environ | {"PYTHONPATH": first(str(complete.path / "src"))}
-    run = subprocess.run(
-        words, cwd=complete.path, env=environment, capture_output=True, text=True, check=True
-    )
+    environment = os.environ | {"PYTHONPATH": first(str(built.path / "src"))}
+    words = "-X", "importtime", "-m", "snakemake", "--dry-run"
+    run = python(*words, cwd=built.path, env=environment, check=True)
     assert "Nothing to be done" in run.stdout + run.stderr
     imported = {line.rpartition(" ")[2] for line in run.stderr.splitlines()}
     assert "twodiscs.theory.exact" in imported
@@ -200,9 +195,9 @@ def test_a_figure_is_a_target_by_its_name(unbuilt):
     assert drawn == expected(
         *(("figure", scene, f"figure={name}") for name in scenes for scene in scenes[name])
     )
-    # A drawing needs no simulation.
-    jobs = unbuilt.jobs("results/full/figures/model.pdf")
-    assert [rule for rule, _ in jobs] == ["figure"]
+    # A drawing needs no simulation, and the explorer no points.
+    jobs = unbuilt.jobs("explorer", "results/full/figures/model.pdf")
+    assert [rule for rule, _ in jobs] == ["explorer", "figure"]
 
 
 def test_effects_are_a_target_that_counts_every_scene_as_any_other(unbuilt):

@@ -76,18 +76,19 @@ def of(jobs, scene):
     return {rule for rule, _ in mine}, tables, figures
 
 
-@pytest.mark.parametrize("effects", [{}, {"field": 0.5, "mass_ratio": 2}])
-def test_every_subset_of_what_is_watched(unbuilt, tmp_path, effects):
-    """One thing at a time, and all but one."""
+def test_every_subset_of_what_is_watched(unbuilt, tmp_path):
+    """One thing at a time, and all but one, without and with effects."""
     names = list(WATCHED)
     subsets = [{name} for name in names] + [{*names} - {name} for name in names]
-    given = BOX | {"radii": [0.1, 0.2], "effects": effects}
+    cases = [(one, effects) for one in subsets for effects in ({}, {"field": 0.5, "mass_ratio": 2})]
     scenes = [
-        given | {"name": f"s{i}", "watch": {name: WATCHED[name][0] for name in subset}}
-        for i, subset in enumerate(subsets)
+        BOX
+        | {"name": f"s{i}", "radii": [0.1, 0.2], "effects": effects}
+        | {"watch": {name: WATCHED[name][0] for name in subset}}
+        for i, (subset, effects) in enumerate(cases)
     ]
     found = jobs(unbuilt, tmp_path / "subsets.yaml", scenes)
-    for i, subset in enumerate(subsets):
+    for i, (subset, effects) in enumerate(cases):
         parts = [WATCHED[name][1:] for name in subset]
         rules, tables, figures = (set().union(*part) for part in zip(*parts, strict=True))
         if effects:
@@ -127,7 +128,6 @@ def test_a_file_builds_its_scene_alone(unbuilt):
     assert not [rule for rule, _ in found if rule.startswith("effects")]
     # What is about a box without effects is no target there.
     run = unbuilt.snakemake("--dry-run", *torus, "--", "paper", passes=False)
-    assert run.returncode != 0
     assert "No rule to produce paper" in run.stdout + run.stderr
 
 
@@ -155,7 +155,3 @@ def test_a_file_without_scenes_is_laid_over_the_default_configuration(unbuilt, t
     (tmp_path / "seed.yaml").write_text("seed: 5\n")
     jobs = unbuilt.jobs("--configfile", str(tmp_path / "seed.yaml"))
     assert "study_table" in {rule for rule, _ in jobs}
-
-
-def test_the_explorer_needs_no_points(unbuilt):
-    assert [rule for rule, _ in unbuilt.jobs("explorer")] == ["explorer"]

@@ -82,7 +82,6 @@ def test_shards_are_jobs_of_a_dry_run_and_one_of_another_scene_is_refused(unbuil
     write_json(tmp_path / "results/tiny/shards/dynamics/0.24" / name, content)
     point = "results/tiny/points/dynamics/0.24.json"
     run = place.snakemake("--cores", "1", "--retries", "1", "--", point, passes=False)
-    assert run.returncode != 0
     limits = [int(n) for n in re.findall(r"resources: .*runtime=(\d+)", run.stderr)]
     assert limits == [job_cost.minutes(scene, "dynamics") * attempt for attempt in (1, 2)]
     log = (tmp_path / "results/logs/tiny/dynamics/0.24.log").read_text()
