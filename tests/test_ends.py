@@ -8,12 +8,10 @@ process of its own, with limits on processor time and memory. The first call may
 a call that takes too long is tried once more.
 """
 
-import os
 import resource
-import subprocess
-import sys
 
 import pytest
+from commands import python
 
 #: The most processor time of a call with its imports, in seconds, and the most memory in MB.
 SECONDS, MEMORY = 20, 1000
@@ -58,16 +56,17 @@ CALLS = {
     "trajectory": "td.trajectory(scene, 10 / rate)",
 }
 
-#: The process prints its peak memory itself: what wait4 knows begins with that of the tests.
+#: The process prints its processor time and peak memory itself, in seconds and MB.
 CODE = """
-import atexit, sys
+import atexit, sys, time
 import twodiscs as td
 from twodiscs.dynamics.engine import find_engine
 
 @atexit.register
-def print_peak():
+def print_spent():
     with open("/proc/self/status") as status:
-        print(*(line.split()[1] for line in status if line.startswith("VmHWM")))
+        peak = next(int(line.split()[1]) for line in status if line.startswith("VmHWM"))
+    print(time.process_time(), peak / 1024)
 
 width, height, discs, distance, effects = {scene!r}
 box = td.Box(width, height, discs=discs, **effects)
@@ -89,13 +88,9 @@ def limit():
 
 def spent(scene, call):
     """Return (seconds, MB, exit status, standard error) of a call on a scene, in a process."""
-    code = CODE.format(scene=scene, call=call)
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    process = subprocess.Popen([sys.executable, "-c", code], preexec_fn=limit, **pipes)
-    error, peak = process.stderr.read(), process.stdout.read()
-    _, status, used = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    return used.ru_utime + used.ru_stime, int(peak) / 1024, process.returncode, error
+    run = python("-c", CODE.format(scene=scene, call=call), preexec_fn=limit)
+    seconds, memory = map(float, run.stdout.split())
+    return seconds, memory, run.returncode, run.stderr
 
 
 @pytest.mark.slow

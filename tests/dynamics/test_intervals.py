@@ -11,8 +11,8 @@ import pytest
 from effect_scenes import SCENES
 from marks import slow
 
-from twodiscs.dynamics import paths, runs
-from twodiscs.dynamics.many import many_intervals
+from twodiscs.dynamics import ensemble, paths, runs
+from twodiscs.dynamics.many import many_intervals, many_paths
 from twodiscs.dynamics.two import returns
 from twodiscs.model.scene import Scene
 from twodiscs.points.intervals_point import BINS, GROWTH, wide_edges
@@ -78,16 +78,35 @@ THREE = Scene(1.5, 1.0, 0.15, discs=3)
 RING = Scene(1.5, 1.0, 0.15, discs=4, periodic="x")
 #: An interval has ninety events: a window ends long before the interval that begins in it.
 RARE = Scene(1.0, 1.5, 0.24, discs=3)
+CELLS = Scene(4.0, 2.0, 0.15, discs=20, periodic="x", friction=4.0)
 
 
 @pytest.mark.parametrize(
     ("scene", "event"),
-    [(RARE, "vertical_hop"), slow(THREE, "horizontal_hop"), (RING, "vertical_hop")],
+    [
+        (RARE, "vertical_hop"),
+        slow(THREE, "horizontal_hop"),
+        slow(RING, "vertical_hop"),
+        (CELLS, "vertical_hop"),
+        slow(Scene(4.0, 2.0, 0.2, discs=20), "horizontal_hop"),
+    ],
     ids=repr,
 )
-def test_intervals_of_many_are_those_of_trajectories(scene, event):
+def test_intervals_of_many_are_those_of_trajectories(scene, event, monkeypatch):
     """All that begin within the window, to their end, counted from the rows of each replica."""
-    replicas, window, width = 5, 16.0, 0.125
+    opened, open_block_kicks = [], ensemble.open_block_kicks
+
+    def same_kicks(kicks, seed, replica=0):
+        """Trajectories have the kicks of the replica 0, so here all have."""
+        opened.append(replica)
+        return open_block_kicks(kicks, seed)
+
+    monkeypatch.setattr(ensemble, "open_block_kicks", same_kicks)
+    monkeypatch.setattr(many_paths, "ENTRIES", 50)
+    replicas, window = 5, 16.0
+    if scene.discs == 20:
+        window *= many_intervals.mean_interval(scene, event)
+    width = window / 128
     wide, sums = np.full(65, 65), np.zeros((3, 66), np.int64)
     going = np.ones(1, np.bool_)
     times, numbers = many_intervals.record_within(
@@ -95,11 +114,12 @@ def test_intervals_of_many_are_those_of_trajectories(scene, event):
     )
     due = np.zeros((3, 66), np.int64)
     for k, state in enumerate(many_initial_states.states(scene, replicas, 7, 3).T):
-        rows = paths.path_events(scene, state, 4 * window)
+        rows = paths.path_events(scene, state, 4 * window, seed=7)
         at = np.array([time for time, name, *_ in rows if name == event])
         own = np.diff(at)[at[:-1] < window]
-        assert (numbers[k], times[k]) == (own.size, pytest.approx(own.sum(), rel=1e-12))
+        assert (numbers[k], times[k]) == (own.size, pytest.approx(own.sum(), rel=1e-9))
         bins = np.minimum(own / width, 64).astype(int)
         c = np.bincount(np.concatenate([bins, wide[bins]]), minlength=66)
         due += [c, c * c, c * own.size]
     assert np.array_equal(sums, due)
+    assert scene.discs < 20 or opened[:replicas] == [*range(3 * replicas, 4 * replicas)]

@@ -1,15 +1,16 @@
-"""The law of one event of two plain discs, against 50 digits.
+"""The law of one event of two plain discs and the contact of balls, against 50 digits.
 
 Without these tests one event could be off by more than its inputs allow, where doubles have it
 hard.
 """
 
 import math
+from itertools import combinations
 
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from twodiscs.dynamics.law import (
@@ -26,6 +27,9 @@ from twodiscs.dynamics.law import (
 )
 from twodiscs.model.scene import Scene
 
+#: Python runs these two, and their inner functions are compiled.
+next_event, after_event = next_event.py_func, after_event.py_func
+
 EPS = 2.0**-52
 HALF_X, HALF_Y = 0.55, 0.3
 SIGMA = 0.4
@@ -35,41 +39,37 @@ def mp(value):
     return mpmath.mpf(float(value))
 
 
-def exact_contact(dx, dy, du, dv, sigma):
+def exact_contact(x, v, sigma):
     """Time to contact (None if discs miss or part) and its conditioning, both to 50 digits.
 
-    The second value is Σ |p ∂t/∂p| over the five inputs p: how far the time moves, to first order,
-    if each input is wrong by one relative unit.
+    The second value is Σ |p ∂t/∂p| over all inputs p: how far the time moves, to first order, if
+    each input is wrong by one relative unit.
     """
     with mpmath.workdps(50):
-        dx, dy, du, dv, sigma = map(mp, (dx, dy, du, dv, sigma))
-        a, b, c = du**2 + dv**2, dx * du + dy * dv, dx**2 + dy**2 - sigma**2
+        x, v, sigma = [*map(mp, x)], [*map(mp, v)], mp(sigma)
+        a, b, c = mpmath.fdot(v, v), mpmath.fdot(x, v), mpmath.fdot(x, x) - sigma**2
         discriminant = b**2 - a * c
         if b >= 0 or discriminant <= 0:
             return None, None
         root = mpmath.sqrt(discriminant)
         time = c / (root - b)
-        slopes = (
-            dx * (dx + du * time),
-            dy * (dy + dv * time),
-            du * time * (dx + du * time),
-            dv * time * (dy + dv * time),
-            sigma**2,
-        )
-        return time, sum(abs(slope) for slope in slopes) / root
+        moved = [(q, p * time, q + p * time) for q, p in zip(x, v, strict=True)]
+        slopes = sum(abs(q * then) + abs(way * then) for q, way, then in moved) + sigma**2
+        return time, slopes / root
 
 
-def contact_time(dx, dy, du, dv, sigma):
-    gap, speed, approach = contact_quotient(dx, dy, None, du, dv, None, sigma)
+def contact_time(x, v, sigma):
+    gap, speed, approach = contact_quotient(*[*x, None][:3], *[*v, None][:3], sigma)
     return max(gap / speed, 0.0) if approach and speed > 0 else None
 
 
-def check_contact(dx, dy, du, dv, sigma):
-    time, conditioning = exact_contact(dx, dy, du, dv, sigma)
-    found = contact_time(dx, dy, du, dv, sigma)
-    speed, approach = math.hypot(du, dv), -(dx * du + dy * dv)
-    impact, exact_impact = abs(dx * dv - dy * du), sigma * speed
-    doubt = 8 * EPS * (abs(dx * dv) + abs(dy * du) + exact_impact)
+def check_contact(x, v, sigma):
+    time, conditioning = exact_contact(x, v, sigma)
+    found = contact_time(x, v, sigma)
+    speed, approach = math.hypot(*v), -np.dot(x, v)
+    parts = [(x[i] * v[j], x[j] * v[i]) for i, j in combinations(range(len(x)), 2)]
+    impact, exact_impact = math.hypot(*(one - other for one, other in parts)), sigma * speed
+    doubt = 8 * EPS * (sum(abs(one) + abs(other) for one, other in parts) + exact_impact)
     if abs(impact - exact_impact) <= doubt:
         # Some roundings of the inputs decide between hit and miss; a hit is at the closest
         # approach, to within the half-chord that the doubt leaves.
@@ -94,10 +94,15 @@ def check_contact(dx, dy, du, dv, sigma):
 @settings(max_examples=400, deadline=None, derandomize=True)
 def test_contact_from_anywhere(direction, room, heading, speed):
     distance = SIGMA * (1 + room)
-    check_contact(
-        distance * math.cos(direction), distance * math.sin(direction),
-        speed * math.cos(heading), speed * math.sin(heading), SIGMA,
-    )  # fmt: skip
+    x = distance * math.cos(direction), distance * math.sin(direction)
+    check_contact(x, (speed * math.cos(heading), speed * math.sin(heading)), SIGMA)
+
+
+@given(*[st.tuples(*[st.floats(-1, 1)] * 3)] * 2)
+@settings(max_examples=200, deadline=None, derandomize=True)
+def test_contact_of_balls(x, v):
+    assume(math.hypot(*x) > SIGMA * (1 + 1e-9) and math.hypot(*v) > 1e-9)
+    check_contact(x, v, SIGMA)
 
 
 @given(st.floats(0, 2 * math.pi), st.floats(1e-3, 1e3), st.integers(-6, 6), st.floats(1e-3, 1.4))
@@ -107,7 +112,8 @@ def test_grazing_within_some_roundings(direction, room, ulps, speed):
     impact = SIGMA * (1 + ulps * EPS)
     along = SIGMA * room
     c, s = math.cos(direction), math.sin(direction)
-    check_contact(-along * c - impact * s, -along * s + impact * c, speed * c, speed * s, SIGMA)
+    x = -along * c - impact * s, -along * s + impact * c
+    check_contact(x, (speed * c, speed * s), SIGMA)
 
 
 @given(

@@ -27,7 +27,6 @@ from twodiscs.dynamics.law import (
     DISC,
     END_OF_TIME,
     after_event,
-    contact_quotient,
     fall_quotient,
     next_event,
     two_disc_law,
@@ -226,26 +225,6 @@ def test_a_disc_that_grazes_the_top_falls_back():
 
 
 # Contacts ---------------------------------------------------------------------------------------
-
-
-@settings(max_examples=200, deadline=None)
-@given(st.tuples(*[st.floats(-1, 1)] * 6))
-def test_contact_of_balls(numbers):
-    (dx, dy, dz), (du, dv, dw), sigma = numbers[:3], numbers[3:], 0.4
-    with mp.workdps(50):
-        x, v = [mpf(q) for q in (dx, dy, dz)], [mpf(q) for q in (du, dv, dw)]
-        a, b = sum(q * q for q in v), sum(p * q for p, q in zip(x, v, strict=True))
-        c = sum(q * q for q in x) - mpf(sigma) ** 2
-        assume(c > 1e-3 and a > 1e-3)
-        left = b * b - a * c
-        assume(abs(left) > 1e-6)
-        gap_, speed, approach = contact_quotient(dx, dy, dz, du, dv, dw, sigma)
-        if b < 0 and left > 0:
-            assert approach
-            true = c / (mpmath.sqrt(left) - b)
-            assert abs(mpf(gap_) / mpf(speed) - true) <= 64 * EPS * true * (1 + 1 / left + 1 / c)
-        else:
-            assert not (approach and speed > 0)
 
 
 @settings(max_examples=200, deadline=None)

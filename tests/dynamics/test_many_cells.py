@@ -6,6 +6,7 @@ drift.
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,8 +16,7 @@ from twodiscs.dynamics import paths
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import all_pairs as many
 from twodiscs.dynamics.many import cell_list as many_cells
-from twodiscs.dynamics.many import class_counts, many_intervals, many_paths, many_rates
-from twodiscs.dynamics.many.many_intervals import mean_interval
+from twodiscs.dynamics.many import class_counts, many_paths, many_rates
 from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling.many import many_initial_states
 from twodiscs.sampling.many.cell_grid import make_grid
@@ -42,7 +42,8 @@ SHORT = [
 ROUGH = slow(Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.3))
 #: Their kernels take seconds to compile.
 ROUGH_TOO = slow(BORDER[4])
-KICKED_TOO = Scene(8.75, 0.6, 0.18, discs=20, friction=4.0)
+#: Rings whose discs are kicked.
+KICKED = [replace(scene, friction=4.0) for scene in (BORDER[3], *SHORT)]
 
 
 #: Few discs have as few cells as there may be.
@@ -103,7 +104,9 @@ def test_advanced_states_are_those_of_the_other_kernel(scene):
 
 
 @pytest.mark.parametrize(
-    "scene", [BORDER[3], *SHORT, slow(BORDER[0]), ROUGH_TOO, KICKED_TOO], ids=repr
+    "scene",
+    [*KICKED, slow(BORDER[0]), ROUGH_TOO, slow(Scene(8.75, 0.6, 0.18, discs=20, friction=4.0))],
+    ids=repr,
 )
 def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
     """In the same order, hops as well, before roundings have grown; also past a full log."""
@@ -111,39 +114,19 @@ def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
     if scene.periodic:
         state[3] += 2 * scene.width
     # The rate that is guessed for short rings is far too high.
-    duration = many_rates.expected_duration(scene, (10 if scene in SHORT else 5) * scene.discs)
+    short = scene in KICKED[1:]
+    duration = many_rates.expected_duration(scene, (10 if short else 5) * scene.discs)
     monkeypatch.setattr(many_paths, "ENTRIES", 50)
     found = [*paths.path_events(scene, state, duration)]
     monkeypatch.setattr(many_paths, "large_grid", lambda scene: None)
+    monkeypatch.setattr(many_paths, "record_rows", many_paths.record_rows.py_func)
     other = [*paths.path_events(scene, state, duration)]
-    assert len(found) > (2 if scene in SHORT else 5) * scene.discs
+    assert len(found) > (2 if short else 5) * scene.discs
+    assert short or bool(scene.friction) == any(row[1] == "kick" for row in found)
     assert [row[1:4] for row in found] == [row[1:4] for row in other]
     for (time, *_, now), (same, *_, then) in zip(found, other, strict=True):
         assert time == pytest.approx(same, abs=1e-7)
         assert now == pytest.approx(then, abs=1e-7 * scene.width)
-
-
-@pytest.mark.parametrize(
-    ("scene", "hop"),
-    [slow(BORDER[1], "horizontal_hop"), (BORDER[3], "vertical_hop")],
-    ids=repr,
-)
-def test_intervals_are_those_of_the_other_kernel(scene, hop, monkeypatch):
-    """Those of each chain, from the same states, before roundings have grown."""
-    mean = mean_interval(scene, hop)
-    bins = mean / 16, np.arange(65) // 8 + 65
-    given = 8 * mean, scene, hop, 3, 2, 4, 20, bins
-    sums, other = np.zeros((2, 3, 74), np.int64)
-    monkeypatch.setattr(many_paths, "ENTRIES", 50)
-    found = many_intervals.record_within(*given, sums, np.ones(1, np.bool_))
-    monkeypatch.setattr(many_intervals, "large_grid", lambda scene: None)
-    same = many_intervals.record_within(*given, other, np.ones(1, np.bool_))
-    assert found == pytest.approx(same, rel=1e-6)
-    assert np.array_equal(found[1], same[1])
-    assert found[1].sum() > 20
-    # A rounding may move an interval across the border of a bin.
-    assert np.abs(sums - other)[0].sum() <= 2
-    assert np.array_equal(sums[0, :65].sum(), found[1].sum())
 
 
 @pytest.mark.parametrize("share", [0.5, 0.999])

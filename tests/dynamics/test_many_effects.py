@@ -19,7 +19,14 @@ from sampling.uniformity import assert_uniform_on_sphere
 import twodiscs as td
 from twodiscs.dynamics import paths
 from twodiscs.dynamics.ensemble import open_block_kicks
-from twodiscs.dynamics.many import all_pairs, class_counts, many_intervals, many_paths, many_rates
+from twodiscs.dynamics.many import (
+    all_pairs,
+    cell_list,
+    class_counts,
+    many_intervals,
+    many_paths,
+    many_rates,
+)
 from twodiscs.dynamics.rows import Rows
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import many_initial_states
@@ -30,8 +37,15 @@ FIVE = replace(BOX, discs=5, radius=0.1)
 RING = Scene(4.0, 2.0, 0.15, discs=many_initial_states.LARGE, periodic="x", moment_of_inertia=0.5)
 
 
+@pytest.fixture
+def in_python(monkeypatch):
+    """Trajectories of few discs without a kernel of their own, which takes seconds to compile."""
+    monkeypatch.setattr(many_paths, "record_rows", many_paths.record_rows.py_func)
+
+
+@pytest.mark.usefixtures("in_python")
 @pytest.mark.parametrize(
-    ("periodic", "inertia"), [("", None), ("", 0.4), ("x", None), slow("x", 0.4)]
+    ("periodic", "inertia"), [("", None), ("", 0.4), slow("x", None), slow("x", 0.4)]
 )
 def test_two_discs_are_those_of_the_engine_of_two(periodic, inertia):
     """One by one: the same events at the same times with the same velocities and spins."""
@@ -81,6 +95,7 @@ def test_bursts_in_a_neck_need_initial_states_in_it():
     assert found["right_wall_time"].status == "reached"
 
 
+@pytest.mark.usefixtures("in_python")
 def test_a_start_needs_the_energy_of_its_spins():
     (start,) = td.starts(BOX, 1, seed=1)
     assert len(td.trajectory(BOX, 2.0, start=start)) > 2
@@ -93,6 +108,7 @@ FEW = Scene(1.5, 1.0, 0.15, discs=3, friction=4.0)
 KICKED = Scene(3.0, 1.0, 0.15, discs=3, periodic="x", friction=4.0)
 
 
+@pytest.mark.usefixtures("in_python")
 @pytest.mark.parametrize("scene", [slow(FEW), KICKED], ids=["few", "ring"])
 def test_a_kick_keeps_places_energy_and_momentum(scene):
     """Kicks are rows of a trajectory, and their number is that of a Poisson process."""
@@ -122,28 +138,33 @@ def test_a_kick_keeps_places_energy_and_momentum(scene):
 
 
 def test_kicks_belong_to_replicas_not_to_blocks(monkeypatch):
-    """Two blocks of four replicas from the same state are one block of eight.
-
-    Both kernels count the same before roundings have grown, and after some kicks.
-    """
-    scene = replace(RING, moment_of_inertia=None, friction=4.0)
-    duration, found = many_rates.expected_duration(scene, 160), []
-    assert duration * scene.friction > 3
-    state = many_initial_states.states(scene, 1, 1)
+    """Two blocks of four replicas from the same state are one block of eight."""
+    duration = many_rates.expected_duration(KICKED, 24)
+    assert duration * KICKED.friction > 3
+    state = many_initial_states.states(KICKED, 1, 1)
     monkeypatch.setattr(
         class_counts, "block_states", lambda _, number, *__: np.repeat(state, number, 1)
     )
-    for _ in range(2):
-        first, _ = class_counts.run_classes(scene, 5, 0, 1, duration, replicas=4)
-        halves = class_counts.run_classes(scene, 5, 0, 2, duration, replicas=4)
-        whole = class_counts.run_classes(scene, 5, 0, 1, duration, replicas=8)
-        assert np.array_equal(halves[0], whole[0])
-        assert np.array_equal(halves[1], whole[1])
-        assert not np.array_equal(halves[0], 2 * first)
-        found.append(whole)
-        monkeypatch.setattr(class_counts, "large_grid", lambda scene: None)
-    for one, other in zip(*found, strict=True):
-        assert np.array_equal(one, other)
+    first, _ = class_counts.run_classes(KICKED, 5, 0, 1, duration, replicas=4)
+    halves = class_counts.run_classes(KICKED, 5, 0, 2, duration, replicas=4)
+    whole = class_counts.run_classes(KICKED, 5, 0, 1, duration, replicas=8)
+    assert np.array_equal(halves[0], whole[0])
+    assert np.array_equal(halves[1], whole[1])
+    assert not np.array_equal(halves[0], 2 * first)
+
+
+def test_cells_have_the_kicks_of_their_replicas(monkeypatch):
+    """Trajectories with kicks are compared with the other kernel; counts are from the same loop."""
+    opened, followed = [], []
+    monkeypatch.setattr(cell_list, "open_kicks", lambda *given: opened.append(given[:3]))
+    monkeypatch.setattr(cell_list, "start_from", lambda *given: None)
+    monkeypatch.setattr(cell_list, "follow_discs", lambda *given: followed.append(given[7:9]))
+    monkeypatch.setattr(cell_list, "count_events", cell_list.count_events.py_func)
+    scene = replace(RING, moment_of_inertia=None, friction=4.0)
+    class_counts.run_classes(scene, 5, 3, 5, 1.0, replicas=4)
+    assert opened == [(0, 5, replica) for replica in range(12, 20)]
+    assert all(lane == 0 and kicks.rate == 4.0 for lane, kicks in followed)
+    assert len(followed) == 8
 
 
 @pytest.mark.slow

@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 from dynamics.rates import five, same_sizes
 from marks import slow
-from scalar_bonds import clusters, orders
 
 from twodiscs.dynamics.many import many_hop_clusters
 from twodiscs.dynamics.two import hop_clusters as of_two
@@ -50,19 +49,6 @@ def test_two_discs_among_no_others_are_two_discs(hop, effects):
         five(mine.value, known.value, math.hypot(mine.stderr, known.stderr))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("periodic", "discs", "radius", "gap"),
-    [("", 3, 0.24, 6.0), ("", 4, 0.1, 0.5), ("x", 3, 0.235, 6.0)],
-)
-def test_clusters_are_those_of_another_program(periodic, discs, radius, gap):
-    """In a narrow channel, among small discs and on a ring."""
-    scene = Scene(0.75 * discs, 1.0, radius, discs=discs, periodic=periodic)
-    counts, _ = many_hop_clusters.cluster_sizes(scene, HOP, gap, 256, 5)
-    box = discs, scene.width, scene.height, radius, bool(periodic)
-    same_sizes(counts, clusters(6, 6000, *box, gap))
-
-
 def test_it_does_not_matter_where_a_ring_begins():
     """Hops within a short gap after random ones, and after the same ones half a turn further."""
     scene, gap = Scene(1.0, 1.0, 0.1, discs=3, periodic="x"), 1.0
@@ -80,14 +66,6 @@ def test_it_does_not_matter_where_a_ring_begins():
         found.append(hops)
     assert found[0].sum() > 400
     assert np.array_equal(*found)
-
-
-def test_correlations_are_those_of_another_program():
-    scene, time = Scene(2.25, 1.0, 0.23, discs=3), 3.0
-    (found,) = coefficients_at_times(many_hop_clusters.hop_sums(scene, HOP, [time], 256, 7)[0])
-    other = orders(8, 6000, 3, 2.25, 1.0, 0.23, False, time)
-    five(found.value, other.mean(), math.hypot(found.stderr, other.std() / math.sqrt(other.size)))
-    assert 5 * found.stderr < min(found.value, 1 - found.value)
 
 
 @pytest.mark.parametrize(("periodic", "components"), [("", 4), ("x", 3)])

@@ -8,12 +8,13 @@ fewer than 3e-5 of all seeds.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from dynamics.rates import five, same_sizes
 from marks import slow
-from scalar_passages import clusters, replicas
+from scalar_passages import sample
 from scipy.stats import f
 
 from twodiscs.dynamics.many import many_hop_clusters as of_many
@@ -39,35 +40,43 @@ def test_correlations_are_those_of_another_program(inertia, periodic):
         scene = Scene(1.5, 1.0, radius, periodic=periodic, moment_of_inertia=inertia)
         sums, events = hop_clusters.hop_sums(scene, HOP, TIMES, 512, 3)
         assert events > 0
-        other = replicas(
-            4, 20_000, 1.5, 1.0, radius, inertia or 0.0, bool(periodic), np.array(TIMES)
-        )
+        other, _ = sample(scene, 20_000, 4, times=TIMES)
         means, errors = other.mean(axis=0), other.std(axis=0) / math.sqrt(len(other))
         for estimate, mean, error in zip(coefficients_at_times(sums), means, errors, strict=True):
             five(estimate.value, mean, math.hypot(estimate.stderr, error) + 1e-12)
 
 
-@pytest.mark.parametrize(
-    ("effects", "radius", "gap"),
-    [
-        ({}, 0.247, 6.0),
-        ({}, 0.1, 0.4),
-        ({"moment_of_inertia": 0.1}, 0.247, 0.6),
-        ({"moment_of_inertia": 0.1}, 0.1, 0.4),
-        ({"friction": 20.0}, NARROW, 6.0),
-        slow({"friction": 20.0, "moment_of_inertia": 0.5}, NARROW, 6.0),
-    ],
+ROUGH, KICKED = (
+    Scene(1.5, 1.0, 0.247, moment_of_inertia=0.1),
+    Scene(1.5, 1.0, NARROW, friction=20.0),
 )
-def test_clusters_to_both_sides_are_those_of_another_program(effects, radius, gap):
+
+
+@pytest.mark.parametrize(
+    ("scene", "gap"),
+    [
+        (Scene(1.5, 1.0, 0.247), 6.0),
+        (Scene(1.5, 1.0, 0.1), 0.4),
+        (ROUGH, 0.6),
+        (ROUGH.with_radius(0.1), 0.4),
+        (KICKED, 6.0),
+        slow(replace(KICKED, moment_of_inertia=0.5), 6.0),
+        # In a narrow channel, among small discs and on a ring.
+        (Scene(2.25, 1.0, 0.24, discs=3), 6.0),
+        slow(Scene(3.0, 1.0, 0.1, discs=4), 0.5),
+        slow(Scene(2.25, 1.0, 0.235, discs=3, periodic="x"), 6.0),
+    ],
+    ids=repr,
+)
+def test_clusters_to_both_sides_are_those_of_another_program(scene, gap):
     """Spins are reversed with the velocities; kicks before and after time 0 are independent.
 
     The gap is counted from each hop, not from the bounce after it: of small discs that is as late.
     """
-    scene = Scene(1.5, 1.0, radius, **effects)
-    counts, _ = hop_clusters.cluster_sizes(scene, HOP, gap, 192, 11)
+    module = hop_clusters if scene.discs == 2 else of_many
+    counts, _ = module.cluster_sizes(scene, HOP, gap, 192, 11)
     assert (counts[0], counts.sum()) == (0, 192 * hop_clusters.HOPS_OF_BLOCK)
-    inertia, kicks = scene.moment_of_inertia or 0.0, scene.friction and 1 / scene.friction
-    same_sizes(counts, clusters(12, 8000, 1.5, 1.0, radius, inertia, gap, kicks or math.inf, False))
+    same_sizes(counts, sample(scene, 8000, 12, gap=gap)[1])
 
 
 EFFECTS = {

@@ -15,43 +15,29 @@ from effect_scenes import ALL, SCENES
 from marks import slow
 
 from twodiscs.dynamics.engine import find_engine
-from twodiscs.dynamics.many import class_counts
 from twodiscs.dynamics.two import strip
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import insertions, many_initial_states
 
 PAPER = Scene(1.5, 1.0, 0.2)
-TWO = {
+SCENES_BY_NAME = {
     "plain": PAPER,
     "combination": SCENES["combination"],
     "friction": replace(PAPER, friction=2.0),
+    "many, rough": Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.5),
+    "many, channel": Scene(1.6, 0.6, 0.18, discs=4),
+    "many, dense": Scene(1.5, 1.0, 0.19, discs=5),
+    "many, cells": Scene(15.0, 1.0, 0.1, discs=many_initial_states.LARGE),
     "all": ALL,
     "all, friction": replace(ALL, friction=2.0),
 }
-MANY = {
-    "rough": Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.5),
-    "channel": Scene(1.6, 0.6, 0.18, discs=4),
-    "dense": Scene(1.5, 1.0, 0.19, discs=5),
-    "cells": Scene(15.0, 1.0, 0.1, discs=many_initial_states.LARGE),
-}
 
 
-def of_two(scene):
+def counts(scene):
+    how = {"replicas": 100 if scene.discs < many_initial_states.LARGE else 20}
     return lambda first, stop, **lanes: find_engine(scene).run_blocks(
-        scene, EVENTS, 3, first, stop, 8.0, replicas=100, **lanes
-    )
-
-
-def of_many(scene):
-    return lambda first, stop, **lanes: class_counts.run_classes(
-        scene,
-        7,
-        first,
-        stop,
-        8.0,
-        replicas=100 if scene.discs < many_initial_states.LARGE else 20,
-        **lanes,
+        scene, EVENTS, 3, first, stop, 8.0, **how, **lanes
     )
 
 
@@ -64,16 +50,16 @@ def of_strip(first, stop, **lanes):
 
 #: Kernels by name: functions of the first block and the one after the last.
 KERNELS = {
-    **{name: of_two(scene) for name, scene in TWO.items()},
-    **{f"many, {name}": of_many(scene) for name, scene in MANY.items()},
+    **{name: counts(scene) for name, scene in SCENES_BY_NAME.items()},
     "strip": of_strip,
-    "insertions": lambda first, stop: insertions.run_blocks(MANY["channel"], 7, first, stop),
+    "insertions": lambda first, stop: insertions.run_blocks(
+        SCENES_BY_NAME["many, channel"], 7, first, stop
+    ),
 }
-#: Each compiles a kernel for all effects.
-SLOW = [*map(slow, ("all", "all, friction"))]
 
 
-@pytest.mark.parametrize("name", [*(name for name in KERNELS if name[:3] != "all"), *SLOW])
+#: The kernels for all effects take seconds to compile.
+@pytest.mark.parametrize("name", [slow(name) if name[:3] == "all" else name for name in KERNELS])
 def test_blocks_add_up_in_any_number_of_lanes(name):
     run = KERNELS[name]
     whole = run(0, 4)

@@ -205,15 +205,18 @@ ROUGH = {"moment_of_inertia": 0.1}
         ({}, None),
         (ROUGH, 0.6),
         slow(ROUGH, None),
-        ({"friction": 30}, None),
-        ({"friction": 300}, None),
+        ({"friction": 30}, 0.6),
+        ({"friction": 300}, 2.43),
+        slow({"friction": 30}, None),
+        slow({"friction": 300}, None),
     ],
     ids=str,
 )
 def test_planned_blocks_are_enough_and_not_far_too_many(effects, product):
     """Shards do these and no more: fewer would miss the error that was asked for.
 
-    A slow test counts hops of rough discs, a fast one those that are planned, for the ``product``.
+    Slow tests count hops of rough and of kicked discs, fast ones those that are planned, for the
+    ``product``.
     """
     scene, hop = Scene(1.5, 1.0, 0.2475, **effects), "horizontal_hop"
     if product:

@@ -43,12 +43,6 @@ def scene_of(width, height, effects, share):
     return box.scene(share * box.largest_radius)
 
 
-def passes(scene, duration):
-    """Return the events of a time, and how often discs leave a periodic cell at most."""
-    leaves = sum(math.sqrt(1 + 1 / scene.mass_ratio) / scene.side(a) for a in scene.periodic)
-    return duration * exact.event_rate(scene), duration * leaves
-
-
 @pytest.mark.parametrize("width", [1.0, 1.5])
 def test_too_close_to_the_largest_radius_dynamics_is_refused(width):
     box = Box(width, 1.0)
@@ -73,10 +67,11 @@ def test_the_work_of_a_replica_is_bounded(width, height, effects, share):
         require_initial_states(scene)
     except InputError:
         return
-    events, leaves = passes(scene, find_engine(scene).replica_duration(scene))
-    # A duration is rounded to a power of two.
-    assert events <= 2**0.5 * two_rates.EVENTS_PER_REPLICA
-    assert leaves <= 2**0.5 * two_rates.EVENTS_PER_REPLICA * CROSSINGS_PER_EVENT
+    # The events, and how often discs leave a cell at most. A duration is rounded to a power of two.
+    most = 2**0.5 * two_rates.EVENTS_PER_REPLICA / find_engine(scene).replica_duration(scene)
+    assert exact.event_rate(scene) <= most
+    leaves = sum(math.sqrt(1 + 1 / scene.mass_ratio) / scene.side(a) for a in scene.periodic)
+    assert leaves <= most * CROSSINGS_PER_EVENT
     assert exact.work_per_event(scene) >= 1.0
 
 
