@@ -84,6 +84,9 @@ def test_all_that_was_measured_is_compared(points, theory):
     assert [row["radius"] for row in at_a_radius] == sorted(row["radius"] for row in at_a_radius)
     for rows in (at_a_radius, found[-over_radii:]):
         assert {row["bound"] for row in rows} == {scores.bonferroni_bound(len(rows), 5e-4)}
+    z = [row["z"] for row in found if row["comparison"] == "volume"]
+    of_volume = [row["estimate"] for row in found[-over_radii:] if row["quantity"] == "volume"]
+    assert of_volume == pytest.approx([np.mean(z), np.sqrt(np.mean(np.square(z)))])
     for row in found:
         assert row["p"] == scores.two_sided_p(row["z"])
         if row["comparison"] == "sum_rule":

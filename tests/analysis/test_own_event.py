@@ -17,9 +17,8 @@ LAST = '        Event("any_wall", "walls"),\n'
 #: Scenes whose walls have different multiplicities, and more discs with and without exact values.
 MEASURED = """
 import sys
-from twodiscs.analysis.tables import CheckTable, TheoryTable
+from twodiscs.analysis.tables import CheckTable
 from twodiscs.dynamics import runs
-from twodiscs.model.scene import Box
 from twodiscs.model.events import DECLARED
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo

@@ -14,8 +14,6 @@ from scipy.special import ndtr, ndtri, stdtr
 
 from twodiscs.analysis import scores
 
-DEVIATES = (1.0, 2.0, 3.0, 4.0, 5.0)
-
 
 def five_sigma(probability, trials):
     """Return the interval of counts that a binomial law leaves once in two million times."""
@@ -78,12 +76,8 @@ def test_two_shells_that_overlap_have_a_normal_sum():
     measures, both = (3.0, 5.0), 0.01
     only = (0.02, 0.005)
     counts = rng.multinomial(samples, [both, *only, 1 - both - sum(only)], trials)
-    found = [
-        scores.shells_z(
-            (int(n + a), int(n + b)), int(n), samples, measures, (both + only[0], both + only[1])
-        )
-        for n, a, b, _ in counts
-    ]
+    law = samples, measures, (both + only[0], both + only[1])
+    found = [scores.shells_z((int(n + a), int(n + b)), int(n), *law) for n, a, b, _ in counts]
     assert {test for _, test in found} == {"normal"}
     z = [score for score, _ in found]
     assert abs(scores.z_mean(z)) < 5
@@ -140,7 +134,7 @@ def test_cluster_bound_never_rejects_more_often_than_it_says(sizes, seen):
     found = [scores.mean_time_z(n, n, replicas, 1.0, exact) for n in range(200)]
     assert {test for _, test in found} == {"cluster-bound"}
     size = np.abs([z for z, _ in found])
-    for c in DEVIATES:
+    for c in (1.0, 2.0, 3.0, 4.0, 5.0):
         assert total[:200][size >= c].sum() + total[200:].sum() <= 2 * ndtr(-c)
 
 

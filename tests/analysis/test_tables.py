@@ -10,7 +10,10 @@ import pytest
 from commands import python
 from factory import BOX, LAWS, empty
 
+from twodiscs.analysis import tables
+from twodiscs.analysis.columns import Table
 from twodiscs.analysis.tables import (
+    SCENE_TABLES,
     AreasTable,
     CheckTable,
     CostTable,
@@ -22,6 +25,12 @@ from twodiscs.analysis.tables import (
 )
 from twodiscs.measure import load
 from twodiscs.model.scene import Box
+
+
+def test_every_table_of_a_scene_is_known():
+    declared = [table for table in Table.__subclasses__() if table.__module__ == tables.__name__]
+    assert {table.name(): table for table in declared} == SCENE_TABLES
+
 
 # Files ----------------------------------------------------------------------------------------
 
@@ -59,7 +68,7 @@ def test_a_table_is_read_as_it_was_written(tmp_path, table, rows):
             assert frame[name].tolist() == [row[name] for row in rows]
 
 
-def test_cells_have_all_digits_and_lines_end_alike(tmp_path):
+def test_cells_have_all_digits_one_truth_value_and_lines_that_end_alike(tmp_path):
     CostTable.write(tmp_path / "x.csv", [COST_ROW])
     assert (tmp_path / "x.csv").read_bytes() == (
         b"stage,radius,events,seconds\ndynamics,1e-05,9007199254740993,0.30000000000000004\n"
@@ -68,10 +77,14 @@ def test_cells_have_all_digits_and_lines_end_alike(tmp_path):
     CostTable.write(tmp_path / "x.csv", [row])
     assert (tmp_path / "x.csv").read_text().endswith("dynamics,0.1,7,\n")
     CheckTable.write(tmp_path / "x.csv", [CHECK_ROW])
-    assert (tmp_path / "x.csv").read_text().splitlines()[1] == (
+    text = (tmp_path / "x.csv").read_text()
+    assert text.splitlines()[1] == (
         "area,right_wall_area,0.1,monte_carlo,0.3333333333333333,,,-inf,0.0,5.0,false,"
         "true,none-seen,exact-tail"
     )
+    (tmp_path / "x.csv").write_text(text.replace(",false,", ",False,"))
+    with pytest.raises(ValueError, match="passed has 'False', which is no bool"):
+        CheckTable.read(tmp_path / "x.csv")
 
 
 @pytest.mark.parametrize(
@@ -120,14 +133,6 @@ def test_columns_that_the_table_does_not_know_are_left_out(tmp_path):
         {"radius": 0.1, "quantity": "volume", "exact": 1.0}
     ]
     assert list(load.read(tmp_path / "theory.csv", TheoryTable)) == ["radius", "quantity", "exact"]
-
-
-def test_a_truth_value_is_spelled_in_one_way(tmp_path):
-    CheckTable.write(tmp_path / "x.csv", [CHECK_ROW])
-    text = (tmp_path / "x.csv").read_text()
-    (tmp_path / "x.csv").write_text(text.replace(",false,", ",False,"))
-    with pytest.raises(ValueError, match="passed has 'False', which is no bool"):
-        CheckTable.read(tmp_path / "x.csv")
 
 
 #: Packages that take long to import: the Snakefile and the shell do without them.
