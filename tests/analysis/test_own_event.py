@@ -56,8 +56,7 @@ def with_events(folder, *lines):
     assert LAST in text
     more = "".join(f"        {line},\n" for line in lines)
     declarations.write_text(text.replace(LAST, LAST + more), encoding="utf-8")
-    cache = folder / "cache"
-    return os.environ | {"PYTHONPATH": str(folder), "NUMBA_CACHE_DIR": str(cache)}
+    return os.environ | {"PYTHONPATH": str(folder), "NUMBA_CACHE_DIR": str(folder / "cache")}
 
 
 @pytest.mark.slow
