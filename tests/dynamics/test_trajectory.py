@@ -49,15 +49,12 @@ def test_centres_go_on_beyond_the_box_along_periodic_axes():
     assert np.all(np.abs(centres).max(axis=0) > 1.0)
 
 
-GIVEN = {
-    "torus": SCENES["torus"],
-    "combination": SCENES["combination"],
-    "rough": SCENES["rough"],
-    "many": Scene(1.5, 1.0, 0.15, periodic="x", discs=3),
-}
+MANY = Scene(1.5, 1.0, 0.15, periodic="x", discs=3)
+#: With another kernel each.
+GIVEN = [*map(SCENES.get, ("torus", "combination", "rough")), MANY]
 
 
-@pytest.mark.parametrize("scene", [*GIVEN.values(), slow(ALL)], ids=repr)
+@pytest.mark.parametrize("scene", [*GIVEN, slow(ALL)], ids=repr)
 def test_a_trajectory_goes_on_from_its_end(scene):
     """The start that is given comes back, cells and all, and the motion is that of the whole path.
 
@@ -85,7 +82,7 @@ def test_each_disc_may_start_at_its_own_walls_and_not_beyond(disc, axis, ratio):
             paths.check_start(scene, state)
 
 
-@pytest.mark.parametrize("scene", [GIVEN["torus"], GIVEN["combination"]], ids=repr)
+@pytest.mark.parametrize("scene", GIVEN[:2], ids=repr)
 def test_an_image_of_disc_2_moves_as_disc_2_does(scene):
     """Three periods away along each periodic axis, all rows are three periods away."""
     start = follow(scene, 7, None, 1.0)[0][4]
@@ -104,7 +101,7 @@ def test_an_image_of_disc_2_moves_as_disc_2_does(scene):
     "scene",
     [
         Scene(1.5, 1.0, 0.2, friction=1.0),
-        GIVEN["many"],
+        MANY,
         slow(Scene(6.0, 4.0, 0.2, discs=20, friction=0.1)),
     ],
     ids=repr,
