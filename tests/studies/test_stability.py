@@ -330,7 +330,7 @@ def few_intervals(seed):
 
 
 def few_passages(seed):
-    """Return rows of passages.csv from few hops, at two distances."""
+    """Return rows of passages.csv by ``NearThreshold`` from few hops, at two distances."""
     rows = [*passages.one_hop("", PAPER, "horizontal_hop", (6, 7), None, 2**12, seed)]
     return [*rows, *passages.fits([dict.fromkeys(passages.HOP) | row for row in rows])]
 
