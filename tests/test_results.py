@@ -475,7 +475,7 @@ def test_states_show_that_rows_are_missing(scene, tmp_path):
 def test_tables_have_plain_values_beside_them(tmp_path):
     """Parquet and other formats write ``attrs`` as JSON; a table that comes back can be drawn."""
     scene = td.Scene(1.5, 1.0, 0.2, field=0.1)
-    path = td.trajectory(scene, duration=2)
+    path = td.trajectory(scene, duration=0.5)
     table = td.exact_table(1.5, 1.0, [0.1, 0.2], field=0.1, periodic="x")
     for frame in (path, table):
         assert json.loads(json.dumps(frame.attrs)) == frame.attrs
@@ -483,7 +483,7 @@ def test_tables_have_plain_values_beside_them(tmp_path):
     back = pd.DataFrame(path.to_dict("list"))
     back.attrs = json.loads(json.dumps(path.attrs))
     td.animate(back, tmp_path / "a.gif")
-    assert td.plot(back).axes[0].get_xlim()[1] == 2
+    assert td.plot(back).axes[0].get_xlim()[1] == 0.5
     back.attrs = {"scene": "a scene"}
     with pytest.raises(td.InputError, match="result must be a scene, a trajectory"):
         td.plot(back)
