@@ -42,7 +42,7 @@ READERS = {
 }
 
 #: Seconds: a run of tests that takes longer hangs, which is noticed as well.
-PATIENCE = 300
+PATIENCE = 600
 
 #: Mistake, text, its replacement.
 # fmt: off
