@@ -43,7 +43,7 @@ def test_files_of_another_project_a_read_only_home_a_notebook_and_a_profile_are_
         (place.path / name).write_text(text)
     environment = {name: text for name, text in os.environ.items() if name != "XDG_CACHE_HOME"} | {
         "HOME": str(place.path / "file" / "home"),
-        "MPLBACKEND": "module://a_backend.that_is_not_installed",
+        "MPLBACKEND": "a_backend_that_is_not_installed",
         "PYTHONPATH": first(str(place.home.path / "src")),
         "SNAKEMAKE_PROFILE": str(place.path / "profile"),
     }
