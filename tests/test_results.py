@@ -58,7 +58,7 @@ MADE = {
         "budget", 2e7,
     ),
     "scan of averages": (
-        lambda: td.scan([1.5, 2], 1, 0.2, measure=lambda s: td.diffusion(s, [1], 1, seed=5),
+        lambda: td.scan([1.5, 2], 1, 0.2, measure=lambda s: td.diffusion(s, [s.width], 1, seed=5),
                         periodic="x"),
         "replicas", 2e4,
     ),

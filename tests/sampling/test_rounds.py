@@ -287,6 +287,9 @@ def test_intervals_in_pieces_are_those_of_one_process():
     assert run.components["all"].planned == 4
     found = [run.point({"all": done_in_shards(run.components["all"], n)}) for n in (1, 2)]
     assert found[0] == found[1] == run.run()
+    equal, wide = found[0].equal.counts, found[0].wide
+    assert sum(equal) + found[0].overflow == found[0].intervals
+    assert wide.counts == np.add.reduceat(equal[: wide.edges[-1]], wide.edges[:-1]).tolist()
     # A second method: the sums of the chains in floating point.
     totals, _ = runs.record_blocks(run.scene, run.event, 5, 0, 4, np.ones(1, np.bool_))
     means = totals / runs.RETURNS

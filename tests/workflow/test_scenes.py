@@ -16,8 +16,6 @@ from twodiscs_paper.configuration.yaml_files import load, read
 FILES = sorted((REPOSITORY / "config" / "scenes").glob("*.yaml"))
 BLOCKS = {path.stem: read(path) for path in FILES}
 
-BOX = {"name": "a", "box": {"width": 1.5, "height": 1}}
-
 #: Rules for all scenes together, whatever else is built once.
 ALWAYS = {"check", "configuration", "manifest", "provenance"}
 
@@ -32,8 +30,8 @@ WATCHED = {
     "volume": (True, {"monte_carlo"}, {"volume"}, showing("volume")),
     "areas": (["right_wall"], {"monte_carlo"}, {"areas"}, showing("right_wall_area")),
     "mean_times": (["top_wall"], {"dynamics"}, {"mean_times"}, showing("top_wall_time")),
-    "hop_histogram": ([0.1], {"intervals"}, {"hop_histogram"}, showing("hop_histogram")),
-    "trajectory": (0.1, {"trajectory", "animate"}, set(), showing("trajectory")),
+    "hop_histogram": (True, {"intervals"}, {"hop_histogram"}, showing("hop_histogram")),
+    "trajectory": (True, {"trajectory", "animate"}, set(), showing("trajectory")),
 }
 
 #: The figures of scenes with effects that need tables.
@@ -77,18 +75,21 @@ def of(jobs, scene):
 
 
 def test_every_subset_of_what_is_watched(unbuilt, tmp_path):
-    """One thing at a time, and all but one, without and with effects."""
+    """One thing at a time, and all but one, without and with effects.
+
+    The names of some radii have exponents, of either sign.
+    """
     names = list(WATCHED)
     subsets = [{name} for name in names] + [{*names} - {name} for name in names]
-    cases = [(one, effects) for one in subsets for effects in ({}, {"field": 0.5, "mass_ratio": 2})]
+    kinds = [({}, 1, 1e-5), ({"field": 5e-21, "mass_ratio": 2}, 1e20, 1e19)]
+    cases = [(one, *kind) for one in subsets for kind in kinds]
     scenes = [
-        BOX
-        | {"name": f"s{i}", "radii": [0.1, 0.2], "effects": effects}
-        | {"watch": {name: WATCHED[name][0] for name in subset}}
-        for i, (subset, effects) in enumerate(cases)
+        {"name": f"s{i}", "box": {"width": 1.5 * unit, "height": unit}, "effects": effects}
+        | {"radii": [small, 0.2 * unit], "watch": {name: WATCHED[name][0] for name in subset}}
+        for i, (subset, effects, unit, small) in enumerate(cases)
     ]
     found = jobs(unbuilt, tmp_path / "subsets.yaml", scenes)
-    for i, (subset, effects) in enumerate(cases):
+    for i, (subset, effects, _, _) in enumerate(cases):
         parts = [WATCHED[name][1:] for name in subset]
         rules, tables, figures = (set().union(*part) for part in zip(*parts, strict=True))
         if effects:
@@ -141,7 +142,7 @@ def test_a_file_builds_its_scene_alone(unbuilt):
 )
 def test_what_is_built_once_is_what_is_asked_for(unbuilt, tmp_path, given, studies, more):
     path = tmp_path / "shared.yaml"
-    scene = BOX | {"watch": {"volume": True}}
+    scene = {"name": "a", "box": {"width": 1.5, "height": 1}, "watch": {"volume": True}}
     path.write_text(yaml.safe_dump(given | {"scenes": [scene]}))
     found = [(r, w) for r, w in unbuilt.jobs("--configfile", str(path)) if "scene" not in repr(w)]
     made = {w[0].removeprefix("table=") for rule, w in found if rule == "study_table"}
