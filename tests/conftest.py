@@ -14,7 +14,9 @@ gc.set_threshold(100_000, 50, 1000)
 
 
 def pytest_collection_modifyitems(items):
-    """The file that begins the one build comes first, because the build takes longest."""
+    """Workers begin with the file of the one build, because the build takes longest."""
+    if "PYTEST_XDIST_WORKER" not in os.environ:
+        return
 
     def file_scene(item):
         return item.nodeid.partition("::")[0]
