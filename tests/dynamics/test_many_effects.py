@@ -18,7 +18,7 @@ from sampling.uniformity import assert_uniform_on_sphere
 
 import twodiscs as td
 from twodiscs.dynamics import paths
-from twodiscs.dynamics.ensemble import open_block_kicks
+from twodiscs.dynamics.ensemble import LANES, open_all, open_block_kicks
 from twodiscs.dynamics.many import (
     all_pairs,
     cell_list,
@@ -151,6 +151,20 @@ def test_kicks_belong_to_replicas_not_to_blocks(monkeypatch):
     assert np.array_equal(halves[0], whole[0])
     assert np.array_equal(halves[1], whole[1])
     assert not np.array_equal(halves[0], 2 * first)
+
+
+def test_replicas_beyond_the_first_lanes_have_their_own_kicks_laps_and_hops():
+    """They are those of the same states with the same kicks, followed alone."""
+    scene, more = Scene(2.25, 1.0, 0.2, discs=3, periodic="x", friction=4.0), 3
+    states = many_initial_states.states(scene, LANES + more, 9)
+    results = states, np.zeros((3, LANES + more)), np.zeros(LANES + more)
+    alone, kicks = [each[..., LANES:].copy() for each in results], all_pairs.new_kicks(scene, more)
+    open_all(np.uint64(9), LANES, kicks)
+    all_kicks = open_block_kicks(all_pairs.new_kicks(scene, LANES + more), 9)
+    for (now, laps, hops), own in ((results, all_kicks), (alone, kicks)):
+        many_paths.advance_all(scene, now, laps, 20.0, own, hops)
+    for each, due in zip(results, alone, strict=True):
+        assert np.array_equal(each[..., LANES:], due)
 
 
 def test_cells_have_the_kicks_of_their_replicas(monkeypatch):
