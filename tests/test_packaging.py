@@ -37,7 +37,6 @@ EXTRAS = re.findall(r"['\"]([\w-]+)", str([*PROJECT["optional-dependencies"].val
 
 #: The files of the workflow, beside its Snakefile.
 CARRIED = ("workflow", "config", "profiles", "paper")
-NO_RULE_READS = ("schema.json", "references.md")
 
 
 @pytest.fixture(scope="module")
@@ -87,12 +86,12 @@ def test_the_wheel_carries_the_workflow(installed):
     (built,) = installed.parent.glob("*.whl")
     _, mark, names = "\n".join(ZipFile(built).namelist()).partition("share/twodiscs/")
     carried = {line.partition("share/twodiscs/")[2] for line in (mark + names).splitlines()}
-    left = {"expected", "queue", "shards", "slurm"}
+    left = {"expected", "queue", "shards", "slurm", "schema.json", "references.md"}
     asked = {
         path.relative_to(REPOSITORY).as_posix()
         for folder in CARRIED
         for path in (REPOSITORY / folder).rglob("*.*")
-        if path.is_file() and left.isdisjoint(path.parts) and path.name not in NO_RULE_READS
+        if path.is_file() and left.isdisjoint(path.parts)
     }
     assert asked | {"Snakefile", "workflow/Snakefile", "CITATION.cff"} <= carried
 

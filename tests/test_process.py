@@ -49,7 +49,7 @@ CALLS = {
     "load": lambda s: td.load(EXPECTED)["errata"],
     "load_result": lambda s: td.load_result(_saved(td.sample(s, 1))).more(2),
     "mean_times": lambda s: td.mean_times(s),
-    "observe": lambda s: td.observe(s, _speed, [0.1], 8).frame(),
+    "observe": lambda s: td.observe(s, lambda _, now: now["u1"] ** 2, [0.1], 8).frame(),
     "plot": lambda s: td.plot(td.trajectory(s, 2), _file("pdf")),
     "pressure": lambda s: td.pressure(s),
     "rate": lambda s: td.rate(s, "vertical_hop"),
@@ -61,10 +61,6 @@ CALLS = {
     "transmission": lambda s: td.transmission(s, "vertical_hop", 1).frame(),
     "volume": lambda s: td.volume(s),
 }
-
-
-def _speed(before, after):
-    return after["u1"] ** 2
 
 
 def _used(cost):

@@ -220,27 +220,33 @@ ALONG = {axis: tuple(e for e in EVENTS if AXIS.get(e, axis) == axis) for axis in
 
 #: Quantities of a scene, the events that exist in it, and the radii of its hop histograms.
 CALLS = [
-    ({"radius_ratio": 0.5, "mass_ratio": 2}, EVENTS, (0.05, 0.15, 0.25, 0.35)),
-    ({"periodic": ["x"]}, ALONG["y"], (0.0375, 0.112, 0.188, 0.262)),
-    ({"periodic": ["y"]}, ALONG["x"], (0.025, 0.075, 0.125, 0.175)),
-    ({"periodic": ["y", "x"]}, ("disc_collision",), ()),
-    ({"field": 1}, EVENTS, (0.0375, 0.112, 0.188, 0.262)),
-    ({"moment_of_inertia": 0.5}, EVENTS, ()),
+    ({"radius_ratio": 0.5, "mass_ratio": 2}, {}, EVENTS, (0.05, 0.15, 0.25, 0.35)),
+    ({"periodic": ["x"]}, {}, ALONG["y"], (0.0375, 0.112, 0.188, 0.262)),
+    ({"periodic": ["y"]}, {}, ALONG["x"], (0.025, 0.075, 0.125, 0.175)),
+    ({"periodic": ["y", "x"]}, {}, ("disc_collision",), ()),
+    ({"periodic": ["z"]}, {"depth": 1.2}, EVENTS, (0.0435, 0.131, 0.217, 0.304)),
+    ({"field": 1}, {}, EVENTS, (0.0375, 0.112, 0.188, 0.262)),
+    ({"moment_of_inertia": 0.5}, {}, EVENTS, ()),
+    ({}, {"discs": 3}, EVENTS, ()),
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("effects", "events", "histograms"), CALLS)
-def test_everything_is_what_has_a_place(effects, events, histograms):
-    request = one(effects=effects, watch=True)
+@pytest.mark.parametrize(("effects", "more", "events", "histograms"), CALLS)
+def test_everything_is_what_has_a_place(effects, more, events, histograms):
+    """A depth is a key of the box, and the number of discs one of the scene."""
+    texts = {name: str(value) for name, value in more.items()}
+    keys = texts if "discs" in more else {"box": PLAIN["scenes"][0]["box"] | texts}
+    request = one(effects=effects, **keys, watch=True)
     assert request.quantities.areas == request.quantities.mean_times == events
     assert request.quantities.hop_histogram == histograms
     assert request.histogram["event"] == next((e for e in events if e in HOPS), None)
     assert (request.quantities.trajectory is None) == (effects == {"periodic": ["y", "x"]})
     named = {name: "".join(sorted(v)) if isinstance(v, list) else v for name, v in effects.items()}
+    named |= more
     for radius in request.radii + request.quantities.hop_histogram:
         assert request.box.scene(radius) == Scene(1.5, 1, radius, **named)
-    assert request.box.scene(0.1).effects == request.effects
-    asked = one(effects=effects, watch={"areas": True, "mean_times": True})
+    assert request.effects == named
+    asked = one(effects=effects, **keys, watch={"areas": True, "mean_times": True})
     assert asked.quantities.areas == asked.quantities.mean_times == events
 
 
@@ -264,13 +270,6 @@ def test_default_radii_keep_to_what_there_is():
     grid = one(effects={"field": 1}, radii={"count": 4}).radii
     include = {"count": 4, "include": [0.123, grid[2]]}
     assert one(effects={"field": 1}, radii=include).radii == tuple(sorted({*grid, 0.123}))
-
-
-def test_balls_are_discs_with_a_depth():
-    request = one(box={"width": 1.5, "height": 1, "depth": "1.2"}, effects={"periodic": ["z"]})
-    assert request.effects == {"depth": 1.2, "periodic": "z"}
-    assert request.box.scene(0.1) == Scene(1.5, 1, 0.1, depth=1.2, periodic="z")
-    assert request.quantities.mean_times == EVENTS
 
 
 @pytest.mark.parametrize(
@@ -315,10 +314,6 @@ def test_radii_too_close_to_the_largest_are_refused_for_dynamics_alone():
 
 def test_more_discs_are_a_scene_of_their_own():
     request = one(discs=3, radii=[0.1, 0.2], watch=True)
-    assert request.box == Box(1.5, 1.0, discs=3)
-    assert request.effects == {"discs": 3}
-    assert request.quantities.mean_times == EVENTS
-    assert request.quantities.hop_histogram == ()
     assert request.quantities.trajectory == 0.125  # half of h/4
     assert one(discs=3).radii[-1] == pytest.approx(0.9 * request.box.largest_radius, rel=0.02)
     ring = one(discs=3, radii=[0.1], effects={"periodic": "x"}, watch=True)

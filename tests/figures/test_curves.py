@@ -41,9 +41,6 @@ def test_curves_break_where_times_jump():
 # Limits -------------------------------------------------------------------------------------------
 
 
-LARGEST = r"r_{\mathrm{max}}"
-
-
 @pytest.mark.parametrize(
     ("effects", "expected"),
     [
@@ -65,7 +62,7 @@ LARGEST = r"r_{\mathrm{max}}"
 def test_limits_have_their_radii_and_names(effects, expected):
     box = Box(**{"width": 1.5, "height": 1.0} | effects)
     *found, (largest, name) = limits(box)
-    assert name == LARGEST
+    assert name == r"r_{\mathrm{max}}"
     assert largest == pytest.approx(box.largest_radius, rel=1e-14)
     names = {radius: re.findall(r"(?:\{|=|^(?=[hw]))([\w/]+)", text) for radius, text in found}
     named = {index: radius for radius, some in names.items() for index in some}

@@ -55,8 +55,7 @@ def drawn(name):
     """Return {label of the panel, or its place: axes} of a figure of the committed tables."""
     entry = (FIGURES | STUDY_FIGURES)[name]
     tables = {name: table(name) for name in (*entry.tables, *entry.main_tables)}
-    for name_of_run, path in entry.long_runs.items():
-        tables[name_of_run] = read_table(EXPECTED.parents[1] / path)
+    tables |= {run: read_table(EXPECTED.parents[1] / path) for run, path in entry.long_runs.items()}
     with style.context():
         figure = DRAW[name](PAPER, tables) if name in DRAW else draw(name, PAPER, tables)
     return {axes.get_label() or i: axes for i, axes in enumerate(figure.axes)}
@@ -122,8 +121,7 @@ def over_cube_root(row):
     """Return (x, y, standard error) of (1 − κ)(w − σ)/∛(σ²(h − 2σ)) over the root of distances."""
     sigma = 2 * row["radius"]
     factor = (row["width"] - sigma) / math.cbrt(sigma**2 * (row["height"] - 2 * sigma))
-    _, _, error = symbol(0, row, factor)
-    return row["distance"] ** (1 / 6), (1 - row["estimate"]) * factor, error
+    return row["distance"] ** (1 / 6), (1 - row["estimate"]) * factor, row["stderr"] * factor
 
 
 def long_run(name):

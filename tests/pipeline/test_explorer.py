@@ -354,15 +354,11 @@ UNITS = [
 ]
 
 
-def in_box(*sides):
-    """Return the scene of a box."""
-    return [dict(zip(("name", "width", "height", "effects"), ("a", *sides, {}), strict=True))]
-
-
 @pytest.mark.parametrize("width", [1280, 390])
 @pytest.mark.parametrize(("sides", "radius", "next_radius"), UNITS)
 def test_lengths_are_in_any_unit_and_fit_the_window(driven, sides, radius, next_radius, width):
-    box, page = Box(*sides), driven("seed=7&runs=2000", scenes=in_box(*sides), width=width)
+    box, scene = Box(*sides), SCENES[0] | {"width": sides[0], "height": sides[1]}
+    page = driven("seed=7&runs=2000", scenes=[scene], width=width)
     assert_right(page, 2000, box, float(radius))
     right = "[...document.querySelectorAll('main *')].map(e => e.getBoundingClientRect().right)"
     assert page.look(f"Math.max(document.documentElement.scrollWidth, ...{right})") <= width

@@ -19,7 +19,7 @@ from snakemake import cli
 cli.get_argument_parser()  # finds the plug-ins, once for all copies
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-PARTS = ("Snakefile", "workflow", "profiles", "src", "config", "paper", "CITATION.cff")
+PARTS = ("workflow", "profiles", "src", "config", "paper", "Snakefile", "CITATION.cff")
 
 MODULE = """
 configfile: "mine.yaml"
@@ -31,12 +31,12 @@ module discs:
     {more}
 
 
-use rule * from discs{names}
+use rule * from discs as discs_*
 
 
 rule mine:
     input:
-        rules.{prefix}check.output,
+        rules.discs_check.output,
     output:
         "mine.txt",
     shell:
@@ -203,7 +203,6 @@ def fresh(path, edits=QUICKER):
         if source.is_dir():
             shutil.copytree(source, target, ignore=shutil.ignore_patterns("*.egg-info"))
         else:
-            target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(source, target)
     shutil.copy(Path(__file__).with_name("small.yaml"), path / "config" / "config.yaml")
     checkout = Checkout(path)
@@ -211,6 +210,12 @@ def fresh(path, edits=QUICKER):
         assert (REPOSITORY / tests).exists()
         checkout.replace(file, old, new)
     return checkout
+
+
+def one_scene(name, shared=(), **keys):
+    """Return a configuration of one scene in the box 1.5 × 1, with some ``keys``."""
+    box = {"width": 1.5, "height": 1.0}
+    return {"shared": [*shared], "scenes": [{"name": name, "box": box} | keys]}
 
 
 def folder(path, home, configuration):
@@ -221,13 +226,11 @@ def folder(path, home, configuration):
     return place
 
 
-def use(place, configuration, prefix="", more='config:\n        config["discs"]'):
-    """Write a workflow that uses the one of a checkout as a module, rules named with a prefix."""
-    text = MODULE.format(
-        snakefile=str(place.home.path / "Snakefile"),
-        more=more,
-        names=f" as {prefix}*" if prefix else "",
-        prefix=prefix,
-    )
+def use(place, configuration, more):
+    """Write a workflow that uses the one of a checkout as a module, with ``more`` settings of it.
+
+    Its rules have the prefix ``discs_``.
+    """
+    text = MODULE.format(snakefile=str(place.home.path / "Snakefile"), more=more)
     (place.path / "Snakefile").write_text(text)
     (place.path / "mine.yaml").write_text(yaml.safe_dump({"discs": configuration, "mine": 1}))

@@ -11,22 +11,16 @@ from importlib.util import find_spec
 
 import pytest
 import yaml
-from checkout import BELOW, Checkout, folder, fresh, use
+from checkout import BELOW, Checkout, folder, fresh, one_scene, use
 
-TINY = {
-    "shared": ["errata", "report"],
-    "scenes": [
-        {
-            "name": "tiny",
-            "box": {"width": 1.5, "height": 1.0},
-            "radii": [0.1],
-            "watch": {"areas": ["top_wall"], "mean_times": ["top_wall"]},
-            "accuracy": 0.5,
-            "event_budget": 1,
-            "monte_carlo": {"samples": 1},
-        }
-    ],
-}
+TINY = one_scene(
+    *("tiny", ["errata", "report"]),
+    radii=[0.1],
+    watch={"areas": ["top_wall"], "mean_times": ["top_wall"]},
+    accuracy=0.5,
+    event_budget=1,
+    monte_carlo={"samples": 1},
+)
 
 #: With blanks, quotes and a command: shell lines quote every path.
 NAME = "a b $(touch X) 'c'"
@@ -88,7 +82,7 @@ def test_every_path_in_a_shell_line_is_quoted(tmp_path):
 @pytest.mark.slow
 def test_as_a_module_it_builds_in_a_folder_with_a_prefix(own, tmp_path):
     place = Checkout(tmp_path, own.home)
-    use(place, TINY, "discs_", BELOW)
+    use(place, TINY, BELOW)
     place.snakemake("--cores", "2", "--", "discs_all", "mine.txt")
     assert manifest(place, "below/results") == manifest(own)
     assert {*place.results("below/results")} == {*own.results()}
@@ -133,6 +127,6 @@ def test_as_a_module_it_plans_every_job_of_the_default_configuration(
     unbuilt, planned, tmp_path, more
 ):
     place = Checkout(tmp_path, unbuilt)
-    use(place, yaml.safe_load(unbuilt.configuration.read_text()), "discs_", more)
+    use(place, yaml.safe_load(unbuilt.configuration.read_text()), more)
     alone = [(f"discs_{rule}", wildcards) for rule, wildcards in planned]
     assert place.jobs("discs_all") == sorted([*alone, ("discs_all", ())])

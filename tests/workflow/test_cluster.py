@@ -17,19 +17,15 @@ import yaml
 from checkout import REPOSITORY, folder
 
 #: Points that are small enough for one job; and one with effects, in shards.
-SCENES = {
-    "walls": {"radii": [0.1, 0.2], "watch": {"mean_times": ["top_wall"]}, "accuracy": 0.1},
-    "field": {
-        "radii": [0.1],
-        "effects": {"field": 0.3},
-        "watch": {"mean_times": ["top_wall"]},
-        "accuracy": 2e-3,
-        "event_budget": 1e9,
-    },
-}
-BOX = {"box": {"width": 1.5, "height": 1.0}, "event_budget": 1e7}
-SCENES = [{"name": name} | BOX | scene for name, scene in SCENES.items()]
+BLOCK = {"box": {"width": 1.5, "height": 1.0}, "watch": {"mean_times": ["top_wall"]}}
+SCENES = [
+    BLOCK | {"name": "walls", "radii": [0.1, 0.2], "accuracy": 0.1, "event_budget": 1e7},
+    BLOCK
+    | {"name": "field", "radii": [0.1], "effects": {"field": 0.3}}
+    | {"accuracy": 2e-3, "event_budget": 1e9},
+]
 CONFIGURATION = {"shared": [], "shard_events": 1e7, "scenes": SCENES}
+QUEUE = REPOSITORY / "profiles" / "queue" / "queue.sh"
 TABLES = [f"results/{scene['name']}/mean_times.csv" for scene in SCENES]
 
 
@@ -61,19 +57,6 @@ def profile(home, name, **other):
     return "--profile", str(place)
 
 
-def queue(home):
-    """Return the arguments for the profile of a queue of this machine."""
-    script = REPOSITORY / "profiles" / "queue" / "queue.sh"
-    settings = {"latency-wait": 5, "seconds-between-status-checks": 1}
-    settings |= {f"cluster-generic-{do}-cmd": f"sh {script} {do}" for do in ("submit", "status")}
-    return profile(home, "queue", **settings)
-
-
-def is_point(words):
-    """Return whether a command runs the script of a point."""
-    return any(word.endswith(".point.py") for word in words)
-
-
 def kill_a_job(jobs):
     """Kill the first job below the folder ``jobs`` that counts events, and all that started it."""
     ends = time.monotonic() + 120
@@ -82,7 +65,7 @@ def kill_a_job(jobs):
             with suppress(psutil.NoSuchProcess, ValueError):
                 job = psutil.Process(int(file.read_text()))
                 processes = [job, *job.children(recursive=True)]
-                if any(is_point(one.cmdline()) for one in processes):
+                if any(".point.py" in " ".join(one.cmdline()) for one in processes):
                     for one in processes:
                         with suppress(psutil.NoSuchProcess):
                             one.kill()
@@ -99,8 +82,7 @@ def test_a_queue_knows_how_a_job_ended(tmp_path, monkeypatch):
     monkeypatch.setenv("TMPDIR", str(tmp_path))
 
     def asked(*words):
-        script = REPOSITORY / "profiles" / "queue" / "queue.sh"
-        return subprocess.check_output(["sh", script, *words], text=True).strip()
+        return subprocess.check_output(["sh", QUEUE, *words], text=True).strip()
 
     jobs = {}
     for number, line in enumerate(("true", "exit 3", "sleep 600")):
@@ -127,9 +109,12 @@ def test_a_queue_of_scripts(local, unbuilt, tmp_path, monkeypatch):
     jobs = tmp_path / "jobs"
     jobs.mkdir()
     monkeypatch.setenv("TMPDIR", str(jobs))
+    settings = {f"cluster-generic-{do}-cmd": f"sh {QUEUE} {do}" for do in ("submit", "status")}
+    settings |= {"latency-wait": 5, "seconds-between-status-checks": 1}
+    queue = profile(tmp_path, "queue", **settings)
     with ThreadPoolExecutor() as threads:
         killed = threads.submit(kill_a_job, jobs)
-        assert build(tmp_path / "queue", unbuilt, *queue(tmp_path)) == local
+        assert build(tmp_path / "queue", unbuilt, *queue) == local
         killed.result()
     assert len([*jobs.glob("*/process")]) == counted(unbuilt, tmp_path) + 1
 

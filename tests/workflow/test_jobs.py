@@ -31,10 +31,9 @@ def expected(*jobs):
 
 
 def test_after_a_full_build_and_if_files_are_touched_there_is_nothing_to_do(built):
-    for folder, _, names in os.walk(built.path):
-        if ".snakemake" not in folder:
-            for name in names:
-                os.utime(os.path.join(folder, name))
+    for path in built.path.rglob("*"):
+        if ".snakemake" not in path.parts and path.is_file():
+            os.utime(path)
     environment = os.environ | {"PYTHONPATH": first(str(built.path / "src"))}
     words = "-X", "importtime", "-m", "snakemake", "--dry-run"
     run = python(*words, cwd=built.path, env=environment, check=True)
@@ -133,7 +132,6 @@ def test_the_manuscript_is_made_again_after_an_edit_of_a_file_that_its_texts_rea
     assert found <= inputs
 
 
-CODE = "\n\nREMARK = 1\n"
 DOCUMENTS = {"report", "manifest", "provenance"}
 COUNTED = {"monte_carlo", "dynamics", "intervals"}
 DRAWN = {"figure", "shared_figure", "animate"}
@@ -159,7 +157,7 @@ def everything(complete):
 
 @pytest.mark.parametrize(("path", "run", "kept"), EDITS, ids=[path for path, *_ in EDITS])
 def test_an_edit_reruns_what_depends_on_it_and_is_named(built, everything, path, run, kept):
-    built.edit(path, CODE)
+    built.edit(path, "\n\nREMARK = 1\n")
     jobs = {*built.jobs()}
     rules = {rule for rule, _ in jobs}
     assert run <= rules

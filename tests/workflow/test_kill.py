@@ -11,17 +11,11 @@ import time
 
 import psutil
 import pytest
-from checkout import folder, fresh
+from checkout import folder, fresh, one_scene
 from marks import slow
 
 JOB = "results/one/points/monte_carlo/0.2.json"
-ENDLESS = {
-    "name": "one",
-    "box": {"width": 1.5, "height": 1},
-    "radii": [0.2],
-    "watch": {"volume": True},
-    "monte_carlo": {"samples": 1e11},
-}
+ENDLESS = one_scene("one", radii=[0.2], watch={"volume": True}, monte_carlo={"samples": 1e11})
 
 
 def jobs(folder):
@@ -68,7 +62,7 @@ def begun(checkout, *words):
 )
 def test_a_killed_run_leaves_no_job_and_the_next_one_resumes(tmp_path, command, name):
     checkout = fresh(tmp_path / "checkout")
-    folder(checkout.path, None, {"shared": [], "scenes": [ENDLESS]})
+    folder(checkout.path, None, ENDLESS)
     run = begun(checkout, *command.split(), "--cores", "1", JOB)
     if name == "SIGKILL":
         run.kill()

@@ -13,8 +13,7 @@ from twodiscs.model.events import HOPS, WALLS
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.yaml_files import load, read
 
-FILES = sorted((REPOSITORY / "config" / "scenes").glob("*.yaml"))
-BLOCKS = {path.stem: read(path) for path in FILES}
+BLOCKS = {path.stem: read(path) for path in sorted(REPOSITORY.glob("config/scenes/*.yaml"))}
 
 #: Rules for all scenes together, whatever else is built once.
 ALWAYS = {"check", "configuration", "manifest", "provenance"}

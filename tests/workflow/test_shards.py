@@ -7,7 +7,7 @@ import re
 import shutil
 
 import pytest
-from checkout import folder
+from checkout import folder, one_scene
 
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.scene import Scene
@@ -15,20 +15,13 @@ from twodiscs.points.base import file_content, write_json
 from twodiscs_paper.configuration.yaml_files import load
 from twodiscs_paper.pipeline import job_cost
 
-TINY = {
-    "shared": [],
-    "shard_events": 1e7,
-    "scenes": [
-        {
-            "name": "tiny",
-            "box": {"width": 1.5, "height": 1.0},
-            "radii": [0.24],
-            "watch": {"mean_times": ["horizontal_hop", "top_wall"]},
-            "accuracy": 1e-3,
-            "event_budget": 1e10,
-        }
-    ],
-}
+TINY = {"shard_events": 1e7} | one_scene(
+    "tiny",
+    radii=[0.24],
+    watch={"mean_times": ["horizontal_hop", "top_wall"]},
+    accuracy=1e-3,
+    event_budget=1e10,
+)
 TABLE = "results/tiny/mean_times.csv"
 
 
@@ -61,11 +54,9 @@ def test_shards_are_jobs_of_a_dry_run_and_one_of_another_scene_is_refused(unbuil
         return {words for rule, words in place.jobs(TABLE) if rule == "shard"}
 
     first, files = planned(), []
+    name_of = "results/{scene}/shards/{stage}/{radius}/{component}-{first}-{stop}.json".format
     for words in first:
-        one = dict(word.split("=") for word in words)
-        name = "results/{scene}/shards/{stage}/{radius}/{component}-{first}-{stop}.json".format(
-            **one
-        )
+        name = name_of(**dict(word.split("=") for word in words))
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("{}")
         files.append(name)
@@ -105,30 +96,11 @@ def test_shards_have_the_random_numbers_of_their_point():
 
 
 @pytest.mark.slow
-def test_no_shard_is_done_twice(unbuilt, tmp_path):
-    place = place_at(tmp_path, unbuilt)
-    table = build(place)
-    assert table.count(b",0.001,reached,") == 2
-    first = shards(place)
-
-    # A tighter accuracy takes more shards: of each component the last one alone may be another.
-    place_at(place.path, unbuilt, accuracy=5e-4)
-    assert build(place).count(b",0.0005,reached,") == 2
-    second = shards(place)
-    assert all(second[path] == stamp for path, stamp in first.items())
-    assert len(second) > len(first)
-
-    # Another radius is of no consequence to the point there is; the old accuracy is still known.
-    place_at(place.path, unbuilt, radii=[0.24, 0.3])
-    assert build(place).startswith(table)
-    assert all(shards(place)[path] == stamp for path, stamp in second.items())
-
-
-@pytest.mark.slow
 def test_neither_the_size_nor_the_site_of_shards_is_of_consequence(unbuilt, tmp_path):
     """One site does the first shards, another one the rest; a third one joins them."""
     whole, small = (place_at(tmp_path / f"{n}", unbuilt, shard_events=n) for n in (1e7, 3e7))
     table = build(whole)
+    assert table.count(b",0.001,reached,") == 2
     assert build(small) == table
     assert len(shards(whole)) > len(shards(small)) > 0
     files = [path.relative_to(whole.path) for path in sorted(shards(whole))]
