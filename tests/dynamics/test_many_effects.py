@@ -17,7 +17,7 @@ from marks import slow
 from sampling.uniformity import assert_uniform_on_sphere
 
 import twodiscs as td
-from twodiscs.dynamics import paths
+from twodiscs.dynamics import ensemble, paths
 from twodiscs.dynamics.ensemble import LANES, open_all, open_block_kicks
 from twodiscs.dynamics.many import (
     all_pairs,
@@ -179,6 +179,17 @@ def test_cells_have_the_kicks_of_their_replicas(monkeypatch):
     assert opened == [(0, 5, replica) for replica in range(12, 20)]
     assert all(lane == 0 and kicks.rate == 4.0 for lane, kicks in followed)
     assert len(followed) == 8
+
+
+def test_chains_have_the_kicks_of_their_numbers(monkeypatch):
+    """In each block, and beyond the first lanes; nothing goes on after the kicks are opened."""
+    opened, chains = [], LANES + 2
+    monkeypatch.setattr(ensemble, "open_kicks", lambda *given: opened.append(given[:3]))
+    monkeypatch.setattr(all_pairs, "record_intervals", all_pairs.record_intervals.py_func)
+    bins, sums, going = (0.1, np.full(65, 65)), np.zeros((3, 66), np.int64), np.zeros(1, np.bool_)
+    many_intervals.record_within(8.0, FEW, "vertical_hop", 3, 2, 4, chains, bins, sums, going)
+    due = [(chain % chains % LANES, 3, chain) for chain in range(2 * chains, 4 * chains)]
+    assert opened == due
 
 
 @pytest.mark.slow
