@@ -4,9 +4,6 @@ Without these tests rates could ignore the parts that confine events, or numbers
 changed.
 """
 
-import math
-
-import numpy as np
 import pytest
 
 from twodiscs.model.events import AXIS, WALLS
@@ -51,26 +48,3 @@ def test_events_are_wall_hits_and_collisions(scene):
     assert exact.event_rate(scene) == pytest.approx(1 / wall + 1 / collision, rel=1e-15)
     torus = Scene(*PAPER, 0.2, periodic="xy")
     assert exact.event_rate(torus) == exact.rate(torus, "disc_collision")
-
-
-# Prism ------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    "effects", [{"radius_ratio": 0.4}, {"periodic": "x", "radius_ratio": 1.5}, {"depth": 0.8}]
-)
-def test_the_free_fraction_is_that_of_draws_in_the_prism(effects):
-    """Centres between the walls of each disc, at 5 sigma."""
-    scene, rng, draws = Scene(1.5, 1.0, 0.15, **effects), np.random.default_rng(1), 200_000
-    square = np.zeros(draws)
-    for axis in scene.axes:
-        side = scene.side(axis)
-        ring = axis in scene.periodic
-        first, second = (
-            rng.uniform(0.0 if ring else r, side - (0.0 if ring else r), draws) for r in scene.radii
-        )
-        apart = np.abs(first - second)
-        square += np.minimum(apart, side - apart if ring else apart) ** 2
-    free = np.mean(square > scene.contact_distance**2)
-    expected = exact.free_fraction(scene)
-    assert abs(free - expected) < 5 * math.sqrt(expected * (1 - expected) / draws)

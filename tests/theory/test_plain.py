@@ -10,12 +10,7 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
-from theory.antiderivatives import (
-    reference,
-    reference_shell,
-    reference_times,
-    relative_error,
-)
+from theory.antiderivatives import reference, reference_shell, reference_times, relative_error
 
 from twodiscs.model.events import EVENTS, HOPS, SHELLS
 from twodiscs.model.scene import Box, Scene

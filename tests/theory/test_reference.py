@@ -16,19 +16,15 @@ from twodiscs_paper.reference import QUANTITIES, MpScene, exact_numbers
 BOXES = [(1.5, 1.0), (1.0, 1.0), (2.0, 1.0), (1.0, 2.0), (3.0, 1.0), (1.0, 1.7), (1e6, 1), (1, 1e6)]
 
 
-def near_limits(box):
-    """Yield scenes in all regimes, on both sides of the thresholds, and where discs hardly fit."""
+@pytest.mark.parametrize("box", BOXES)
+def test_exact_numbers_have_the_digits_of_the_antiderivatives(box):
+    """In all regimes, on both sides of the thresholds, and where discs hardly fit."""
     largest = Box(*box).largest_radius
     radii = [1e-9 * min(box), 0.1 * largest, 0.6 * largest, 0.9 * largest]
     for limit in (box[0] / 4, box[1] / 4):
         radii += [limit * (1 - 1e-9), limit, math.nextafter(limit, math.inf)]
     radii += [largest * (1 - room) for room in (1e-3, 1e-6, 1e-9)]
-    return [Scene(*box, radius) for radius in radii if Box(*box).fits(radius)]
-
-
-@pytest.mark.parametrize("box", BOXES)
-def test_exact_numbers_have_the_digits_of_the_antiderivatives(box):
-    for scene in near_limits(box):
+    for scene in (Scene(*box, radius) for radius in radii if Box(*box).fits(radius)):
         volume, areas, times = exact_numbers(scene)
         assert tuple(areas) == EVENTS
         expected, found = reference(scene), volume | areas
