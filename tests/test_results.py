@@ -225,7 +225,8 @@ def test_a_file_of_another_content_is_one_sentence_and_no_work(name, tmp_path, m
 
 def test_files_of_something_else_are_refused(tmp_path):
     path = tmp_path / "result.json"
-    for content in ("", "[1]", json.dumps({"twodiscs": td.__version__, "kind": "x"})):
+    kind = json.dumps({"twodiscs": td.__version__, "kind": "x"})
+    for content in ("", "[1]", "[" * 10**5, kind):
         path.write_text(content)
         with pytest.raises(td.InputError, match=r"path must be a file that save\(\) wrote"):
             td.load_result(path)
