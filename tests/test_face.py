@@ -259,6 +259,8 @@ def test_a_scene_prints_what_it_is():
     assert eval(repr(scene), {"Scene": td.Scene}) == scene == scene.box.scene(0.2)
     assert str(scene).endswith("in a box of 1.5 × 1.0, mass ratio 2.0, periodic xy")
     assert td.Scene(1.5, 1.0, 0.2, periodic=[]) == SCENE
+    assert str(td.Scene(1.5, 1, 0.2, discs=3)) == str(SCENE).replace("Two", "3")
+    assert td.Scene(1.5, 1, 0.15, discs=12).unit("volume") == "length²⁴"
     assert str(SCENES["balls"]) == "Two balls of radius 0.2 in a box of 1.5 × 1.0 × 1.2"
 
 

@@ -51,22 +51,6 @@ def test_arrangements_fit(discs, sides, periodic):
 # As a scene --------------------------------------------------------------------------------------
 
 
-def test_a_scene_of_more_discs():
-    scene = Scene(1.5, 1.0, 0.15, discs=3)
-    box = scene.box
-    assert Box(**box.parameters()) == box
-    assert box.scene(0.15) == scene == eval(repr(scene), {"Scene": Scene})
-    assert (scene.family, scene.is_plain) == ("many", False)
-    assert (scene.radii, scene.masses) == ((0.15,) * 3, (1.0,) * 3)
-    assert (scene.effects, scene.calls_for) == ({}, {"discs": 3})
-    assert scene.multiplicity("top_wall") == 6
-    assert scene.multiplicity("disc_collision") == 1
-    assert str(scene) == "3 discs of radius 0.15 in a box of 1.5 × 1.0"
-    ring = Scene(1.5, 1.0, 0.15, periodic="x", discs=12)
-    assert ring.velocity_components == 23
-    assert ring.unit("volume") == "length²⁴"
-
-
 @pytest.mark.parametrize("width", [1.0, 1.05, 1.2, 1.5, 2.5])
 @pytest.mark.parametrize("axis", ["x", "y"])
 def test_hops_of_three_discs_end_where_two_of_them_cannot_be_level(width, axis):

@@ -119,14 +119,10 @@ def allowed(scene, x1, y1, x2, y2):
     return (square >= scene.contact_distance**2 * (1 - 1e-12)) & (potential < ENERGY)
 
 
-def configurations(scene):
-    """Return the cells that are allowed, along x1, y1, x2, y2."""
+def components(scene):
+    """Return how many disjoint parts the cells that are allowed make, along x1, y1, x2, y2."""
     centres = [grid(scene, axis, disc) for disc in (0, 1) for axis in "xy"]
-    return allowed(scene, *np.meshgrid(*centres, indexing="ij", sparse=True))
-
-
-def components(scene, open_cells):
-    """Return how many disjoint parts the cells make."""
+    open_cells = allowed(scene, *np.meshgrid(*centres, indexing="ij", sparse=True))
     number = np.arange(open_cells.size).reshape(open_cells.shape)
     ends = []
     for direction, axis in enumerate("xyxy"):
@@ -149,7 +145,7 @@ def test_components_hops_and_confined_discs(scene):
     Disc 1 reaches a far wall from the other side of disc 2 unless the scene says it is confined. If
     the hop is open, all starts get there.
     """
-    assert components(scene, configurations(scene)) == scene.ergodic_components
+    assert components(scene) == scene.ergodic_components
     for hop, confined in zip(("horizontal_hop", "vertical_hop"), scene.confined, strict=True):
         axis, other = AXIS[hop], "xy".replace(AXIS[hop], "")
         if axis in scene.periodic:
@@ -208,12 +204,13 @@ def test_largest_radius(periodic, width, ratio, depth):
         ({"moment_of_inertia": 0.5}, (), 6),
         # Rough walls push discs along them.
         ({"moment_of_inertia": 0.5, "periodic": "x"}, (), 6),
+        ({"discs": 3, "periodic": "x"}, ("x",), 5),
     ],
 )
 def test_momenta_that_are_conserved_and_0_do_not_count(effects, conserved, components):
     scene = Scene(1.5, 1.0, 0.2, **effects)
     assert (scene.conserved, scene.velocity_components) == (conserved, components)
-    units = ["length⁶", "length⁵"] if scene.depth else ["length⁴", "length³"]
+    units = ["length⁶", "length⁵"] if scene.depth or scene.discs == 3 else ["length⁴", "length³"]
     assert [scene.unit(quantity) for quantity in ("volume", "any_wall_area")] == units
 
 
@@ -227,6 +224,7 @@ def test_momenta_that_are_conserved_and_0_do_not_count(effects, conserved, compo
         ({"mass_ratio": 2}, 2, 2),
         ({"radius_ratio": 0.5, "field": 0.4}, 2, 1),
         ({"radius": 0.3, "field": 0.4}, 2, 2),
+        ({"discs": 3}, 6, 6),
     ],
 )
 def test_walls_of_one_rate_that_a_trajectory_reaches_are_counted_together(effects, right, top):
