@@ -53,9 +53,8 @@ def apart(scene, found):
 
 @pytest.mark.parametrize("scene", [*GASES.values(), *LARGE], ids=repr)
 def test_states_are_allowed(scene):
-    x, y, u, v, dx, dy = apart(
-        scene, many_initial_states.states(scene, 10 if scene in LARGE else 200, 1)
-    )
+    found = many_initial_states.states(scene, 10 if scene in LARGE else 200, 1)
+    x, y, u, v, dx, dy = apart(scene, found)
     assert np.min(np.hypot(dx, dy)) >= scene.contact_distance * (1 - 1e-14)
     assert np.max(np.abs(x)) <= scene.range_x / 2
     assert np.max(np.abs(y)) <= scene.range_y / 2
@@ -168,10 +167,8 @@ def test_long_channels_are_those_of_exact_draws():
      (Scene(6.0, 0.3600001, 0.18, discs=16), 0.5)],
 )  # fmt: skip
 def test_heights_in_a_channel_are_accepted_at_every_density(scene, least):
-    state, cells = (
-        open_stream(np.uint64(1), 0),
-        many_initial_states.make_initial(scene, "channel").cells,
-    )
+    state = open_stream(np.uint64(1), 0)
+    cells = many_initial_states.make_initial(scene, "channel").cells
     heights = np.zeros(scene.discs)
     accepted = sum(
         many_initial_states.propose_heights(state, cells, scene.contact_distance, heights)
@@ -200,9 +197,7 @@ def test_each_disc_is_any_of_them(name):
 def test_who_waits_hears_how_many_states_are_drawn():
     """In several calls, which continue the streams; progress is reported from the second on."""
     scene, told = GASES["chain"], []
-    many_initial_states.labelled(
-        scene, 200, 6, progress=lambda done, number: told.append((done, number))
-    )
+    many_initial_states.labelled(scene, 200, 6, progress=lambda *now: told.append(now))
     done = [drawn for drawn, _ in told if drawn is not None]
     assert (done, done[-1]) == (sorted(done), 200)
     assert len(done) > 5

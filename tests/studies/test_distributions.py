@@ -32,14 +32,14 @@ def complete(rows):
     return [dict.fromkeys(DistributionsTable.columns) | row for row in rows]
 
 
-def bins_of(edges, chances, intervals, rng):
+def bins_of(edges, chances, intervals):
     """Return bins of intervals that end in each with the ``chances`` given that they last so long.
 
-    Without ``rng`` every count is the nearest integer to its mean.
+    Every count is the nearest integer to its mean.
     """
     alive, found = intervals, []
     for first, last, chance in zip(edges, edges[1:], chances, strict=False):
-        count = int(rng.binomial(alive, chance)) if rng else round(alive * chance)
+        count = round(alive * chance)
         found.append(distributions.HazardBin(first, last, None, None, count, alive))
         alive -= count
     return found
@@ -55,7 +55,7 @@ EDGES = np.concatenate(([0.0], np.cumsum(0.3 * 1.1 ** np.arange(14)))) + 4
 def test_rate_maximizes_the_likelihood(rate):
     """With bins and censored times: the zero of the derivative and the curvature, by mpmath."""
     chances = -np.expm1(-rate * np.diff(EDGES)) * (1 + 0.1 * np.cos(np.arange(14)))
-    bins = bins_of(EDGES, chances, 10**6, None)
+    bins = bins_of(EDGES, chances, 10**6)
     found, _, _, degrees = distributions.constant_hazard(bins)
     with mpmath.workdps(40):
 
@@ -77,17 +77,10 @@ def test_rate_maximizes_the_likelihood(rate):
 
 def test_a_hazard_that_falls_slowly_shows_in_the_trend():
     chances = -np.expm1(-0.4 * ((EDGES[1:] + EDGES[:-1]) / 12) ** -0.2 * np.diff(EDGES))
-    bins = bins_of(EDGES, chances, 10**6, None)
+    bins = bins_of(EDGES, chances, 10**6)
     _, trend, chi2, degrees = distributions.constant_hazard(bins)
     assert trend.value == pytest.approx(-0.2, abs=0.02)
     assert chi2 > 3 * degrees
-
-
-def test_density_at_zero_of_a_parabola():
-    """Bins of p(t) = 3 − 2 t² of width 1/2 hold 3/2 − 1/12 and 3/2 − 7/12 of a billion."""
-    counts = [round(1e9 * (3 / 2 - 1 / 12) / 10), round(1e9 * (3 / 2 - 7 / 12) / 10)]
-    found = distributions.density_at_zero(counts, 10**9, 0.5)
-    assert found.value == pytest.approx(0.3, rel=1e-8)
 
 
 def test_bins_of_a_hazard_follow_one_another():
