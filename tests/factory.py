@@ -30,6 +30,13 @@ def empty(table, **values):
     return dict.fromkeys(table.columns) | values
 
 
+def write_rows(folder, table, names, rows, **same):
+    """Write a ``table`` to a folder: of each row some columns, the others are the same or empty."""
+    made = [empty(table, **same, **dict(zip(names, row, strict=True))) for row in rows]
+    folder.mkdir(exist_ok=True)
+    table.write(folder / f"{table.name()}.csv", made)
+
+
 def of(rows, **where):
     """Return those of ``rows`` that have these values."""
     return [row for row in rows if where.items() <= row.items()]

@@ -7,9 +7,9 @@ Mistakes in a configuration are in ``test_bad_input.py``.
 
 from copy import deepcopy
 from itertools import pairwise
-from pathlib import Path
 
 import pytest
+from checkout import REPOSITORY
 from snakemake.utils import update_config
 
 from twodiscs.dynamics import runs
@@ -22,7 +22,6 @@ from twodiscs_paper.configuration import scene_block, schema, yaml_files
 from twodiscs_paper.configuration.request import RequestedQuantities
 from twodiscs_paper.configuration.yaml_files import ConfigError, read
 
-ROOT = Path(__file__).resolve().parents[2]
 PLAIN = {"scenes": [{"name": "one", "box": {"width": 1.5, "height": 1}}]}
 
 
@@ -36,10 +35,10 @@ def one(**keys):
 
 
 def test_the_draft_is_a_quick_look_at_the_scenes_of_the_default_configuration():
-    mapping = read(ROOT / "config/config.yaml")
+    mapping = read(REPOSITORY / "config/config.yaml")
     full = yaml_files.load(mapping)
     # As --configfile does: the draft's lists replace, its blocks are merged.
-    update_config(mapping, read(ROOT / "config/draft.yaml"))
+    update_config(mapping, read(REPOSITORY / "config/draft.yaml"))
     draft = yaml_files.load(mapping)
     assert (full.results, draft.results) == ("results", "results/draft")
     for quick, slow in zip(draft.scenes, full.scenes, strict=True):

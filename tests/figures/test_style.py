@@ -9,8 +9,8 @@ import pytest
 from figure_cases import PAPER, draw
 from marks import slow
 
-from twodiscs.analysis.tables import TrajectoryTable
-from twodiscs.figures import animation, style
+import twodiscs as td
+from twodiscs.figures import style
 from twodiscs.model import events
 
 
@@ -28,16 +28,6 @@ def test_fonts_are_those_of_matplotlib_even_if_its_list_lacks_them(monkeypatch):
     assert [Path(path) for path in found] == [folder / f"{name}.ttf" for name in families]
 
 
-def content(name, path):
-    """Return what is written to a path: a figure or the animation."""
-    if name == "animation":
-        with style.context():
-            animation.animate(PAPER, 0.24, TrajectoryTable.rows(PAPER, 0.24, 1908), [path])
-    else:
-        style.save(draw(name, PAPER, {}), path)
-    return path.read_bytes()
-
-
 @pytest.mark.parametrize(
     ("name", "kind"),
     [
@@ -50,8 +40,13 @@ def test_same_bytes_whatever_the_settings_are(name, kind, tmp_path, monkeypatch)
     for turn, colour in enumerate(("white", "yellow")):
         monkeypatch.setenv("TZ", f"UTC{turn}")
         settings = {"figure.facecolor": colour, "font.size": 9 + turn, "pdf.fonttype": 3}
+        path = tmp_path / f"{turn}.{kind}"
         with matplotlib.rc_context(settings):
-            found.append(content(name, tmp_path / f"{turn}.{kind}"))
+            if name == "animation":
+                td.animate(td.trajectory(PAPER.scene(0.24)), path)
+            else:
+                style.save(draw(name, PAPER, {}), path)
+        found.append(path.read_bytes())
     assert found[0] == found[1]
     assert len(found[0]) < 600_000
     assert not re.search(rb"Date|Creat|<dc:date>|Producer|Matplotlib|tIME|iTXt|Software", found[0])

@@ -1,13 +1,11 @@
 """Tables of the default configuration for tests of the manuscript."""
 
 import shutil
-from pathlib import Path
 
 import pytest
+from checkout import EXPECTED
 
 from twodiscs_paper.catalogue import STUDY_TABLES, TABLES
-
-EXPECTED = Path(__file__).resolve().parents[2] / "paper" / "expected"
 
 #: Tables with seconds in them, which are not kept.
 TIMED = ("cost", "accuracy_cost")

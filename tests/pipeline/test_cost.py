@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from factory import Laws, empty, write
+from factory import Laws, write, write_rows
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -185,26 +185,19 @@ DESCRIBED = {"name": "a", "event_budget": 2 * 10**9}
 
 
 def test_a_build_says_which_accuracies_it_did_not_reach(tmp_path):
-    folder = tmp_path / "a"
-    folder.mkdir()
+    folder, names = tmp_path / "a", ("radius", "event", "relative_stderr", "status")
     assert job_cost.missed(tmp_path, DESCRIBED) == []
     rows = [
-        empty(MeanTimesTable, radius=r, event=e, target=1e-5, relative_stderr=error, status=s)
-        for r, e, error, s in [
-            (0.2, "any_wall", 0.9e-5, "reached"), (0.2, "top_wall", 1e-5, "reached"),
-            (0.3, "any_wall", 2e-5, "budget"), (0.3, "top_wall", 3e-5, "budget"),
-        ]
+        (0.2, "any_wall", 0.9e-5, "reached"), (0.2, "top_wall", 1e-5, "reached"),
+        (0.3, "any_wall", 2e-5, "budget"), (0.3, "top_wall", 3e-5, "budget"),
     ]  # fmt: skip
-    MeanTimesTable.write(folder / "mean_times.csv", rows)
+    write_rows(folder, MeanTimesTable, names, rows, target=1e-5)
     (line,) = job_cost.missed(tmp_path, DESCRIBED)
     assert line == (
         "a, radius 0.3: 1e-5 asked for; the budget of 2e9 events ended it at 3e-5 (top_wall_time)"
     )
     # The speed is that of the fastest job: the first ones compile.
-    jobs = [
-        empty(CostTable, stage="dynamics", radius=radius, events=events, seconds=seconds)
-        for radius, events, seconds in ((0.2, 10**9, 10.0), (0.3, 2 * 10**9, 99.0))
-    ]
-    CostTable.write(folder / "cost.csv", jobs)
+    jobs = (0.2, 10**9, 10.0), (0.3, 2 * 10**9, 99.0)
+    write_rows(folder, CostTable, ("radius", "events", "seconds"), jobs, stage="dynamics")
     (line,) = job_cost.missed(tmp_path, DESCRIBED)
     assert line.endswith("at 3e-5 (top_wall_time); a budget of 2.2e10 is enough, 3 min")

@@ -11,8 +11,8 @@ import re
 
 import pytest
 from browser import ABSENT, BROWSER, browser
-from checkout import REPOSITORY
-from factory import empty
+from checkout import EXPECTED, REPOSITORY
+from factory import write_rows
 from py_mini_racer import MiniRacer
 
 from twodiscs.analysis.tables import AreasTable, VolumeTable
@@ -24,8 +24,7 @@ SOURCES = REPOSITORY / "workflow" / "explorer"
 PARTS = [path for path in SOURCES.rglob("*") if path.is_file()]
 
 #: The tables of the scene 1.5 × 1 that are expected.
-EXPECTED = REPOSITORY / "paper" / "expected" / "paper"
-TABLES = [EXPECTED / f"{name}.csv" for name in ("volume", "areas", "mean_times")]
+TABLES = [EXPECTED / "paper" / f"{name}.csv" for name in ("volume", "areas", "mean_times")]
 
 #: The scenes in the report; the explorer leaves out the one with an effect that it does not have.
 SCENES = [
@@ -259,14 +258,10 @@ def test_points_are_those_of_the_tables():
 def test_times_by_monte_carlo_know_the_conserved_momenta(effects, tmp_path):
     scene = Box(1.5, 1, **effects).scene(0.2)
     given = {"radius": 0.2, "stderr": 1e-3, "bias": 0.0}
-    areas = [
-        empty(AreasTable, quantity=f"{event}_area", estimate=area, exact=area, **given)
-        for event, area in exact.areas(scene).items()
-    ]
-    volume = empty(VolumeTable, estimate=exact.volume(scene), **given)
+    areas = [(f"{event}_area", area, area) for event, area in exact.areas(scene).items()]
+    write_rows(tmp_path, AreasTable, ("quantity", "estimate", "exact"), areas, **given)
+    write_rows(tmp_path, VolumeTable, ["estimate"], [[exact.volume(scene)]], **given)
     paths = {name: tmp_path / f"{name}.csv" for name in ("volume", "areas")}
-    VolumeTable.write(paths["volume"], [volume])
-    AreasTable.write(paths["areas"], areas)
     times = exact.mean_times(scene)
     for event, by in explorer.points(paths, effects.get("periodic", "")).items():
         found = [row[1] for row in by["monte_carlo"]]

@@ -3,14 +3,13 @@
 Without these tests numbers of the report could be those of other rows, or too wide for it.
 """
 
-import shutil
 from base64 import b64decode
 from io import BytesIO
 from pathlib import PurePosixPath
 
 import pytest
 from checkout import REPOSITORY
-from factory import empty
+from factory import write_rows
 from PIL import Image
 
 from twodiscs.analysis.tables import CostTable, MeanTimesTable
@@ -37,13 +36,10 @@ def test_the_largest_deviation_has_the_digits_of_the_verdict(z):
     assert (report.short(999), report.short(43_870_000_000)) == ("999", "4.4 × 10<sup>10</sup>")
 
 
-def test_the_events_of_the_agreement_are_those_of_dynamics(tmp_path):
-    (tmp_path / "paper").mkdir()
-    for name in ("check", "grid"):
-        shutil.copy(REPOSITORY / "paper" / "expected" / "paper" / f"{name}.csv", tmp_path / "paper")
+def test_the_events_of_the_agreement_are_those_of_dynamics(tmp_path, tables_of):
+    tables_of(tmp_path, {"paper": "paper"})
     counts = {"dynamics": 7, "monte_carlo": 100}
-    rows = [empty(CostTable, stage=stage, radius=0.1, events=n) for stage, n in counts.items()]
-    CostTable.write(tmp_path / "paper" / "cost.csv", rows)
+    write_rows(tmp_path / "paper", CostTable, ("stage", "events"), counts.items(), radius=0.1)
     assert report.agreement(tmp_path, {"name": "paper"})["events"] == 7
 
 
@@ -103,19 +99,13 @@ def test_boxes_are_described_with_their_effects_and_events():
 def test_the_section_on_accuracy_has_the_worst_error_and_the_time_of_others(tmp_path):
     scene = {"name": "a", "event_budget": None}
     assert report.accuracies(tmp_path, scene) == []
-    (tmp_path / "a").mkdir()
-    rows = [
-        empty(MeanTimesTable, radius=0.2, event=event, estimate=2.0, stderr=error, target=1e-2)
-        for event, error in (("any_wall", 0.001), ("top_wall", 0.02), ("right_wall", None))
-    ]
-    MeanTimesTable.write(tmp_path / "a" / "mean_times.csv", rows)
+    errors = {"any_wall": 0.001, "top_wall": 0.02, "right_wall": None}
+    same = {"radius": 0.2, "estimate": 2.0, "target": 1e-2}
+    write_rows(tmp_path / "a", MeanTimesTable, ("event", "stderr"), errors.items(), **same)
     assert report.accuracies(tmp_path, scene) == []
     # The job took three seconds, most of them to compile; at the speed of the other it takes one.
-    jobs = [
-        empty(CostTable, stage="dynamics", radius=radius, events=events, seconds=seconds)
-        for radius, events, seconds in ((0.2, 10**7, 3.0), (0.3, 10**8, 10.0))
-    ]
-    CostTable.write(tmp_path / "a" / "cost.csv", jobs)
+    jobs = (0.2, 10**7, 3.0), (0.3, 10**8, 10.0)
+    write_rows(tmp_path / "a", CostTable, ("radius", "events", "seconds"), jobs, stage="dynamics")
     (row,) = report.accuracies(tmp_path, scene)
     assert (row["radius"], row["quantity"], row["asked"]) == (0.2, "top_wall_time", 1e-2)
     assert row["reached"] == pytest.approx(1e-2)

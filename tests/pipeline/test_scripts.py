@@ -100,30 +100,21 @@ def test_the_time_of_a_point_includes_that_of_its_shards(run):
     assert json.loads(Path("a.json").read_text())["seconds"] >= 1000
 
 
-def of_other_work(**settings):
-    """Return a function that changes ``settings`` in the file of a shard."""
-
-    def change(path):
-        content = read_json(path)
-        write_json(path, content | {"settings": content["settings"] | settings})
-        return path
-
-    return change
-
-
 @pytest.mark.parametrize(
-    ("change", "wrong"),
+    ("settings", "name", "wrong"),
     [
-        (of_other_work(seed=8), "has seed 8, but its job asks for 7"),
-        (of_other_work(extra=1), "has extra 1, but its job asks for None"),
+        ({"seed": 8}, "all-0-3.json", "has seed 8, but its job asks for 7"),
+        ({"extra": 1}, "all-0-3.json", "has extra 1, but its job asks for None"),
         # Its first block is that of the name, its last one is not.
-        (lambda path: path.rename("all-0-2.json"), "all-0-2.json has the blocks all-0-3"),
+        ({}, "all-0-2.json", "all-0-2.json has the blocks all-0-3"),
     ],
 )
-def test_a_shard_of_other_work_is_refused(run, change, wrong):
+def test_a_shard_of_other_work_is_refused(run, settings, name, wrong):
     (file,) = shards(run, "monte_carlo", [(0, 3)])
+    content = read_json(file)
+    write_json(name, content | {"settings": content["settings"] | settings})
     with pytest.raises(InputError, match=re.escape(f"{wrong}; delete it, and it is made again")):
-        point(run, "monte_carlo", "a.json", [str(change(Path(file)))])
+        point(run, "monte_carlo", "a.json", [name])
 
 
 def test_a_part_of_a_point_that_is_missing_is_named(run):

@@ -4,15 +4,14 @@ Without these tests a comparison beyond its bound, or a table without any, could
 """
 
 import math
-from pathlib import Path
 
 import pytest
+from checkout import EXPECTED
 
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs_paper.catalogue import STUDIES, STUDY_TABLES
 from twodiscs_paper.pipeline.results.verdict import verdict
 
-EXPECTED = Path(__file__).resolve().parents[2] / "paper" / "expected"
 PAPER = SCENE_TABLES["check"].read(EXPECTED / "paper" / "check.csv")
 CHECKED = [study.tables[0].name() for study in STUDIES.values() if study.checked]
 

@@ -5,17 +5,15 @@ Without these tests verification could miss a difference, or find one that is no
 
 import json
 import os
-from pathlib import Path
 
 import pandas as pd
 import pytest
+from checkout import EXPECTED, REPOSITORY
 from commands import python
 
 from twodiscs_paper.configuration.yaml_files import load, read
 from twodiscs_paper.pipeline.results import verify
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-EXPECTED = REPOSITORY / "paper" / "expected"
 POINT = {"counts": {"vertical_hop": 2**62, "bins": [3, 4]}, "duration": 0.5, "status": "ended"}
 TABLES = {
     "agreement.csv": "quantity,estimate,count\nmean_square,1.0,7\n",

@@ -19,6 +19,7 @@ from snakemake import cli
 cli.get_argument_parser()  # finds the plug-ins, once for all copies
 
 REPOSITORY = Path(__file__).resolve().parents[2]
+EXPECTED = REPOSITORY / "paper" / "expected"
 PARTS = ("workflow", "profiles", "src", "config", "paper", "Snakefile", "CITATION.cff")
 
 MODULE = """
@@ -45,19 +46,19 @@ rule mine:
 
 #: The studies whose rows a build takes from the expected tables, because their tests measure.
 #: Rows of seconds are fabricated, and a part of a table is empty.
-EXPECTED = ["errata", "distributions", "more_discs", "passages", "stability", "tails"]
-EXPECTED += ["effects_curves"]
+MEASURING = ["errata", "distributions", "more_discs", "passages", "stability", "tails"]
+MEASURING += ["effects_curves"]
 KEPT = f"""
 from pathlib import Path
 
 inspect.signature(work).bind(**given)
-kept = Path({str(REPOSITORY / "paper" / "expected")!r}, f"{{table.name()}}.csv")
+kept = Path({str(EXPECTED)!r}, f"{{table.name()}}.csv")
 if is_part:
     rows = []
 elif table.name() == "effects_cost":
     known = {{"benchmark": "effects", "value": 1e8, "unit": "1/s", "ratio": 1.0}}
     rows = [known | {{"variant": name, "instructions": 9}} for name in ("plain", *given["scenes"])]
-elif table.name() in {EXPECTED}:
+elif table.name() in {MEASURING}:
     names = {{"paper": "full", "long": "walls"}}
     rows = [row | {{k: names.get(row[k], row[k]) for k in ("scene",) if k in row}}
             for row in table.read(kept)]
@@ -173,7 +174,8 @@ class Checkout:
         return sorted((rule, words) for rule, words in found if not re.fullmatch(AUXILIARY, rule))
 
     def edit(self, path, text):
-        """Append ``text`` to a file."""
+        """Append ``text`` to a file, which may be new."""
+        (self.path / path).parent.mkdir(parents=True, exist_ok=True)
         with open(self.path / path, "a", encoding="utf-8") as file:
             file.write(text)
 

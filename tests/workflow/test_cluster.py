@@ -8,7 +8,6 @@ import subprocess
 import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from importlib.util import find_spec
 from pathlib import Path
 
 import psutil
@@ -26,6 +25,7 @@ SCENES = [
 ]
 CONFIGURATION = {"shared": [], "shard_events": 1e7, "scenes": SCENES}
 QUEUE = REPOSITORY / "profiles" / "queue" / "queue.sh"
+ABSENT = "the extra `cluster` is absent"
 TABLES = [f"results/{scene['name']}/mean_times.csv" for scene in SCENES]
 
 
@@ -100,12 +100,9 @@ def test_a_queue_knows_how_a_job_ended(tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(
-    find_spec("snakemake_executor_plugin_cluster_generic") is None,
-    reason="the extra `cluster` is not installed",
-)
 def test_a_queue_of_scripts(local, unbuilt, tmp_path, monkeypatch):
     """A job of it that is killed is submitted once more."""
+    pytest.importorskip("snakemake_executor_plugin_cluster_generic", reason=ABSENT)
     jobs = tmp_path / "jobs"
     jobs.mkdir()
     monkeypatch.setenv("TMPDIR", str(jobs))
@@ -134,10 +131,8 @@ SLURM = {
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(
-    find_spec("snakemake_executor_plugin_slurm") is None, reason="the extra `cluster` is absent"
-)
 def test_slurm(local, unbuilt, tmp_path, monkeypatch):
+    pytest.importorskip("snakemake_executor_plugin_slurm", reason=ABSENT)
     jobs, tools = tmp_path / "jobs", tmp_path / "tools"
     jobs.mkdir()
     tools.mkdir()

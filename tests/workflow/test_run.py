@@ -39,8 +39,7 @@ def test_files_of_another_project_a_read_only_home_a_notebook_and_a_profile_are_
         "file": "",
         **{f"{name}.py": "raise SystemExit('mistaken')\n" for name in ("random", "json", "numpy")},
     }.items():
-        (place.path / name).parent.mkdir(parents=True, exist_ok=True)
-        (place.path / name).write_text(text)
+        place.edit(name, text)
     environment = {name: text for name, text in os.environ.items() if name != "XDG_CACHE_HOME"} | {
         "HOME": str(place.path / "file" / "home"),
         "MPLBACKEND": "a_backend_that_is_not_installed",

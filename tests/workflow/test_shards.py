@@ -57,8 +57,7 @@ def test_shards_are_jobs_of_a_dry_run_and_one_of_another_scene_is_refused(unbuil
     name_of = "results/{scene}/shards/{stage}/{radius}/{component}-{first}-{stop}.json".format
     for words in first:
         name = name_of(**dict(word.split("=") for word in words))
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text("{}")
+        place.edit(name, "{}")
         files.append(name)
     assert len(files) > 3
     assert all(any(f"/{each}-" in name for name in files) for each in ("all", "horizontal_hop"))
