@@ -411,6 +411,6 @@ if __name__ == "__main__":
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("words", nargs="*", metavar="FILE")
-    parser.add_argument("--most", type=int, default=5, help="test files for a mutant (5)")
+    parser.add_argument("--most", type=int, default=8, help="test files for a mutant (8)")
     options = parser.parse_args()
     main(options.words, options.most)
