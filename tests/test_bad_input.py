@@ -140,6 +140,7 @@ td.simulate(PAPER, duration=1, method='strips') → method must be one of dynami
 td.sample(PAPER, 1).more(budget=1e7) → to go on, give samples=
 td.simulate(PAPER, 0.5, budget=1).more(duration=10) → duration must be left out for a result of …
 td.trajectory(RING, start=ROUND_THE_RING) → must have the discs apart
+td.trajectory(Scene(1.5, 1, 0.2, periodic='xy'), start=ROUND_THE_RING) → must have the discs apart
 td.trajectory(PAPER, start=td.starts(PAPER, 2)) → numbers x1, …; start[0] is one of these states
 td.trajectory(PAPER, start=td.trajectory(PAPER, 1)) → …; states_at(times)[0] is a state of a traj…
 td.trajectory(PAPER, start=td.trajectory(PAPER, 1).iloc[-1]) → …; states_at(times)[0] is a state of
@@ -161,6 +162,7 @@ td.diffusion(RING, [0, 1]) → times must be above 0 for diffusion
 start(x1=0.2) → have the discs apart, with 0.4 or more between their centres, not 0.3
 td.trajectory(td.Scene(1.5e-15, 1e-15, 2e-16), start=[-6e-16, 0, 5e-16, 0, 1, 0, 0, 0]) → inside
 start(x1=-0.6) → disc 1 inside the box, with x1 between -0.55 and 0.55, not -0.6
+td.trajectory(RING, start=[-0.8, 0, 0, 0.31, 1, 0, 0, 0]) → disc 2 inside the box, with y2
 start(y2=0.31) → disc 2 inside the box, with y2 between -0.3 and 0.3, not 0.31
 start(u1=2.0) → start must have a total energy of 0.5, not 2.0
 start(v2=np.ma.masked) → start must be the numbers x1, y1, x2, y2, u1, v1, u2, v2, not

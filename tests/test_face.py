@@ -395,6 +395,8 @@ td.sample(SCENE, 10) → 10 samples asked for, 1048576 done: whole blocks
 td.sample(SCENE, 2**20) →
 td.sample(td.Scene(1.5, 1, 0.38), 1e7) → 10000000 samples asked for, 196608 done: conditioned ones
 td.sample(SCENE, error=0.5) → error 0.5 asked for, 0.01 reached: the first round is 3.4e7 samples
+td.sample(SCENE, error=0.01, budget=1e6, shell=2e-5, quantities="top_wall_area") → 0.01 asked for
+td.sample(SCENE.with_radius(1e-3), error=0.01, budget=1e6, quantities="volume") →
 td.sample(SCENE, error=0.5, budget=10) → budget 10 asked for: the minimum, one block, is 1.1e6 sam
 td.intervals(SCENE, "vertical_hop", 10) → 10 intervals asked for, 65536 done
 td.observe(SCENE, lambda a, b: b["x1"], [1], 10) → 10 replicas asked for, 4096
@@ -408,6 +410,7 @@ td.transmission(td.Scene(1.5, 1, 0.249), "horizontal_hop", 128) →
 """
 
 
+@pytest.mark.filterwarnings("ignore::twodiscs.AccuracyWarning")
 @pytest.mark.parametrize("line", NOTES.strip().splitlines())
 def test_a_result_says_what_was_done_instead(line):
     call, _, said = line.partition(" →")

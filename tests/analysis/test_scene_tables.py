@@ -307,6 +307,11 @@ def test_insertions_that_all_fit_or_hardly_ever_have_no_error(scene, samples, se
         assert (row.value is None) == (row.status == "none-seen")
 
 
+def test_insertions_have_a_score_from_1000_on():
+    rows = td.sample(td.Scene(1.5, 1, 0.2, discs=3), 1, seed=1).rows
+    assert {(r["z"] is None, r["hits"] < 1000) for r in rows} == {(True, True), (False, False)}
+
+
 DENSE = [
     CORNERS[-1][0],
     td.Scene(1.0, 1.4280527786758892, 0.15449468266455402, discs=10),

@@ -143,8 +143,8 @@ def test_displacements_are_of_disc_1_unless_all_are_equal(ring, discs, monkeypat
     def moved(start, now):
         return np.mean([(now[f"x{n}"] - start[f"x{n}"]) ** 2 for n in discs], axis=0)
 
-    found = td.diffusion(ring, [1.0, 3.0], 1, seed=2)
-    due = td.observe(ring, moved, [1.0, 3.0], 1, seed=2).mean
+    found = td.diffusion(ring, [1.0, 3.0, 4.0], 1, seed=2)
+    due = td.observe(ring, moved, found.times, 1, seed=2).mean
     assert np.allclose(found.mean[:, 0], due, rtol=1e-12)
     # One time after the other, as of more states than the memory is to hold.
     monkeypatch.setattr("twodiscs.measure.observe.KEPT", 1)
