@@ -434,8 +434,8 @@ class HopHistogramTable(Table):
     def rows(points):
         """Return the rows of intervals points.
 
-        The mean is tested by Student's t over the chains, if there are 100 of them and 1000
-        intervals.
+        The mean is tested by Student's t over the chains, if there are 100 of them. A chain has 256
+        intervals or more.
         """
         rows = []
         for point in select_stage(points, "intervals"):
@@ -454,7 +454,7 @@ def _mean_interval(point):
 
     z, mean, exact = None, point.estimate("mean"), theory.mean_times(point.scene)[point.event]
     stderr = mean.stderr or None if mean.n >= MIN_EVENTS else None
-    if stderr and point.intervals >= scores.NORMAL and exact is not None:
+    if stderr and exact is not None:
         z = scores.student_deviate((mean.value - exact) / stderr, mean.n - 1)
     known = {"intervals": point.intervals, "exact_mean": exact}
     return known | {"mean": mean.value, "mean_stderr": stderr, "z": z}
