@@ -13,7 +13,7 @@ from scipy.integrate import quad
 from scipy.stats import norm
 
 from twodiscs_paper.studies.passages import brownian as study
-from twodiscs_paper.studies.passages.models.brownian_steps import CROSSINGS
+from twodiscs_paper.studies.passages.models import brownian_steps
 
 SIGMA = 5
 
@@ -82,6 +82,31 @@ def test_first_passages_in_a_wide_channel_are_those_of_a_random_walk(program):
         assert abs(total / 4000 - due) < SIGMA * error, (name, total / 4000, due)
 
 
+# The motion -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("program", study.PROGRAMS)
+def test_positions_stay_uniform(program):
+    """Steps keep the means of functions of the positions, if states are drawn uniformly."""
+    stream, room, number = np.random.default_rng(6), 0.2, 20_000
+    states = np.zeros((4 * number, 7))
+    states[:, 0] = study.HALF * (2 * stream.random(4 * number) - 1)
+    states[:, 1:3] = (1 + room) * stream.random((4 * number, 2))
+    allowed = states[:, 0] ** 2 + (states[:, 1] - states[:, 2]) ** 2 >= 1
+    states = states[allowed][:number]
+    before = states.copy()
+    bits = brownian_steps.open_stream(np.uint64(7), 0)
+    for state in states:
+        for _ in range(8):
+            brownian_steps.advance(state, study.PROGRAMS[program], 0.15, study.HALF, 1 + room, bits)
+    for value in (
+        lambda s: s[:, 0] ** 2, lambda s: s[:, 1], lambda s: s[:, 1] * s[:, 2],
+        lambda s: abs(s[:, 0]) < 0.3, lambda s: abs(s[:, 1] - s[:, 2]),
+    ):  # fmt: skip
+        change = value(states).astype(float) - value(before)
+        assert abs(change.mean()) < SIGMA * change.std() / math.sqrt(len(change))
+
+
 # Two ways to each number ------------------------------------------------------------------------
 
 
@@ -106,5 +131,5 @@ def test_both_methods_agree(program):
 
 def test_clusters_hold_each_crossing_once():
     counts = study.crossing_counts(1, "reflected", 0.125, 4, 100)
-    assert sum(number for _, number in counts["sizes"]) == 2 * CROSSINGS
-    assert counts["tried"] == 2 * CROSSINGS  # none is rejected
+    assert sum(number for _, number in counts["sizes"]) == 2 * brownian_steps.CROSSINGS
+    assert counts["tried"] == 2 * brownian_steps.CROSSINGS  # none is rejected
