@@ -17,6 +17,7 @@ from twodiscs.dynamics.runs import DAY, DynamicsRun
 from twodiscs.measure import cost
 from twodiscs.model.formats import format_seconds
 from twodiscs.model.seeds import job_seed
+from twodiscs.sampling.many import insertions
 from twodiscs.sampling.rounds import MARGIN
 from twodiscs.theory import exact
 from twodiscs_paper.pipeline.forecast import forecast_dynamics
@@ -191,6 +192,17 @@ def test_a_pilot_has_at_least_its_fewest_blocks(fewest):
     # The first call compiles, the second measures one block.
     assert work.mock_calls == [call(0, 1), call(0, 1), call(0, fewest)]
     assert each >= 0
+
+
+def test_prices_of_insertions_are_those_of_samples(blocks):
+    """The errors of 32 blocks of another seed are known within some per cent."""
+    three = td.Scene(1.5, 1.0, 0.15, discs=3)
+    measured = td.sample(three, 32 * insertions.BLOCK)
+    prices = [*cost._prices_of_samples(three, 0.02)]
+    assert {price.quantity for price in prices} == {*measured}
+    for price in prices:
+        due = 32e-3 * measured[price.quantity].relative_stderr ** 2
+        assert price.c == pytest.approx(due, rel=0.2)
 
 
 def test_a_run_has_its_first_round_whatever_is_asked_and_the_replicas_of_bursts():
