@@ -107,7 +107,7 @@ def test_the_limit_of_a_study_grows_with_what_is_asked_of_it():
     assert limit(1) < 60
 
 
-# What will be reached, and what was ---------------------------------------------------------------
+# Errors of a forecast and of a run ----------------------------------------------------------------
 
 
 @pytest.fixture

@@ -33,7 +33,7 @@ GASES = {
     "chain": Scene(1.5, 1.0, 0.2, discs=6),
     "rejection, ring": Scene(1.5, 1.0, 0.15, discs=4, periodic="x"),
 }
-#: So many that chains of events draw them.
+#: Enough discs that chains of events draw them.
 LARGE = [
     box(256, 0.6),
     box(256, 0.6, "x"),

@@ -187,7 +187,7 @@ def test_an_error_asked_for_later_has_the_sums_of_one_asked_for_at_once(monkeypa
 
 
 def test_what_is_kept_is_not_done_again():
-    """Of shards only the first round and the rest are done: the ranges between them join up."""
+    """A run of shards does only the first round and the rest: the ranges between them join up."""
     run, counts = fabricated(0.003, 1e12)
     shards, done, work = done_in_shards(run, 256), [], run.work
     run = replace(run, work=lambda *ends: done.append(ends) or work(*ends))

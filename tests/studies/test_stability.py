@@ -193,7 +193,7 @@ def test_rows_of_extremes_are_their_mean_times(monkeypatch):
 
 
 def test_a_bound_that_says_something_is_judged(monkeypatch):
-    """Of two counts without a normal law one is too improbable, the other may be anything."""
+    """Two counts have no normal law: one is too improbable, the other may be anything."""
     cells = {"exact": 1.0, "estimate": None, "stderr": None, "status": "none-seen"}
     cells |= {"comparison": "mean_time", "method": "dynamics", "test": "cluster-bound"}
     found = [cells | {"quantity": "a_time", "z": 6.0}, cells | {"quantity": "b_time", "z": 0.0}]

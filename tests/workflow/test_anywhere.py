@@ -24,7 +24,7 @@ TINY = one_scene(
 #: With blanks, quotes and a command: shell lines quote every path.
 NAME = "a b $(touch X) 'c'"
 
-#: Of every kind of file one, at least.
+#: At least one file of every kind.
 FILES = {
     *("tiny/points/dynamics/0.1.json", "tiny/mean_times.csv", "tiny/check.csv", "errata.csv"),
     *("tiny/figures/mean_wall_time.pdf", "check.passed", "report.html", "manifest.sha256"),
@@ -63,7 +63,7 @@ def test_with_a_configuration_of_its_own_everything_is_built_in_that_folder(own)
 
 
 def test_every_path_in_a_shell_line_is_quoted(tmp_path):
-    """Of jobs that take longer: what their lines are, from a folder with such a name."""
+    """Jobs that take longer have these command lines, from a folder with such a name."""
     targets = "all", "explorer", "benchmark", "effects"
     dry = "--dry-run", "--forceall", "--printshellcmds", "--", *targets
     lines = fresh(tmp_path / "a b $(touch X)").snakemake(*dry).stdout

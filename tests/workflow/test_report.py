@@ -49,7 +49,7 @@ LOOK = """
 
 @pytest.fixture(scope="module", params=[1280, 390])
 def front(request, complete, tmp_path_factory):
-    """What a browser sees of the report, in a wide window and in a narrow one."""
+    """A browser shows the report in a wide window and in a narrow one."""
     with browser(tmp_path_factory.mktemp("browser")) as page:
         page.open((complete.path / "results" / "report.html").as_uri(), width=request.param)
         seen = page.look(LOOK)

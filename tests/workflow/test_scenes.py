@@ -24,7 +24,7 @@ def showing(quantity):
     return {name for name, figure in FIGURES.items() if quantity in figure.needs}
 
 
-#: What a scene watches, the jobs that find it, the tables that hold it, the figures that show it.
+#: {quantity: its settings, the stages that find it, tables that hold it, figures that show it}
 WATCHED = {
     "volume": (True, {"monte_carlo"}, {"volume"}, showing("volume")),
     "areas": (["right_wall"], {"monte_carlo"}, {"areas"}, showing("right_wall_area")),
@@ -126,7 +126,7 @@ def test_a_file_builds_its_scene_alone(unbuilt):
     named = {w for _, wildcards in found for w in wildcards if w.startswith("scene=")}
     assert named == {"scene=torus"}
     assert not [rule for rule, _ in found if rule.startswith("effects")]
-    # What is about a box without effects is no target there.
+    # The manuscript has other scenes, so it is no target there.
     run = unbuilt.snakemake("--dry-run", *torus, "--", "paper", passes=False)
     assert "No rule to produce paper" in run.stdout + run.stderr
 
