@@ -19,7 +19,7 @@ from twodiscs.dynamics.two import hop_clusters as of_two
 from twodiscs.measure.transmission import cluster_coefficient, odd_clusters_per_passage, plateau
 from twodiscs.model.scene import Scene
 from twodiscs.theory import n_discs
-from twodiscs_paper.studies.passages.measure import coefficients_at_times
+from twodiscs_paper.studies.passages.near import coefficients_at_times
 
 HOP = "horizontal_hop"
 

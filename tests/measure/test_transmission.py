@@ -16,7 +16,7 @@ from twodiscs.measure import transmission
 from twodiscs.model.formats import texts_with_error
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling import rounds
-from twodiscs_paper.studies.passages.measure import coefficients_at_times, order_correlation
+from twodiscs_paper.studies.passages.near import coefficients_at_times, order_correlation
 
 
 def test_clusters_are_weighed_by_their_sizes():

@@ -18,8 +18,9 @@ from twodiscs.dynamics.two.hop_clusters import HOPS_OF_BLOCK
 from twodiscs.measure.transmission import cluster_coefficient, odd_clusters_per_passage, plateau
 from twodiscs.model.scene import Box
 from twodiscs.points.base import read_json
-from twodiscs_paper.studies.passages import brownian
-from twodiscs_paper.studies.passages import measure as passages
+from twodiscs_paper.studies.passages import brownian, measure
+from twodiscs_paper.studies.passages.near import radius_at
+from twodiscs_paper.studies.passages.parts import in_long_file, long_files, long_run
 from twodiscs_paper.studies.passages.study import BrownianTable, PassagesTable
 from twodiscs_paper.studies.tails import measure as tails
 from twodiscs_paper.studies.tails.study import TailsTable
@@ -46,13 +47,13 @@ def rows_of_clusters(configuration, counts):
         for count in counts[one["name"]]:
             blocks = -(-one["hops"] // HOPS_OF_BLOCK)
             assert sum(hops for _, hops in count["sizes"]) == blocks * HOPS_OF_BLOCK
-    return passages.long_run_rows(configuration["thresholds"], counts)
+    return long_run.long_run_rows(configuration["thresholds"], counts)
 
 
 def rows_of_files(configuration, counts):
     for one, count in zip(configuration["files"], counts["files"], strict=True):
         assert len(count) == one["replicas"]
-        yield from passages.file_rows(one, configuration, count)
+        yield from long_files.file_rows(one, configuration, count)
 
 
 def rows_of_steps(configuration, counts):
@@ -88,7 +89,7 @@ def test_a_table_is_that_of_its_counts(name, table, rows):
 )
 def test_the_parameters_of_a_long_run_are_those_of_a_part(name, table, monkeypatch):
     configuration, *_ = kept(name, table)
-    monkeypatch.setitem(passages.PARTS, "long_run", lambda thresholds: (thresholds,))
+    monkeypatch.setitem(measure.PARTS, "long_run", lambda thresholds: (thresholds,))
     monkeypatch.setattr(tails, "long_run", lambda *given: given)
     monkeypatch.setattr(brownian, "counted", lambda *given: given)
     monkeypatch.setattr(brownian, "rows", lambda counted: counted)
@@ -111,8 +112,8 @@ def test_files_diffuse_by_passages_if_hops_are_rare():
         kappa = of(own, quantity="coefficient")[-1]
         value, error = kappa["estimate"], kappa["stderr"]
         if discs < 10:
-            radius = passages.radius_at(1 / 4, 5)
-            scene, unit = passages.file_scene(Box(1.5, 1.0), discs, radius)
+            radius = radius_at(1 / 4, 5)
+            scene, unit = in_long_file.file_scene(Box(1.5, 1.0), discs, radius)
             gap = 8 * unit
             sizes, _ = cluster_sizes(scene, "horizontal_hop", gap, 48, 5)
             law = partial(odd_clusters_per_passage, others=2)
@@ -168,10 +169,10 @@ def test_reflected_discs_have_the_exponents_of_both_theories():
 def test_a_small_run_counts_every_hop_once():
     one = {"name": "small", "width": 1.5, "height": 1.0, "hop": "horizontal_hop", "seed": 1}
     one |= {"first": 7, "last": 7, "hops": 2 * HOPS_OF_BLOCK - 1, "pauses": [1, 2]}
-    counts = passages.cluster_counts(one)
+    counts = long_run.cluster_counts(one)
     assert [sum(hops for _, hops in count["sizes"]) for count in counts] == [2 * HOPS_OF_BLOCK] * 2
     assert counts[1]["events"] > counts[0]["events"]
-    quantities = [row["quantity"] for row in passages.cluster_rows(one, counts)]
+    quantities = [row["quantity"] for row in long_run.cluster_rows(one, counts)]
     assert quantities == 2 * ["coefficient", "passage_time"]
 
 

@@ -25,9 +25,18 @@ from twodiscs.theory.flux import rates
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.yaml_files import load
 from twodiscs_paper.studies.estimates import sample_mean
-from twodiscs_paper.studies.passages import figure, figure_diffusion, figure_transmission, measure
-from twodiscs_paper.studies.passages.measure import passing_rate
+from twodiscs_paper.studies.passages import figure, figure_diffusion, figure_transmission, near
 from twodiscs_paper.studies.passages.models import file
+from twodiscs_paper.studies.passages.near import passing_rate
+from twodiscs_paper.studies.passages.parts import (
+    displacements,
+    in_long_file,
+    in_the_limit,
+    near_threshold,
+    on_ring,
+    with_friction,
+)
+from twodiscs_paper.studies.passages.powers import fits
 from twodiscs_paper.studies.passages.study import PassagesTable
 
 BOX, HOP = Box(1.5, 1.0), "horizontal_hop"
@@ -50,7 +59,7 @@ def test_a_power_is_fitted_to_the_last_octaves():
     rough = power_rows(0.5, {4: 0.01, 3: 0.02}, inertia=0.5)
     alone = power_rows(0.5, {4: 0.01}, inertia=1.0)
     beyond = [row | {"estimate": 1.01, "event": "vertical_hop"} for row in smooth]
-    *steps, first, step, second = measure.fits([*smooth[::-1], *far, *rough, *alone, *beyond])
+    *steps, first, step, second = fits([*smooth[::-1], *far, *rough, *alone, *beyond])
     assert [row["quantity"] for row in (*steps, step)] == ["exponent"] * 6
     # The line through two points, from the far one on.
     assert steps[1]["estimate"] == pytest.approx(1 / 3)
@@ -83,7 +92,9 @@ def small(monkeypatch):
         "MOST_HOPS": 2**12, "LIMIT_BLOCKS": 4,
         "LONG_FILE": 18, "LONG_REPLICAS": 8, "RECORDS": 64,
     }.items():  # fmt: skip
-        monkeypatch.setattr(measure, name, value)
+        for module in (near, in_long_file, in_the_limit, near_threshold, on_ring):
+            if hasattr(module, name):
+                monkeypatch.setattr(module, name, value)
     monkeypatch.setattr("twodiscs_paper.studies.passages.study.INERTIAS", (0.5, 1.0))
     monkeypatch.setattr("twodiscs_paper.studies.passages.study.BLOCKED", (0.28,))
 
@@ -107,7 +118,7 @@ def test_numbers_in_proportion_have_a_quotient_without_error():
 def test_two_discs_in_a_file_move_as_their_hops_are_correlated():
     """Against the exact rate, and D by correlations of hops, which another kernel counts."""
     scene = Box(1.5, 1.0, periodic="x").scene(0.21875)
-    rows = list(measure.one_ring("ring", BOX, None, 2**18, 1))
+    rows = list(on_ring.one_ring("ring", BOX, None, 2**18, 1))
     due, *_ = of(rows, quantity="diffusion", method="hops")
     assert due["radius"] == scene.radius
     moved, hops = walked(Scene(1.5, 1.0, scene.radius, discs=2, periodic="x"), 64.0, 4096, 2)
@@ -179,9 +190,9 @@ def test_order_changes_by_exchanges_alone():
 @pytest.mark.parametrize("inertia", [None, slow(0.5)])
 def test_long_files_have_the_law_of_their_density(inertia, small, monkeypatch):
     """F within five standard errors of theory and, where discs pass, of the measured density."""
-    monkeypatch.setattr(measure, "OPEN", (4,))
-    monkeypatch.setattr(measure, "ONE_INERTIA", inertia)
-    rows = list(measure.displacements("long", 1.5, 1.0, [0.28, 0.3], 1, 16))
+    monkeypatch.setattr(displacements, "OPEN", (4,))
+    monkeypatch.setattr(displacements, "ONE_INERTIA", inertia)
+    rows = list(displacements.displacements("long", 1.5, 1.0, [0.28, 0.3], 1, 16))
     judged = [row for row in rows if row.get("z") is not None]
     assert [row["quantity"] for row in judged] == ["single_file"] * 3
     assert all(abs(row["z"]) < 5 for row in judged)
@@ -245,9 +256,10 @@ def joined(name, box):
 def test_the_table_is_written(rough, tmp_path, small, monkeypatch):
     """The fast one takes the hops of smooth discs for those of rough discs, which has no score."""
     if not rough:
-        monkeypatch.setattr(measure, "hop_sums", smooth(measure.hop_sums))
-    seeds, seed_of = [], measure.hop_seed
-    monkeypatch.setattr(measure, "hop_seed", lambda *of: seeds.append(seed_of(*of)) or seeds[-1])
+        monkeypatch.setattr(near, "hop_sums", smooth(near.hop_sums))
+    seeds, seed_of = [], near.hop_seed
+    for module in (near, in_long_file):
+        monkeypatch.setattr(module, "hop_seed", lambda *of: seeds.append(seed_of(*of)) or seeds[-1])
     PassagesTable.write(tmp_path / "passages.csv", joined("paper", BOX))
     rows = PassagesTable.read(tmp_path / "passages.csv")
     assert len({*seeds}) == len(seeds) > 20  # every estimate has separate streams
@@ -269,7 +281,7 @@ def test_the_table_is_written(rough, tmp_path, small, monkeypatch):
 
 def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small, monkeypatch):
     """Along a ring of its width the discs would be jammed before they cannot pass."""
-    monkeypatch.setattr(measure, "hop_sums", smooth(measure.hop_sums))
+    monkeypatch.setattr(near, "hop_sums", smooth(near.hop_sums))
     rows = joined("square", Box(1.0, 4.0))
     assert {row["event"] for row in rows} == {"vertical_hop", None}
     with style.context():
@@ -280,9 +292,9 @@ def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small, monkeypatch):
 
 
 def test_scores_have_the_errors_of_both_estimates():
-    near = measure.NearThreshold("a", BOX.scene(0.24), HOP, 5, 1)
+    hop = near.NearThreshold("a", BOX.scene(0.24), HOP, 5, 1)
     two, five = Estimate(2.0, 0.3, 100), Estimate(5.0, 0.4, 100)
-    row = near.row("plateau", "hops", two, 1.0, five)
+    row = hop.row("plateau", "hops", two, 1.0, five)
     assert (row["z"], row["reference_stderr"]) == (pytest.approx(-6), 0.4)
 
 
@@ -297,7 +309,7 @@ def test_rows_with_friction(kicked, monkeypatch):
     """
     if not kicked:
         monkeypatch.setattr(strip, "run_blocks", smooth(strip.run_blocks))
-    rows = list(measure.one_friction("paper", BOX, 40.0, (6, 8, 12), 2**19, 3))
+    rows = list(with_friction.one_friction("paper", BOX, 40.0, (6, 8, 12), 2**19, 3))
     (rate,) = of(rows, quantity="rate")
     assert abs(rate["z"]) <= 5
     assert rate["stderr"] < 0.05 * rate["reference"]
@@ -311,22 +323,25 @@ def test_rows_with_friction(kicked, monkeypatch):
         square = sum((row["stderr"] / row["estimate"]) ** 2 for row in (before, after))
         assert slope["stderr"] == pytest.approx(math.sqrt(square) / math.log(4) / octaves)
     assert len(slopes) == 2
-    assert list(measure.fits([empty(PassagesTable, **row) for row in rows])) == []
+    assert list(fits([empty(PassagesTable, **row) for row in rows])) == []
 
 
 def test_the_law_of_friction_is_fitted_to_what_it_gives():
     """κ of the law with b = 0.4, with the limits of large x; one value is 3 % above it."""
     rows = []
     for n in (8, 12, 16):
-        scene = measure.scene_at(BOX, HOP, n, friction=160.0)
-        cells = measure.hop_cells("kicks", scene, HOP, 2.0**-n)
-        x, limit = measure.scaled_friction(scene, HOP), measure.diffusive_limit(scene, HOP)
+        scene = near.scene_at(BOX, HOP, n, friction=160.0)
+        cells = near.hop_cells("kicks", scene, HOP, 2.0**-n)
+        x, limit = (
+            with_friction.scaled_friction(scene, HOP),
+            with_friction.diffusive_limit(scene, HOP),
+        )
         kappa = 1 / (x / limit + 1 / (1 + 0.4 * x))
         rows.append(cells | {"quantity": "coefficient", "estimate": kappa, "stderr": 1e-4 * kappa})
-    constant, chi2, deviation = measure.scaling_fits(rows)
+    constant, chi2, deviation = with_friction.scaling_fits(rows)
     assert constant["estimate"] == pytest.approx(0.4, abs=1e-6)
     rows[0] |= {"estimate": 1.03 * rows[0]["estimate"], "stderr": 10.0}
-    constant, chi2, deviation = measure.scaling_fits(rows)
+    constant, chi2, deviation = with_friction.scaling_fits(rows)
     assert (constant["estimate"], deviation["estimate"]) == pytest.approx((0.4, 0.03), rel=1e-3)
     assert deviation["distance"] == 2.0**-8
     assert chi2["estimate"] < 1e-3
@@ -335,7 +350,7 @@ def test_the_law_of_friction_is_fitted_to_what_it_gives():
 @pytest.mark.parametrize("halvings", [8, 10])
 def test_the_limit_of_long_necks_is_the_resistance_of_their_density(halvings):
     """∫ρ(0)/ρ du with ρ ∝ (A − |u|) L(u)²; the next order is 2εσ/A², 2.5 share²."""
-    scene = measure.scene_at(BOX, HOP, halvings, friction=160.0)
+    scene = near.scene_at(BOX, HOP, halvings, friction=160.0)
     room = scene.height - 4 * scene.radius
     a, sigma, u = scene.range_x, scene.contact_distance, np.linspace(0.0, 0.5, 200_001)
     density = (1 - u / a) * (1 + u**2 / (2 * room * sigma)) ** 2
@@ -343,12 +358,12 @@ def test_the_limit_of_long_necks_is_the_resistance_of_their_density(halvings):
     share = 2 * math.sqrt(2 * room * sigma) / (math.pi * a)
     due = 3 / 4 * math.pi / 2 * math.sqrt(2 * room * sigma) / resistance
     assert 0.01 < share < 0.045
-    assert measure.diffusive_limit(scene, HOP) == pytest.approx(due, rel=3 * share**2)
+    assert with_friction.diffusive_limit(scene, HOP) == pytest.approx(due, rel=3 * share**2)
     kappa = Estimate(0.1, 0.01, 100)
-    near = measure.NearThreshold("a", scene, HOP, halvings, 1)
-    found = list(measure.local_exponents([(near, kappa)]))
+    hop = near.NearThreshold("a", scene, HOP, halvings, 1)
+    found = list(with_friction.local_exponents([(hop, kappa)]))
     x = 160 * math.sqrt(room * sigma)
-    assert bool(found) == (x >= measure.LONG_NECK)
+    assert bool(found) == (x >= with_friction.LONG_NECK)
     for row in found:
         assert (row["estimate"], row["stderr"]) == pytest.approx((0.1 * x, 0.01 * x))
         assert row["reference"] == pytest.approx(due, rel=3 * share**2)

@@ -27,7 +27,8 @@ from twodiscs.sampling import montecarlo
 from twodiscs.sampling.initial_states import states
 from twodiscs.theory import exact
 from twodiscs_paper.studies.distributions import measure as distributions
-from twodiscs_paper.studies.passages import measure as passages
+from twodiscs_paper.studies.passages import near, powers
+from twodiscs_paper.studies.passages.parts import near_threshold
 from twodiscs_paper.studies.stability import calibration, figure, figure_runs
 from twodiscs_paper.studies.stability import measure as stability
 from twodiscs_paper.studies.stability.study import CalibrationTable, StabilityTable
@@ -331,14 +332,15 @@ def few_intervals(seed):
 
 def few_passages(seed):
     """Return rows of passages.csv by ``NearThreshold`` from few hops, at two distances."""
-    rows = [*passages.one_hop("", PAPER, "horizontal_hop", (6, 7), None, 2**12, seed)]
-    return [*rows, *passages.fits([dict.fromkeys(passages.HOP) | row for row in rows])]
+    rows = [*near_threshold.one_hop("", PAPER, "horizontal_hop", (6, 7), None, 2**12, seed)]
+    return [*rows, *powers.fits([dict.fromkeys(powers.HOP) | row for row in rows])]
 
 
 @pytest.mark.parametrize("make", [few_intervals, few_passages])
 def test_errors_of_few_are_what_they_say(make, monkeypatch):
     """64 fresh seeds tell mean squares of 4 and of 1/4 from 1, for seven quantities of a study."""
-    monkeypatch.setattr(passages, "MOST_HOPS", 2**11)
+    monkeypatch.setattr(near, "MOST_HOPS", 2**11)
+    monkeypatch.setattr(near_threshold, "MOST_HOPS", 2**11)
     monkeypatch.setattr(distributions, "FEWEST", 100)
     monkeypatch.setattr(distributions, "FEWEST_IN_BIN", 30)
     monkeypatch.setattr(calibration, "STUDIES", {("few", ""): make})

@@ -25,7 +25,7 @@ from theory.antiderivatives import TURNED, relative_error
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.theory import exact, flux, weighted
-from twodiscs_paper.studies.passages.measure import passing_rate
+from twodiscs_paper.studies.passages.near import passing_rate
 
 BOUND, DIGITS = 1e-13, 40
 

@@ -23,8 +23,8 @@ from twodiscs.measure.transmission import cluster_coefficient
 from twodiscs.model.seeds import stream_seed
 from twodiscs.points.estimates import Estimate
 from twodiscs_paper.studies.estimates import LinearFit
-from twodiscs_paper.studies.passages.measure import compared
 from twodiscs_paper.studies.passages.models import brownian_steps
+from twodiscs_paper.studies.passages.near import compared
 from twodiscs_paper.study import row
 
 #: {program: its number in ``models.brownian``}.

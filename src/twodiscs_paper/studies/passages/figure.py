@@ -7,7 +7,7 @@ from twodiscs.figures.style import BLACK, BLUE, GREEN, PURPLE, SIZES, SKY, VERMI
 from twodiscs.measure.transmission import box_time
 from twodiscs.model.scene import Box
 from twodiscs.theory import exact, laws
-from twodiscs_paper.studies.passages.measure import ONE_INERTIA, thresholds
+from twodiscs_paper.studies.passages.near import ONE_INERTIA, thresholds
 from twodiscs_paper.study import select
 
 #: Halvings of the distance at which κ(t) is shown, for smooth discs and for rough discs.

@@ -10,7 +10,7 @@ from twodiscs_paper.studies.passages.figure import (
     points,
     residuals,
 )
-from twodiscs_paper.studies.passages.measure import ONE_INERTIA
+from twodiscs_paper.studies.passages.near import ONE_INERTIA
 from twodiscs_paper.study import select
 
 #: The distances that are shown, from the threshold.

@@ -5,7 +5,12 @@ import numpy as np
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import BLACK, GREY, SERIES
 from twodiscs_paper.studies.passages.figure import at_places, columns, first_scene, is_empty, points
-from twodiscs_paper.studies.passages.measure import KICKED, row_scene, scaled_friction, scaling_law
+from twodiscs_paper.studies.passages.parts.with_friction import (
+    KICKED,
+    row_scene,
+    scaled_friction,
+    scaling_law,
+)
 from twodiscs_paper.study import select
 
 #: {rate of kicks: colour, marker}.

@@ -101,10 +101,10 @@ class PassagesTable(Table):
     @staticmethod
     def rows(tables):
         """Return the rows of all parts, one part after the other, and the fits to them."""
-        from twodiscs_paper.studies.passages import measure
+        from twodiscs_paper.studies.passages.powers import fits
 
         rows = [row for part in tables.values() for row in part]
-        return [*rows, *measure.fits(rows)]
+        return [*rows, *fits(rows)]
 
 
 class BrownianTable(Table):

@@ -21,9 +21,15 @@ from twodiscs_paper.studies.accuracy_cost import measure as accuracy_cost
 from twodiscs_paper.studies.distributions import measure as distributions
 from twodiscs_paper.studies.effects import measure as effects
 from twodiscs_paper.studies.more_discs import measure as more_discs
-from twodiscs_paper.studies.passages import brownian
-from twodiscs_paper.studies.passages import measure as passages
+from twodiscs_paper.studies.passages import brownian, near, powers
 from twodiscs_paper.studies.passages.models import limit
+from twodiscs_paper.studies.passages.parts import (
+    in_long_file,
+    long_files,
+    near_threshold,
+    on_ring,
+    with_friction,
+)
 from twodiscs_paper.studies.stability import measure as stability
 from twodiscs_paper.studies.tails import measure as tails
 from twodiscs_paper.studies.thresholds import measure as thresholds
@@ -271,27 +277,27 @@ def threshold_rows(seed):
 
 def passage_rows(seed):
     """Return rows of passages.csv of smooth discs: κ, its exponents, and c."""
-    rows = [*passages.one_hop("", BOX, HOP, range(3, 9), None, 2**16, seed)]
-    rows = [dict.fromkeys(passages.HOP) | row for row in rows]
+    rows = [*near_threshold.one_hop("", BOX, HOP, range(3, 9), None, 2**16, seed)]
+    rows = [dict.fromkeys(powers.HOP) | row for row in rows]
     c = limit.amplitude(64, seed)
     amplitude = {"quantity": "amplitude", "estimate": c.value, "stderr": c.stderr}
-    return [*rows, *passages.fits(rows), amplitude]
+    return [*rows, *powers.fits(rows), amplitude]
 
 
 def passage_rows_of_effects(seed):
     """Yield rows of passages.csv of rough discs, of discs with friction, and on a ring."""
-    yield from passages.one_hop("", BOX, HOP, range(3, 7), 0.5, 2**16, seed)
-    yield from passages.one_friction("", BOX, 40.0, (6, 8, 10), 2**16, seed)
+    yield from near_threshold.one_hop("", BOX, HOP, range(3, 7), 0.5, 2**16, seed)
+    yield from with_friction.one_friction("", BOX, 40.0, (6, 8, 10), 2**16, seed)
     for inertia in (None, 0.5):
-        yield from passages.one_ring("", BOX, inertia, 2**24, seed)
+        yield from on_ring.one_ring("", BOX, inertia, 2**24, seed)
 
 
 def file_rows(seed):
     """Yield rows of passages.csv of files: hops, κ, D, displacements and F."""
-    yield from passages.long_files(**FILES, seed=seed)
-    open_radius, friction = passages.radius_at(0.25, 3), passages.FRICTION
+    yield from long_files.long_files(**FILES, seed=seed)
+    open_radius, friction = near.radius_at(0.25, 3), in_long_file.FRICTION
     for radius, frictions in ((0.28, [friction]), (open_radius, [None, friction])):
-        yield from passages.one_long_file("", BOX, radius, frictions, seed)
+        yield from in_long_file.one_long_file("", BOX, radius, frictions, seed)
 
 
 def brownian_rows(seed):

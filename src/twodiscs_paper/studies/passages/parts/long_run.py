@@ -1,0 +1,70 @@
+"""A long run of κ by clusters, at distances that no build goes down to."""
+
+import numpy as np
+
+from twodiscs.dynamics.two.hop_clusters import HOPS_OF_BLOCK, cluster_sizes
+from twodiscs.model.scene import Box
+from twodiscs_paper.studies.passages.near import NearThreshold, scene_at
+from twodiscs_paper.studies.passages.parts.with_friction import (
+    cluster_pause,
+    local_exponents,
+    scaling_fits,
+)
+from twodiscs_paper.studies.passages.powers import fits
+
+
+def long_run_thresholds(one):
+    """Yield pairs (``NearThreshold``, pause) of a threshold ``one`` of a long run.
+
+    The distance is halved ``every`` times from one to the next, once if this is not given. The
+    ``pauses`` of the configuration are over that of the build.
+    """
+    box = Box(one["width"], one["height"])
+    for halvings in range(one["first"], one["last"] + 1, one.get("every", 1)):
+        effects = {"friction": one.get("friction", 0.0), "moment_of_inertia": one.get("inertia")}
+        scene = scene_at(box, one["hop"], halvings, **effects)
+        near = NearThreshold(one["name"], scene, one["hop"], halvings, one["seed"])
+        for pause in one.get("pauses", [1]):
+            yield near, pause * cluster_pause(scene, near.hop)
+
+
+def cluster_counts(one):
+    """Return {"events", "of", "sizes"} for each of the distances of a threshold ``one``.
+
+    ``sizes`` are pairs [n, how many of the hops are in a cluster of n], without those of none;
+    "of" is how many sizes are told apart.
+    """
+    found, blocks = [], -(-one["hops"] // HOPS_OF_BLOCK)
+    for near, gap in long_run_thresholds(one):
+        sizes, events = cluster_sizes(near.scene, near.hop, gap, blocks, near.cluster_seed)
+        pairs = [[n, int(hops)] for n, hops in enumerate(sizes) if hops]
+        found.append({"events": int(events), "of": len(sizes), "sizes": pairs})
+    return found
+
+
+def cluster_rows(one, counts):
+    """Return the rows of passages.csv on a threshold ``one`` from its ``cluster_counts``."""
+    measured, found = [], []
+    for (near, gap), count in zip(long_run_thresholds(one), counts, strict=True):
+        sizes = np.zeros(count["of"], np.int64)
+        for n, hops in count["sizes"]:
+            sizes[n] = hops
+        kappa, own = near.cluster_rows(sizes, count["events"], gap)
+        measured.append((near, kappa))
+        found += own
+    if "pauses" in one:  # at one distance
+        return found
+    if "friction" in one:
+        return [*found, *local_exponents(measured)]
+    return [*found, *fits(found)]
+
+
+def long_run(thresholds):
+    """Return the rows of many hops at ``thresholds``, at distances that no build goes down to."""
+    return long_run_rows(thresholds, {one["name"]: cluster_counts(one) for one in thresholds})
+
+
+def long_run_rows(thresholds, counts):
+    """Return the rows of passages.csv on ``thresholds`` from {name: its ``cluster_counts``}."""
+    found = [row for one in thresholds for row in cluster_rows(one, counts[one["name"]])]
+    return [*found, *scaling_fits(found)]
