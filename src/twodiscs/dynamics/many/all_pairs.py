@@ -39,8 +39,8 @@ LOOK_AGAIN = -1.0
 
 #: Classes of events, in the order of all counts. Both walls of an axis are in one class.
 CLASSES = ("vertical_hop", "horizontal_hop", "disc_collision", "right_wall", "top_wall")
-N = len(CLASSES)
-VERTICAL, HORIZONTAL, COLLISIONS, BESIDE, ABOVE = range(N)
+N_CLASSES = len(CLASSES)
+VERTICAL_HOPS, HORIZONTAL_HOPS, COLLISIONS, X_WALLS, Y_WALLS = range(N_CLASSES)
 
 #: The classes whose counts are those of an event, in the order of ``EVENTS``.
 EVENT_CLASSES = by_kind(
@@ -98,7 +98,7 @@ def new_lanes(states, remaining, law):
         states[:n], states[n : 2 * n], states[2 * n : 3 * n], states[3 * n : 4 * n],
         many_initial_states.spins_in(states, n, law.rough),
         np.zeros((n, lanes)), np.zeros((n, lanes)),
-        remaining, np.zeros(lanes), np.zeros(lanes), np.zeros(lanes), np.zeros((N, lanes)),
+        remaining, np.zeros(lanes), np.zeros(lanes), np.zeros(lanes), np.zeros((N_CLASSES, lanes)),
     )  # fmt: skip
 
 
@@ -400,9 +400,9 @@ def sweep(lanes, law, hops_x, kicks):
 @inlined
 def add_counts(count, sums, products):
     """Add the counts (n,) of a replica and their products, for e ≤ f."""
-    for e in range(N):
+    for e in range(N_CLASSES):
         sums[e] += count[e]
-        for f in range(e, N):
+        for f in range(e, N_CLASSES):
             products[e, f] += count[e] * count[f]
 
 
@@ -418,15 +418,15 @@ def count_events(states, seed, first, lanes, duration, law, hops_x, kicks):
     rows, replicas = states.shape
     now, remaining, busy = np.zeros((rows, lanes)), np.zeros(lanes), np.zeros(lanes, np.bool_)
     moving = new_lanes(now, remaining, law)
-    sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
-    count = np.zeros(N, np.int64)
+    sums, products = np.zeros(N_CLASSES, np.int64), np.zeros((N_CLASSES, N_CLASSES), np.int64)
+    count = np.zeros(N_CLASSES, np.int64)
     used, running = 0, 0
     while True:
         for l in range(lanes):
             if remaining[l] > 0.0:
                 continue
             if busy[l]:
-                for e in range(N):
+                for e in range(N_CLASSES):
                     count[e] = np.int64(moving.counts[e, l])
                     moving.counts[e, l] = 0.0
                 add_counts(count, sums, products)
@@ -467,7 +467,7 @@ def lane_kicks(first, stop, kicks):
 @optional(lambda counts, first, hops: None)
 def add_hops(counts, first, hops):
     """Add the hops in x in ``counts`` (n, lanes) to ``hops``, from the replica ``first`` on."""
-    hops[first : first + counts.shape[1]] += counts[HORIZONTAL]
+    hops[first : first + counts.shape[1]] += counts[HORIZONTAL_HOPS]
 
 
 @compiled
@@ -539,8 +539,8 @@ def record_intervals(states, seed, first, window, law, hops_x, bins, sums, going
         # The time of the last hop, negative before the first one, and the time since then.
         elapsed, last, age = np.zeros(lanes), np.full(lanes, -1.0), np.zeros(lanes)
         counts, busy = np.zeros((lanes, sums.shape[1]), np.int64), True
-        vertical = moving.counts[VERTICAL], moving.old_y, moving.y
-        horizontal = moving.counts[HORIZONTAL], moving.old_x, moving.x
+        vertical = moving.counts[VERTICAL_HOPS], moving.old_y, moving.y
+        horizontal = moving.counts[HORIZONTAL_HOPS], moving.old_x, moving.x
         hops, before, after = vertical if hops_x is None else horizontal
         while busy and going[0]:
             busy = False

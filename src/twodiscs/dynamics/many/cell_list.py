@@ -27,13 +27,13 @@ import numpy as np
 from twodiscs.dynamics.ensemble import kick_limit, open_kicks
 from twodiscs.dynamics.law import NEVER, VANISHING, contact_quotient, crosses, crossing_time
 from twodiscs.dynamics.many import all_pairs
-from twodiscs.dynamics.many.all_pairs import ABOVE, BESIDE, COLLISIONS, HORIZONTAL, VERTICAL, N
+from twodiscs.dynamics.many.all_pairs import COLLISIONS, HORIZONTAL_HOPS, N_CLASSES, VERTICAL_HOPS
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import cell_grid as grids
 from twodiscs.sampling.many.many_initial_states import spins_in
 
 #: The class of the entries of a log that a kick makes, one for each disc.
-KICKS = N
+KICKS = N_CLASSES
 
 
 class Motion(NamedTuple):
@@ -289,11 +289,10 @@ def count_hops(i, at, now, positions, velocities, times, kind, ring, log, hops):
 @inlined
 def put(i, x, y, now, motion, counts, ring, log, hops, hops_x):
     """Put disc ``i`` at (x, y), where it has come by now, and count its hops."""
-    times = motion.time
-    counts[VERTICAL] += count_hops(i, y, now, motion.y, motion.v, times, VERTICAL, None, log, hops)
-    counts[HORIZONTAL] += count_hops(
-        i, x, now, motion.x, motion.u, times, HORIZONTAL, ring, log, hops_x
-    )  # fmt: skip
+    times, kind = motion.time, VERTICAL_HOPS
+    counts[kind] += count_hops(i, y, now, motion.y, motion.v, times, kind, None, log, hops)
+    kind = HORIZONTAL_HOPS
+    counts[kind] += count_hops(i, x, now, motion.x, motion.u, times, kind, ring, log, hops_x)
     motion.x[i], motion.y[i], motion.time[i] = x, y, now
 
 
@@ -430,7 +429,9 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
                 put(i, x, y, now, motion, counts, law.ring, log, hops, hops_x)
                 s = all_pairs.only_lane(motion.s)
                 all_pairs.rub_walls(motion.u, motion.v, i, not upwards, upwards, s, law.rough)
-                kind, velocities = (ABOVE, motion.v) if upwards else (BESIDE, motion.u)
+                kind, velocities = (
+                    (all_pairs.Y_WALLS, motion.v) if upwards else (all_pairs.X_WALLS, motion.u)
+                )
                 velocities[i] = -velocities[i]
                 counts[kind] += 1
                 note_event(now, kind, i, i, motion, laps, law.ring, log)
@@ -480,8 +481,8 @@ def count_events(states, seed, first, duration, epoch, law, grid, hops, hops_x, 
     """
     discs = all_pairs.discs_in(states, law.rough)
     laps = np.zeros(discs)
-    motion, count = new_motion(discs, grid, law.rough), np.zeros(N, np.int64)
-    sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
+    motion, count = new_motion(discs, grid, law.rough), np.zeros(N_CLASSES, np.int64)
+    sums, products = np.zeros(N_CLASSES, np.int64), np.zeros((N_CLASSES, N_CLASSES), np.int64)
     lane = np.int64(0)  # for a literal 0 numba would compile ``follow_discs`` once more
     for replica in range(states.shape[1]):
         count[:] = 0
@@ -504,7 +505,7 @@ def advance_all(states, laps, time, epoch, law, grid, kicks, hops_x):
     """
     discs, replicas = laps.shape
     motion, rounds = new_motion(discs, grid, law.rough), np.zeros(discs)
-    counts, spins = np.zeros((N, 1), np.int64), spins_in(states, discs, law.rough)
+    counts, spins = np.zeros((N_CLASSES, 1), np.int64), spins_in(states, discs, law.rough)
     for replica in range(replicas):
         rounds[:], counts[:] = 0.0, 0
         start_from(states, replica, motion, grid, law)

@@ -7,7 +7,7 @@ import numpy as np
 
 from twodiscs.dynamics import ensemble
 from twodiscs.dynamics.many import all_pairs, cell_list
-from twodiscs.dynamics.many.all_pairs import CLASSES, EVENT_CLASSES, N, many_disc_law, new_kicks
+from twodiscs.dynamics.many.all_pairs import CLASSES, EVENT_CLASSES, many_disc_law, new_kicks
 from twodiscs.dynamics.many.many_rates import block_replicas, usual_epoch
 from twodiscs.model.events import HOPS
 from twodiscs.sampling.many.many_initial_states import block_states, large_grid, make_initial
@@ -28,10 +28,11 @@ def run_classes(scene, seed, first, stop, duration, *, replicas=None, lanes=None
     neither lanes nor shards. ``LARGE`` numbers of discs have the kernel ``cell_list``, which
     leaves out hops if ``hops`` is not True.
     """
-    replicas, lanes = replicas or block_replicas(scene), lanes or ensemble.LANES
+    n, replicas = len(CLASSES), replicas or block_replicas(scene)
+    lanes = lanes or ensemble.LANES
     hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
     law, grid, initial = many_disc_law(scene), large_grid(scene), make_initial(scene)
-    counts = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
+    counts = np.zeros(n, np.int64), np.zeros((n, n), np.int64)
     for block in range(first, stop):
         states = block_states(initial, replicas, seed, block)
         given = states, np.uint64(seed), block * replicas

@@ -6,7 +6,7 @@ from twodiscs.dynamics import ensemble
 from twodiscs.dynamics import rows as kinds
 from twodiscs.dynamics.law import crosses, crossing_time
 from twodiscs.dynamics.many import all_pairs, cell_list
-from twodiscs.dynamics.many.all_pairs import N, many_disc_law, new_kicks
+from twodiscs.dynamics.many.all_pairs import N_CLASSES, many_disc_law, new_kicks
 from twodiscs.dynamics.many.many_rates import expected_event_rate, expected_rates, usual_epoch
 from twodiscs.dynamics.rows import new_rows, put_event, start_row
 from twodiscs.model.events import HOPS
@@ -43,7 +43,7 @@ class Followed:
         self.epoch, self.laps = usual_epoch(scene), np.zeros(scene.discs)
         self.motion = cell_list.new_motion(scene.discs, self.grid, self.law.rough)
         self.log = cell_list.new_log(scene.discs, ENTRIES, 4 if self.law.rough is None else 5)
-        self.counts = np.zeros(N, np.int64)
+        self.counts = np.zeros(N_CLASSES, np.int64)
         self.hops = [True if hop in counted else None for hop in ("vertical_hop", "horizontal_hop")]
 
     def start(self, state, seed, replica=0):
@@ -227,14 +227,14 @@ def read_log(log, order, entry, at, since, rows):
         e = order[entry]
         time, event, i, j = log.times[e], log.classes[e], log.discs[e, 0], log.discs[e, 1]
         entry += 1
-        hop = (event == all_pairs.VERTICAL) | (event == all_pairs.HORIZONTAL)
+        hop = (event == all_pairs.VERTICAL_HOPS) | (event == all_pairs.HORIZONTAL_HOPS)
         if not hop:
             for part in range(at.shape[0]):
                 at[part, i], at[part, j] = log.states[e, 0, part], log.states[e, 1, part]
             since[i] = since[j] = time
         first, second = min(i, j) + 1, max(i, j) + 1
         if hop:
-            kind = kinds.VERTICAL_HOP if event == all_pairs.VERTICAL else kinds.HORIZONTAL_HOP
+            kind = kinds.VERTICAL_HOP if event == all_pairs.VERTICAL_HOPS else kinds.HORIZONTAL_HOP
         elif event == all_pairs.COLLISIONS:
             kind = kinds.COLLISION
         elif event == cell_list.KICKS:
@@ -242,7 +242,7 @@ def read_log(log, order, entry, at, since, rows):
                 continue
             kind, first, second = kinds.KICK, 0, 0
         else:
-            kind, second = kinds.WALL + 3 * (first - 1) + (0 if event == all_pairs.BESIDE else 1), 0
+            kind, second = kinds.WALL + 3 * (first - 1) + event - all_pairs.X_WALLS, 0
         put_event(rows, n, time, kind, first, second)
         for k in range(discs):
             lags[k] = time - since[k]
