@@ -27,7 +27,7 @@ import numpy as np
 
 from twodiscs.dynamics.ensemble import open_block_kicks
 from twodiscs.dynamics.many import many_paths
-from twodiscs.dynamics.many.all_pairs import HORIZONTAL, new_kicks
+from twodiscs.dynamics.many.all_pairs import HORIZONTAL_HOPS, new_kicks
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.many import many_initial_states
 from twodiscs.theory import channel
@@ -222,7 +222,7 @@ def logged(scene, step, number, replicas, seed, friction=None):
         places, times, pairs = [states[:n, replica]], [], []
         for _ in range(number):
             for log, order in path.go_on(step):
-                hops = order[log.classes[order] == HORIZONTAL]
+                hops = order[log.classes[order] == HORIZONTAL_HOPS]
                 times.append(log.times[hops])
                 pairs.append(log.discs[hops].min(axis=1) * n + log.discs[hops].max(axis=1))
             places.append(path.motion.x + scene.width * path.laps)
