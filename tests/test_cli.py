@@ -12,8 +12,10 @@ import json
 import math
 import os
 import re
+import signal
 import subprocess
 import sys
+from contextlib import suppress
 from io import TextIOWrapper
 from multiprocessing import get_context
 from pathlib import Path
@@ -196,8 +198,9 @@ def test_a_new_configuration_is_one_and_is_not_written_over(tmp_path, monkeypatc
     assert not command(monkeypatch, cli, "new", "my.yaml")
     said = "my.yaml is written. To build it: twodiscs run my.yaml\n"
     assert capsys.readouterr().out == said
-    (scene,) = load(read("my.yaml")).scenes
-    assert scene.name == "mine"
+    configuration = load(read("my.yaml"))
+    (scene,) = configuration.scenes
+    assert (scene.name, configuration.results) == ("mine", "results-my")
     # The configuration may contain the lines in its comments.
     text = Path("my.yaml").read_text()
     for line in re.findall(r"# (\w+: .*)", text):
@@ -211,6 +214,8 @@ def test_a_new_configuration_is_one_and_is_not_written_over(tmp_path, monkeypatc
     assert command(monkeypatch, cli, "new", "my.yaml") == 2
     assert capsys.readouterr().err == "error: my.yaml exists already and is not overwritten\n"
     assert Path("my.yaml").read_text() == text
+    assert not command(monkeypatch, cli, "new", "b c.yaml")
+    assert load(read("b c.yaml")).results == "results-b-c"
 
 
 @pytest.mark.parametrize(
@@ -283,8 +288,9 @@ def test_targets_may_stand_behind_options(monkeypatch, capsys):
     monkeypatch.setattr(build, "build", lambda path, **words: given.append((path, words)))
     words = "run", "my.yaml", "volume", "-n", "pressure", "--cores", "2"
     assert not command(monkeypatch, cli, *words)
-    options = {"targets": ["volume", "pressure"], "cores": 2, "dry_run": True, "unlock": False}
-    assert given == [("my.yaml", options)]
+    options = {"targets": ["volume", "pressure"], "cores": 2}
+    flags = {"dry_run": True, "unlock": False, "force": False}
+    assert given == [("my.yaml", options | flags)]
 
 
 def dag(*targets, made=()):
@@ -346,17 +352,58 @@ def test_a_run_with_failed_jobs_ends_with_their_reasons(log, lines, tmp_path, mo
         assert build.failure(one, 1, tmp_path).splitlines() == [full, *reasons, again]
 
 
-@pytest.mark.parametrize(
-    ("end", "status", "said"),
-    [(KeyboardInterrupt, 130, "Stopped; the same"), (SystemExit(3), 3, "")],
-)
-def test_a_run_has_the_status_of_its_end(end, status, said, tmp_path, monkeypatch, capsys):
+def _interrupted():
+    """As Snakemake does: it ends its jobs after Ctrl-C, then itself."""
+    with suppress(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGINT)
+    sys.exit(1)
+
+
+@pytest.fixture
+def run(tmp_path, monkeypatch):
+    """A function that runs scene a in an empty folder, with another ``main`` of Snakemake."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("snakemake.cli.main", Mock(side_effect=end))
     monkeypatch.setattr("snakemake.workflow.workflow", None, raising=False)
     Path("a.yaml").write_text("scenes: [{name: a, box: {width: 1, height: 1}}]\n")
-    assert command(monkeypatch, cli, "run", "a.yaml") == status
+
+    def run(main, *words):
+        monkeypatch.setattr("snakemake.cli.main", Mock(side_effect=main))
+        return command(monkeypatch, cli, "run", "a.yaml", *words)
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("end", "status", "said"),
+    [(_interrupted, 130, "Stopped; the same"), (SystemExit(3), 3, "")],
+)
+def test_a_run_has_the_status_of_its_end(end, status, said, run, capsys):
+    assert run(end) == status
     assert capsys.readouterr().err.startswith(said)
+
+
+def test_a_run_keeps_the_build_of_other_scenes(run, capsys):
+    Path("results").mkdir()
+    kept, end = Path("results/configuration.json"), SystemExit(3)  # which is after the check
+    for text, status in (('{"scenes": [{"name": "b"}]}', 2), ('{"scenes": [{"name": "a"}]}', 3)):
+        kept.write_text(text)
+        assert run(end) == status
+    assert "not 'results', which has the scenes b; with --force" in capsys.readouterr().err
+    kept.write_text('{"scenes": [{"name": "b"}]}')
+    for option in ("--force", "--dry-run", "--unlock"):
+        assert run(end, option) == 3
+    for text in ("[]", "{", '{"scenes": [1]}'):
+        kept.write_text(text)
+        assert run(end) == 3
+
+
+@pytest.mark.parametrize("closed", ["", "results"])
+def test_a_run_says_which_folder_cannot_be_written_to(closed, run, tmp_path, monkeypatch, capsys):
+    (tmp_path / closed).mkdir(exist_ok=True)
+    monkeypatch.setattr(os, "access", lambda path, mode: Path(path) != tmp_path / closed)
+    assert run(SystemExit(3)) == 2
+    said = f"error: {tmp_path / closed} must be a folder that can be written to\n"
+    assert capsys.readouterr().err == said
 
 
 def test_a_dry_run_names_the_first_file_that_was_edited():

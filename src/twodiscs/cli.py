@@ -265,6 +265,7 @@ def _parser():
     add("-n", "--dry-run", action="store_true", help=text)
     text = "run nothing, but remove the lock that a killed run left in this folder"
     add("--unlock", action="store_true", help=text)
+    add("--force", action="store_true", help="replace the build of other scenes in its folder")
     new = command("new", _new, "write a commented configuration")
     new.add("configuration", help="a new file")
     return parser
@@ -282,7 +283,7 @@ def _targets(**_):
 
 
 def _run(options):
-    given = _arguments(options, ("targets", "cores", "dry_run", "unlock"))
+    given = _arguments(options, ("targets", "cores", "dry_run", "unlock", "force"))
     return _build().build(options.configuration, **given)
 
 

@@ -85,15 +85,17 @@ def test_boxes_are_described_with_their_effects_and_events():
         },
         {"name": "micro", "box": "3.25e-06 × 1.25e-05", "effects": {"mass_ratio": 0.5}},
     ]  # fmt: skip
+    scenes = [scene | {"width": 2.0, "height": 1.0} for scene in scenes]
     files = [f"{scene['name']}/mean_times.csv" for scene in scenes]
     template = (REPOSITORY / "workflow/report/front.html").read_text(encoding="utf-8")
-    text = report.page(template, report.contents(REPOSITORY, files, scenes))
+    page = report.contents(REPOSITORY, files, scenes, "twodiscs run my.yaml")
+    text = report.page(template, page)
     for said in ("1.2 × 0.8", "2 × 1, with 3 discs, periodic x", "with mass ratio 0.5"):
         assert f"{said}.</p>" in text
-    plain, three, unequal = text.split("Effects compiled: ")[1:]
-    assert plain.startswith("none. Events detected:\nnone.")
-    assert three.startswith("periodic x. Events detected:\ndisc collision, top wall.")
-    assert unequal.startswith("mass ratio 0.5.")
+    plain, three, unequal = text.split("Physics: ")[1:]
+    assert plain.startswith("two discs, no further effects. Counted:\nnothing.")
+    assert three.startswith("3 discs, periodic x. Counted:\ndisc collision, top wall.")
+    assert unequal.startswith("two discs, mass ratio 0.5.")
 
 
 def test_the_section_on_accuracy_has_the_worst_error_and_the_time_of_others(tmp_path):

@@ -82,6 +82,7 @@ rule report:
     localrule: True
     params:
         scenes=CONFIGURATION.described(),
+        run=RUN,
     script:
         "../scripts/report.py"
 

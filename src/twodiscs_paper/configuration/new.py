@@ -1,16 +1,18 @@
 """``twodiscs new``: a commented configuration. It needs the standard library only."""
 
 import os
+import re
 import shlex
 from pathlib import Path
 
 from twodiscs.model.checks import InputError, writing_to
 
-#: The file that ``twodiscs new`` writes: keys with a default are comments, RUN is the command.
+#: The file that ``twodiscs new`` writes: keys with a default are comments, RUN is the command and
+#: FOLDER the folder of the results.
 NEW = """\
 # RUN
 # builds mean times at each radius, their figures, a check against the exact theory, and the report
-# results/report.html. For more of a box, such as its volume, name it in `watch`. By name you get:
+# FOLDER/report.html. For more of a box, such as its volume, name it in `watch`. By name you get:
 # RUN explorer    a page in which the discs move and their events are counted
 # RUN tails       a study; twodiscs run --help lists all targets
 # RUN all         the report, with the origin of every file
@@ -18,14 +20,14 @@ NEW = """\
 # Lengths are in any one unit. Disc 1 has mass 1 and the total energy is 1/2, so times are lengths
 # over a speed of one.
 
-results: results # the folder of everything that is built
+results: FOLDER # the folder of everything that is built
 # Another seed repeats every simulation independently.
 # seed: 1908
 # Documents and studies beside the scenes; [paper, report] for the manuscript and all studies.
 # shared: [report]
 
 scenes:
-  - name: mine # also the name of its folder in results
+  - name: mine # also the name of its folder in FOLDER
     box: {width: 1.5, height: 1.0}
     radii: [0.1, 0.2, 0.3] # without radii there is a grid up to the largest radius that fits
     # The relative error of mean times: draft is 1e-2, paper 3e-4, reference 1e-4; or a number.
@@ -41,10 +43,16 @@ scenes:
 
 
 def new(path):
-    """Write a commented configuration to ``path``; raise ``InputError`` if there is a file."""
+    """Write a commented configuration to ``path``; raise ``InputError`` if there is a file.
+
+    The name of its folder of results has the name of the file, so that it is not the folder of
+    another configuration.
+    """
     run = f"twodiscs run {shlex.quote(str(path))}"
+    folder = "results-" + re.sub("[^A-Za-z0-9_.-]", "-", Path(path).stem)[:100]
     if os.path.lexists(path):
         raise InputError(f"{path} exists already and is not overwritten")
     with writing_to(path) as new_path:
-        Path(new_path).write_text(NEW.replace("RUN", run), encoding="utf-8", newline="\n")
+        text = NEW.replace("RUN", run).replace("FOLDER", folder)
+        Path(new_path).write_text(text, encoding="utf-8", newline="\n")
     print(f"{path} is written. To build it: {run}")

@@ -129,8 +129,38 @@ def check_targets(path, targets, configuration):
             )
 
 
-def build(path, targets, cores=None, dry_run=False, unlock=False):
-    """Run ``command`` with these arguments in Snakemake; return its exit status."""
+def check_writable(results):
+    """Raise ``InputError`` unless the folder of the run and that of ``results`` are writable."""
+    for folder in (Path.cwd(), Path(results).resolve()):
+        while not folder.exists():
+            folder = folder.parent
+        if not os.access(folder, os.W_OK):
+            raise InputError(f"{folder} must be a folder that can be written to")
+
+
+def check_owner(results, scenes):
+    """Raise ``InputError`` if the folder ``results`` holds a build of none of these ``scenes``.
+
+    That build would lose its report, its check and its configuration, but keep its tables and its
+    manifest.
+    """
+    try:
+        text = Path(results, "configuration.json").read_text(encoding="utf-8")
+        built = [scene["name"] for scene in json.loads(text)["scenes"]]
+    except (OSError, ValueError, LookupError, TypeError):  # no build, or one that is damaged
+        return
+    if not {*built} & {scene.name for scene in scenes}:
+        raise InputError(
+            f"results must be the folder of no other build, not {results!r}, which has the scenes "
+            f"{', '.join(built)}; with --force this build replaces their report and their check"
+        )
+
+
+def build(path, targets, cores=None, dry_run=False, unlock=False, force=False):
+    """Run ``command`` with these arguments in Snakemake; return its exit status.
+
+    With ``force`` it may replace the build of other scenes.
+    """
     check_code(".")
     from snakemake import cli, workflow
 
@@ -142,17 +172,27 @@ def build(path, targets, cores=None, dry_run=False, unlock=False):
         raise InputError(*(s if str(path) in s else f"{path}: {s}" for s in sentences)) from None
     check_results(configuration.results, ".")
     check_targets(path, targets, configuration)
+    check_writable(configuration.results)
+    if not (dry_run or unlock or force):
+        check_owner(configuration.results, configuration.scenes)
     # With --quiet the Snakefile prints no last lines; they are printed below in every case.
     words = command(path, targets, snakefile(), cores, dry_run, unlock)
     print(*places(path, configuration.results), shlex.join(words), sep="\n", flush=True)
     # Snakemake runs in this process. Its profile reads sys.argv, and it cleans up after Ctrl-C.
     sys.argv = words
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+    interrupts = []
+
+    def interrupt(number, frame):
+        interrupts.append(INTERRUPTED)
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, interrupt)
     _find_a_cache()
     try:
         cli.main()
     except SystemExit as end:
-        status = end.code
+        # Snakemake ends a stopped run as a failed one.
+        status = max([end.code or 0, *interrupts])
     except KeyboardInterrupt:
         status = INTERRUPTED
     # Snakemake keeps the last workflow of a process among the names of a Snakefile.

@@ -204,6 +204,7 @@ def section(folder, paths, scenes, scene=None):
         "animation": movie(folder, movies[0], scenes) if movies else None,
         "box": scene and scene["box"],
         "compiled": [text for text in effects if not text.endswith(" discs")],
+        "discs": scene and _discs(described_box(scene)),
         "detected": [event.replace("_", " ") for event in (scene or {}).get("detected", ())],
         "effects": effects,
         "figures": [figure(folder, path, scenes) for path in key],
@@ -213,10 +214,16 @@ def section(folder, paths, scenes, scene=None):
     }
 
 
-def contents(folder, files, scenes):
+def _discs(box):
+    return f"{'two' if box.discs == 2 else box.discs} {box.noun}"
+
+
+def contents(folder, files, scenes, run):
     """Return the values of the template for the ``files`` in ``folder``, relative to ``folder``.
 
-    ``scenes`` are [{"name": …, "box": "1.5 × 1.0", "effects": {…}, "detected": [event, …]}].
+    ``scenes`` are [{"name": …, "box": "1.5 × 1.0", "effects": {…}, "detected": [event, …]}], and
+    ``run`` is the command that builds targets of this configuration: "snakemake" if it is that of
+    the folder of the run.
     """
     by_name = {scene["name"]: scene for scene in scenes}
     paths = [path for path in map(PurePosixPath, files) if path.suffix in (".csv", ".png")]
@@ -239,6 +246,7 @@ def contents(folder, files, scenes):
         "commit": commit(Path(__file__).parent),
         "date": date.today(),
         "paper": "paper.pdf" in files,
+        "run": run,
         "sections": sections,
         "versions": versions(),
     }
