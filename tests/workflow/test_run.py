@@ -34,8 +34,8 @@ def test_files_of_another_project_a_read_only_home_a_notebook_and_a_profile_are_
         "config/config.yaml": "{seed: 42, results: theirs, samples: samples.tsv}\n",
         "profiles/default/config.yaml": "no-such-option: true\n",
         "profile/config.yaml": "cores: 1\n",
-        "results/check.passed": "old: 3 comparisons passed\n",
-        "results/report.html": "",
+        "results-my/check.passed": "old: 3 comparisons passed\n",
+        "results-my/report.html": "",
         "file": "",
         **{f"{name}.py": "raise SystemExit('mistaken')\n" for name in ("random", "json", "numpy")},
     }.items():
@@ -46,17 +46,17 @@ def test_files_of_another_project_a_read_only_home_a_notebook_and_a_profile_are_
         "PYTHONPATH": first(str(place.home.path / "src")),
         "SNAKEMAKE_PROFILE": str(place.path / "profile"),
     }
-    targets = "results/configuration.json", "results/mine/grid.csv", "model"
+    targets = "results-my/configuration.json", "results-my/mine/grid.csv", "model"
     done = python("-P", "-m", "twodiscs", "run", "my.yaml", *targets, env=environment)
     assert done.returncode == 0, done.stderr
-    written = json.loads((place.path / "results/configuration.json").read_text())
+    written = json.loads((place.path / "results-my/configuration.json").read_text())
     assert written == read(place.path / "my.yaml")
     assert "Provided cores: 1 " in done.stderr
     assert "7 of 7 steps (100%) done" in done.stderr
     assert "rule exact:" not in done.stderr
     assert "old" not in done.stdout
     assert "report" not in done.stdout
-    assert (place.path / "results/mine/figures/model.pdf").exists()
+    assert (place.path / "results-my/mine/figures/model.pdf").exists()
     assert (place.path / ".snakemake/cache").exists()
 
 
@@ -98,12 +98,12 @@ def test_a_run_that_fails_ends_with_the_reason_its_log_and_what_to_do(built):
 
 def test_results_are_where_the_run_is_and_a_build_beside_the_file_is_named(place):
     """A new configuration is the report on mean times at three radii, with key figures."""
-    for name in ("elsewhere", "results"):
+    for name in ("elsewhere", "results-my"):
         (place.path / name).mkdir()
-    (place.path / "results/configuration.json").write_text(json.dumps(read("my.yaml")))
+    (place.path / "results-my/configuration.json").write_text(json.dumps(read("my.yaml")))
     done = Checkout(place.path / "elsewhere", place.home).twodiscs_run("../my.yaml", "--dry-run")
     lines = done.stdout.splitlines()
-    assert lines[0] == f"Results: {place.path}/elsewhere/results"
-    assert lines[1].startswith("../results has a build of this configuration")
+    assert lines[0] == f"Results: {place.path}/elsewhere/results-my"
+    assert lines[1].startswith("../results-my has a build of this configuration")
     jobs = dict(re.findall(r"^mine +(\w+) +(\d+) +output files have", done.stdout, re.MULTILINE))
     assert jobs == {"exact": "2", "dynamics": "3", "table": "3", "figure": "4"}
