@@ -40,6 +40,7 @@ NAN, INF = math.nan, math.inf
 #: Disc 2 is where the next image of disc 1 is.
 ROUND_THE_RING = [-0.5, 0.0, 1.0, 0.1, 1.0, 0.0, 0.0, 0.0]
 START = dict(zip(components(PAPER), (-0.5, 0.0, 0.5, 0.0, 1.0, 0.0, 0.0, 0.0), strict=True))
+LYING = {"x1": -0.4, "y1": -0.3, "u1": 0.0, "x2": 0.4, "y2": 0.1, "u2": 0.68**0.5}
 
 
 def x1(start, now):
@@ -49,6 +50,11 @@ def x1(start, now):
 def start(**changes):
     """Return the trajectory from a state that is right except for the ``changes``."""
     return td.trajectory(PAPER, start=[*(START | changes).values()])
+
+
+def fall(**changes):
+    """Return the trajectory from a state in a field, in which disc 1 lies on the floor."""
+    return td.trajectory(FIELD, start=START | LYING | changes)
 
 
 def observe(function=x1, times=(1,)):
@@ -165,6 +171,12 @@ start(x1=-0.6) → disc 1 inside the box, with x1 between -0.55 and 0.55, not -0
 td.trajectory(RING, start=[-0.8, 0, 0, 0.31, 1, 0, 0, 0]) → disc 2 inside the box, with y2
 start(y2=0.31) → disc 2 inside the box, with y2 between -0.3 and 0.3, not 0.31
 start(u1=2.0) → start must have a total energy of 0.5, not 2.0
+fall() → not bring disc 1 to rest on the floor, as it does at the time 0.0: in a field a disc
+fall(v1=-1e-17) → not bring disc 1 to rest on the floor, as it does at the time 0.0
+fall(v1=1e-20) → start must not bring disc 1 to rest on the floor
+fall(x1=0.4, v1=0.68**0.5, u2=0) → not bring disc 1 to rest on the floor, as it does at the
+fall(y1=0.1, y2=-0.3) → not bring disc 2 to rest on the floor, as it does at the
+fall(v1=1) → energy of 0.5, not 1.0; in a field the potential energy of a disc on the floor is 0
 start(v2=np.ma.masked) → start must be the numbers x1, y1, x2, y2, u1, v1, u2, v2, not
 td.trajectory(PAPER, start={**START, 'v3': 0.0}) → start must be the numbers x1, y1, x2, y2, u1, v1
 start(v2=NAN) → start must be the numbers x1, y1, x2, y2, u1, v1, u2, v2, not

@@ -1,10 +1,12 @@
 """One trajectory, event by event, of two discs or more."""
 
+import math
 from itertools import repeat
 
 import numpy as np
 
 from twodiscs.dynamics.engine import find_engine
+from twodiscs.dynamics.law import RESTING_SPEED
 from twodiscs.dynamics.rows import Rows
 from twodiscs.model.checks import InputError, check_length
 from twodiscs.model.formats import format_number
@@ -68,8 +70,30 @@ def check_start(scene, start):
     if scene.field:
         energy += scene.field * (masses @ (values("y") + scene.height / 2 - radii))
     if abs(energy - ENERGY) > ROUNDING:
-        raise InputError(f"start must have a total energy of {ENERGY}, not {float(energy)!r}")
+        zero = "; in a field the potential energy of a disc on the floor is 0"
+        raise InputError(
+            f"start must have a total energy of {ENERGY}, not {float(energy)!r}"
+            f"{zero if scene.field else ''}"
+        )
     return tuple(state.values())
+
+
+def require_bounces(scene, rows):
+    """Raise ``InputError`` if a disc in a field lies on the floor in one of the ``Rows``.
+
+    Its next bounce would come after 0/0. Only a start that is given can lead to this, at the start
+    or at a collision. Smaller speeds at the floor than ``RESTING_SPEED`` are rest.
+    """
+    state = dict(zip(components(scene), rows.states, strict=True))
+    for disc, radius in enumerate(scene.radii if scene.field else (), 1):
+        height = np.abs(state[f"y{disc}"] + (scene.height / 2 - radius))
+        lies = state[f"v{disc}"] ** 2 + 2 * scene.field * height < RESTING_SPEED**2
+        if lies.any():
+            raise InputError(
+                f"start must not bring disc {disc} to rest on the floor, as it does at the time "
+                f"{float(rows.times[lies.argmax()])!r}: in a field a disc needs a height or a "
+                "vertical velocity there, or it has no next bounce"
+            )
 
 
 def follow_trajectory(scene, seed, start=None, duration=None, progress=None):
@@ -78,29 +102,40 @@ def follow_trajectory(scene, seed, start=None, duration=None, progress=None):
     It starts from the invariant measure, with the random stream of ``seed``, unless a ``start`` is
     given (see ``check_start``). Without a ``duration`` it has the ``usual_duration``. Raises
     ``InputError`` for anything that is not a ``Scene``, for a seed that is not an integer ≥ 0, and
-    for a start that is no state. The same holds for a duration that is no length or takes
-    ``MOST_EVENTS``. ``progress``, if given, is called now and then with the time that it has
-    reached, and the ``duration``.
+    for a start that is no state or leads to rest (see ``require_bounces``). The same holds for a
+    duration that is no length or has more than ``most_rows``: a mean number for a start that is
+    drawn, a count for one that is given. ``progress``, if given, is called now and then with the
+    time that it has reached, and the ``duration``.
     """
     engine, most = find_engine(scene), most_rows(scene)
     rate = engine.trajectory_rate(scene)
-    if duration is None:
-        duration = engine.usual_duration(scene)
-    elif check_length("duration", duration) * rate > most:
-        raise InputError(
-            f"duration must be below {format_number(most / rate, '.3g')}, where "
-            f"{format_number(most, '.3g')} events are due and fill "
+
+    def too_long(time, due):
+        return InputError(
+            f"duration must be below {format_number(time, '.3g')}, where "
+            f"{format_number(most, '.3g')} events {due} and fill "
             f"{format_number(most * row_bytes(scene) / 1e9, '.2g')} GB, not {duration!r}"
         )
+
+    if duration is None:
+        duration = engine.usual_duration(scene)
+    elif check_length("duration", duration) * rate > most and start is None:
+        raise too_long(most / rate, "are due")
     if start is None:
-        start = tuple(map(float, states(scene, 1, seed)[: len(components(scene)), 0]))
+        drawn, left = states(scene, 1, seed)[: len(components(scene)), 0], math.inf
+        start = tuple(map(float, drawn))
     else:
-        start = check_start(scene, start)
+        start, left = check_start(scene, start), int(most)
     found, rows = [], engine.path_rows(scene, start, float(duration), seed)
     for some in map_in_threads(lambda: next(rows, None), repeat(())):
         if some is None:
             return Rows.joined(found)
+        require_bounces(scene, some)
         found.append(some)
+        left -= some.times.size
+        if left < 0:
+            # Rounded down: a user who types the number has fewer rows.
+            raise too_long(0.995 * some.times[left], "have happened")
         if progress is not None:
             progress(float(some.times[-1]), float(duration))
 

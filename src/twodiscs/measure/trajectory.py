@@ -318,7 +318,9 @@ def trajectory(
     Raises
     ------
     InputError
-        For a start that is no state, and for a duration of more events.
+        For a start that is no state, and for a duration of more events: they are counted if a start
+        is given. In a field also for a start that brings a disc to rest on the floor, from where it
+        has no next bounce.
 
     Examples
     --------
