@@ -46,17 +46,25 @@ archive: all
 
 # The exact packages of requirements.lock, then this one; again whenever either list changes. uv puts them
 # there: the one that is installed, or that of the lock, which pip brings. Where uv cannot, pip does it all.
-# A copy of another folder has the environment of that one, which runs the code there.
+# A copy of another folder has the environment of that one, which runs the code there. An environment without
+# the file "ready" is the reader's own.
 ifneq ($(shell cat .venv/ready 2> /dev/null),$(CURDIR))
 .PHONY: .venv/ready
 endif
+# An interrupted set-up keeps the file, so that the next one may replace the environment.
+.PRECIOUS: .venv/ready
 .venv/ready: requirements.lock pyproject.toml
+	@if [ -e .venv ] && [ ! -e .venv/ready ]; then \
+	  echo "make did not make this .venv, and keeps it: give it another name, such as .venv.old, and run make again." >&2; \
+	  echo "make PYTHON=<path> chooses a Python, that of .venv.old/bin/python for instance." >&2; exit 1; \
+	fi
 	@echo "Setting up .venv"
 	@if [ -n "$(PYTHON)" ] && ! "$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2> /dev/null; then \
 	  echo "PYTHON must be a Python of 3.11 or newer, not $(PYTHON)" >&2; exit 1; \
 	fi
 	@if command -v uv > /dev/null; then \
-	  rm -rf .venv && uv venv --quiet --seed --python "$(or $(PYTHON),>=3.11)" .venv; \
+	  rm -rf .venv && uv venv --quiet --seed --python "$(or $(PYTHON),>=3.11)" .venv && \
+	  echo unfinished > $@; \
 	else \
 	  for python in $(CANDIDATES) none; do \
 	    if $$python -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2> /dev/null; then break; fi; \
@@ -64,7 +72,7 @@ endif
 	  if [ $$python = none ]; then \
 	    echo "This needs Python 3.11 or newer; make PYTHON=<path> says where it is." >&2; exit 1; \
 	  fi; \
-	  rm -rf .venv && $$python -m venv .venv && \
+	  rm -rf .venv && $$python -m venv .venv && echo unfinished > $@ && \
 	  awk '/^[^ ]/ { uv = /^uv==/ } uv' requirements.lock > .venv/uv.lock && \
 	  { $(PIP) --require-hashes --requirement .venv/uv.lock || true; }; \
 	fi

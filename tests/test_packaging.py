@@ -179,6 +179,17 @@ def test_the_lock_has_everything():
     assert "://" not in lock
 
 
+def test_make_keeps_an_environment_that_it_did_not_make(tmp_path):
+    for name in ("Makefile", "requirements.lock", "pyproject.toml"):
+        shutil.copy(REPOSITORY / name, tmp_path)
+    (tmp_path / ".venv").mkdir()
+    (tmp_path / ".venv/mine").touch()
+    done = subprocess.run(["make", "test"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert done.stderr.startswith("make did not make this .venv, and keeps it: give it another name")
+    assert (tmp_path / ".venv/mine").exists()
+
+
 def test_an_archive_holds_what_git_tracks_and_the_results(tmp_path):
     """``make archive``, with other results than those of a build, which it would wait for."""
     checkout, results = tmp_path / "checkout", tmp_path / "checkout/results"
