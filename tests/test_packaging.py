@@ -186,7 +186,9 @@ def test_make_keeps_an_environment_that_it_did_not_make(tmp_path):
     (tmp_path / ".venv/mine").touch()
     done = subprocess.run(["make", "test"], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 2
-    assert done.stderr.startswith("make did not make this .venv, and keeps it: give it another name")
+    assert done.stderr.startswith(
+        "make did not make this .venv, and keeps it: give it another name"
+    )
     assert (tmp_path / ".venv/mine").exists()
 
 

@@ -6,10 +6,12 @@ Without these tests ``twodiscs run`` could read files of others, or print anothe
 import json
 import os
 import re
+import shlex
 import shutil
 
 import pytest
-from checkout import Checkout, first
+import yaml
+from checkout import Checkout, first, one_scene
 from commands import python
 
 import twodiscs as td
@@ -107,3 +109,17 @@ def test_results_are_where_the_run_is_and_a_build_beside_the_file_is_named(place
     assert lines[1].startswith("../results-my has a build of this configuration")
     jobs = dict(re.findall(r"^mine +(\w+) +(\d+) +output files have", done.stdout, re.MULTILINE))
     assert jobs == {"exact": "2", "dynamics": "3", "table": "3", "figure": "4"}
+
+
+@pytest.mark.slow
+def test_every_command_of_a_report_runs_where_the_report_was_made(built):
+    """That of the folder's configuration, and that of the reader's own in the same folder."""
+    scene = one_scene("own", radii=[0.3], accuracy=1e-2, watch={"mean_times": ["right_wall"]})
+    built.edit("my.yaml", yaml.safe_dump(scene | {"results": "results-my"}))
+    built.twodiscs_run("my.yaml")
+    for folder, number in (("results", 3), ("results-my", 1)):
+        page = (built.path / folder / "report.html").read_text(encoding="utf-8")
+        commands = re.findall(r"<code>((?:snakemake|twodiscs) .*?)</code>", page)
+        assert len(commands) == number
+        for line in commands:
+            built.completed(True, *shlex.split(line))

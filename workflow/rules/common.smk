@@ -47,7 +47,7 @@ CONFIGURED = [scene.name for scene in CONFIGURATION.scenes]
 # What a page calls: this configuration if it is complete, or that of this folder.
 RUN = f"twodiscs run {shlex.quote(str(workflow.configfiles[-1]))}" if workflow.configfiles else ""
 if not RUN or RUN.endswith(" config/config.yaml"):
-    RUN = "snakemake"
+    RUN = "snakemake --cores 1"
 
 # The studies that the scenes allow, and their parts.
 ALLOWED = {name: study for name, study in STUDIES.items() if MAIN or not study.about_plain}

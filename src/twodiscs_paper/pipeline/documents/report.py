@@ -222,7 +222,7 @@ def contents(folder, files, scenes, run):
     """Return the values of the template for the ``files`` in ``folder``, relative to ``folder``.
 
     ``scenes`` are [{"name": …, "box": "1.5 × 1.0", "effects": {…}, "detected": [event, …]}], and
-    ``run`` is the command that builds targets of this configuration: "snakemake" if it is that of
+    ``run`` is the command that builds targets of this configuration, of Snakemake if it is that of
     the folder of the run.
     """
     by_name = {scene["name"]: scene for scene in scenes}
