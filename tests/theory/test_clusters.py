@@ -8,6 +8,7 @@ import math
 from dataclasses import replace
 from itertools import pairwise
 
+import mpmath as mp
 import numpy as np
 import pytest
 from scipy.integrate import dblquad, quad
@@ -148,12 +149,39 @@ def test_bursts_in_corners_are_those_of_disc_1_with_disc_2_where_it_has_room(sid
     # Disc 2 has the mean speed 8/(15 π) · 2/√m₂ towards a surface, from each side half of it.
     rate = flux_constant(6) / 2 / 2 * np.mean(within[0] & within[1]) * math.pi / 2 * sigma / free
     # Corners at the bottom and at the top, ⟨v²⟩ = 3/6, and a quarter for one wall.
-    each = clusters.UNSEEN * clusters.HITS * 0.5 / 2 * (1 - math.sqrt(0.75))
+    each = clusters.UNSEEN * clusters.corner_hits(0.5)
     each *= 2 * free / exact.volume(scene) * 3 / 6 * 2 / 4
     for time, square in ((1e-3, 1e-6), (1e6, 2e6 / rate)):
         found = clusters.corner_variance(scene, "right_wall", time)
         # The ends of the arc lie between two of its points.
         assert found == pytest.approx(each * square, rel=0.01 + 1 / clusters.POINTS)
+
+
+@pytest.mark.parametrize(("inertia", "more"), [(0.1, 1), (0.5, 1), (1.0, 1.1)])
+def test_hits_in_corners_have_a_closed_form_and_are_counted(inertia, more):
+    """Times to the 200th hit, ∝ the distance; at I = 1 more directions stay. Five errors.
+
+    A hit turns a velocity by half a turn about an axis, exactly.
+    """
+    hits, n, stream = 200, 50_000, np.random.default_rng(4)
+    i, k = mp.mpf(inertia), math.sqrt(inertia)
+    q, found = (1 + i) / i, clusters.corner_hits(inertia)
+    due = i / (1 + 2 * i) / 4 * (mp.mpf(1) / 3 - (1 - mp.sqrt(q) * mp.atan(1 / mp.sqrt(q))) / i)
+    assert found == pytest.approx(float(due), rel=1e-11)
+    v, angle, time = stream.normal(size=(3, n)), math.pi / 2 * stream.random(n), np.zeros(n)
+    v, place = v / np.linalg.norm(v, axis=0), np.array([np.cos(angle), np.sin(angle)])
+    axes = np.array([[0, 1, k], [1, 0, -k]]).T / math.sqrt(1 + inertia)
+    for _ in range(hits):
+        staying = (v[:2] < 0).any(axis=0)
+        v, place, time = v[:, staying], place[:, staying], time[staying]
+        flights = np.where(v[:2] < 0, place / np.abs(v[:2]), np.inf)
+        wall, flight = flights.argmin(axis=0), flights.min(axis=0)
+        time, place, axis = time + flight, place + v[:2] * flight, axes[:, wall]
+        place[wall, np.arange(time.size)] = 0.0
+        v = 2 * (v * axis).sum(axis=0) * axis - v
+    each = math.pi / 4 * ((hits - 0.5) / time) ** 2
+    error = math.sqrt((each**2).sum()) / n
+    assert abs(each.sum() / n - more * found) < 5 * error < 0.2 * found
 
 
 @pytest.mark.slow

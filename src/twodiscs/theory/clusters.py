@@ -19,11 +19,11 @@ A rough disc may also stay in a corner of two walls. It hits one wall and the ot
 every second hit its velocity and spin, scaled by the roots of mass and inertia, turn by 2θ about
 one axis, cos θ = −I/(1 + I). If the circle of its velocities leads from each wall to the other, it
 stays until another disc or a kick hits it. This is so for a fraction 1 − √((1 + I)/(1 + 2I)) of the
-directions. At a distance d it hits the walls at a rate Λ ~ v/d, so P(N > n) → A/n². The variance of
-N grows as the logarithm of the number of replicas, and the error from a sample lacks what is larger
-than its largest N. ``corner_variance`` is a multiple of A, which an error has to add. No run is
-rejected because its sample has a few large N: this would keep the runs without large N, whose
-errors are too small.
+directions. At a distance d it hits the walls at a rate Λ ~ v/d, so P(N > n) → A/n² (see
+``corner_hits``). The variance of N grows as the logarithm of the number of replicas, and the error
+from a sample lacks what is larger than its largest N. ``corner_variance`` is a multiple of A, which
+an error has to add. No run is rejected because its sample has a few large N: this would keep the
+runs without large N, whose errors are too small.
 """
 
 import math
@@ -34,6 +34,7 @@ import numpy as np
 
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS
 from twodiscs.theory import weighted
+from twodiscs.theory.quadrature import gauss_legendre
 
 #: The number of initial states in G that is enough for the error of its bursts.
 VISITS = 100
@@ -44,11 +45,8 @@ NEGLIGIBLE = 0.3
 #: The smallest d over the largest one: below, almost no events come from G.
 SMALLEST = 2.0**-20
 
-#: A in units of p ⟨v²⟩ ⟨t²⟩ I/(1 + 2I) times the fraction of directions, where p is the density of
-#: a disc in the corner and t the time that it stays. The number is ∫ dφ ⟨(Λ d/v)²⟩/2 over the
-#: positions at a distance d, for the directions that stay: 0.26 to 0.27 by 2·10⁴ initial states at
-#: I = 0.1, 0.3 and 0.5, and 0.31 at I = 1, where θ is a third of a turn.
-HITS = 0.3
+#: The rule for A, whose integrand is smooth: its error is below 1e-11 of A for all I up to 1.
+NODES = gauss_legendre(8)
 
 #: Points of the arc on which discs may touch a disc in a corner.
 POINTS = 64
@@ -113,6 +111,32 @@ def replicas_needed(scene, event, error):
     return most
 
 
+def corner_hits(inertia):
+    """Return A of P(N > n) → A/n², over p ⟨V²⟩ ⟨t²⟩, of rough discs with an ``inertia`` I.
+
+    N is the number of hits in a stay of the time t near one corner, p the density of the centre in
+    the corner, and V the velocity of two components and √I times the spin.
+
+    Hits on one wall or the other turn V by half a turn about the axes (1, 0, −√I) and (0, 1, √I).
+    Both are normal to e ∝ (√I, −√I, 1), so μ = |e·V|/|V| is kept. With e along V the speeds along
+    the walls are |v_x| = a + b cos φ and |v_y| = a + b cos(φ + θ), with a² = μ² I/(1 + 2I), b² =
+    (1 − μ²) μ₀², μ₀² = (1 + I)/(1 + 2I), in units of |V|. A disc stays if a > b, that is μ > μ₀.
+    A hit keeps J = |x v_y − y v_x|, and a flight from wall to wall takes J/|v_x v_y|. It fills a
+    triangle of the area J²/2|v_x v_y|. As φ comes to be distributed evenly, N → t/(J M) with
+
+        M = ⟨1/|v_x v_y|⟩ = 2a/√(a² − b²)/(2a² − b²/(1 + I)),  a² − b² = μ² − μ₀².
+
+    N > n for J < t/(n M), so A = p ⟨t²⟩ ⟨V²⟩/2 ∫ dμ/M from μ₀ to 1. With μ² = μ₀² + x² I/(1 + 2I)
+
+        A/(p ⟨V²⟩ ⟨t²⟩) = I²/(4 (1 + 2I)) ∫ x² (1 + x²)/(1 + I + I x²) dx,  0 < x < 1,
+
+    where no terms cancel. The integral is [1/3 − (1 − √q arctan(1/√q))/I]/I with q = (1 + I)/I. At
+    I = 1 the circle is three points: a quarter of the directions stay, and A is a tenth larger.
+    """
+    kept = sum(w * x**2 * (1 + x**2) / (1 + inertia * (1 + x**2)) for x, _, w in NODES)
+    return inertia**2 / (4 * (1 + 2 * inertia)) * kept
+
+
 def corner_variance(scene, event, duration):
     """Return the variance of a replica's count of an ``event`` to add for bursts in corners.
 
@@ -123,14 +147,13 @@ def corner_variance(scene, event, duration):
     declared, inertia = DECLARED[event], scene.moment_of_inertia
     if inertia is None or len(scene.walled) < 2 or declared.kind not in ("wall", "walls"):
         return 0.0
-    stay = 1 - math.sqrt((1 + inertia) / (1 + 2 * inertia))
     one = declared.kind == "wall" and not scene.identical
     corners = [_corners(scene, i, duration) for i in range(1 if one else scene.discs)]
     bottom, top = (math.fsum(part) for part in zip(*corners, strict=True))
     found = bottom + top
     if declared.kind == "wall":  # half of the hits, of a quarter of the variance
         found = (found if declared.axis == "x" or not scene.field else top) / 4
-    return UNSEEN * HITS * inertia / (1 + 2 * inertia) * stay * found
+    return UNSEEN * corner_hits(inertia) * found
 
 
 def _corners(scene, i, duration):
