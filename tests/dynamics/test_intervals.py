@@ -102,7 +102,7 @@ def test_intervals_of_many_are_those_of_trajectories(scene, event, monkeypatch):
         return open_block_kicks(kicks, seed)
 
     monkeypatch.setattr(ensemble, "open_block_kicks", same_kicks)
-    monkeypatch.setattr(many_paths, "ENTRIES", 50)
+    monkeypatch.setattr(many_paths, "LOG_ENTRIES", 50)
     replicas, window = 5, 16.0
     if scene.discs == 20:
         window *= many_intervals.mean_interval(scene, event)

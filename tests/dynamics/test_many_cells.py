@@ -125,7 +125,7 @@ def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
     # The rate that is guessed for short rings is far too high.
     short = scene in KICKED[1:]
     duration = many_rates.expected_duration(scene, (10 if short else 5) * scene.discs)
-    monkeypatch.setattr(many_paths, "ENTRIES", 50)
+    monkeypatch.setattr(many_paths, "LOG_ENTRIES", 50)
     found = [*paths.path_events(scene, state, duration)]
     monkeypatch.setattr(many_paths, "large_grid", lambda scene: None)
     monkeypatch.setattr(many_paths, "record_rows", many_paths.record_rows.py_func)

@@ -89,8 +89,14 @@ def test_the_sampled_rate_of_hops_is_the_exact_one(monkeypatch):
     many_hop_clusters.hop_rate.cache_clear()
     found = many_hop_clusters.hop_rate(scene, HOP)
     many_hop_clusters.hop_rate.cache_clear()
-    _, volume_error = many_hop_clusters.insertions.sample(scene, many_hop_clusters.SAMPLES, 0)
-    five(found / due, 1.0, math.hypot(1 / math.sqrt(many_hop_clusters.STATES), volume_error[0]))
+    _, volume_error = many_hop_clusters.insertions.sample(
+        scene, many_hop_clusters.VOLUME_SAMPLES, 0
+    )
+    five(
+        found / due,
+        1.0,
+        math.hypot(1 / math.sqrt(many_hop_clusters.SURFACE_STATES), volume_error[0]),
+    )
 
 
 @pytest.mark.parametrize(("discs", "blocks"), [(3, 256), slow(6, 4096)])
@@ -121,7 +127,7 @@ def test_the_coefficient_does_not_depend_on_the_gap(discs, blocks):
     ],
 )
 def test_what_cannot_be_followed_is_refused_in_a_sentence(scene, hop, said, monkeypatch):
-    monkeypatch.setattr(many_hop_clusters, "PROPOSALS", 2**16)
+    monkeypatch.setattr(many_hop_clusters, "MOST_SURFACE_PROPOSALS", 2**16)
     with pytest.raises(many_hop_clusters.InputError, match=said):
         many_hop_clusters.require_coefficient(scene, hop)
 

@@ -197,7 +197,7 @@ def test_a_pilot_has_at_least_its_fewest_blocks(fewest):
 def test_prices_of_insertions_are_those_of_samples(blocks):
     """The errors of 32 blocks of another seed are known within some per cent."""
     three = td.Scene(1.5, 1.0, 0.15, discs=3)
-    measured = td.sample(three, 32 * insertions.BLOCK)
+    measured = td.sample(three, 32 * insertions.INSERTIONS_PER_BLOCK)
     prices = [*cost._prices_of_samples(three, 0.02)]
     assert {price.quantity for price in prices} == {*measured}
     for price in prices:

@@ -250,7 +250,10 @@ WHOLE = {
     "samples": (montecarlo.BLOCK, lambda n: sampling(PAPER.scene(0.2), n)),
     "conditioned": (64 * montecarlo.PROPOSALS, lambda n: sampling(PAPER.scene(0.38), n)),
     "weighted": (montecarlo.BLOCK, lambda n: sampling(SCENES["field"], n)),
-    "insertions": (insertions.BLOCK, lambda n: sampling(td.Scene(1.5, 1.0, 0.1, discs=3), n)),
+    "insertions": (
+        insertions.INSERTIONS_PER_BLOCK,
+        lambda n: sampling(td.Scene(1.5, 1.0, 0.1, discs=3), n),
+    ),
 }
 
 

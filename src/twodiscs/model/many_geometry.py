@@ -7,11 +7,11 @@ from functools import cache
 from twodiscs.model.checks import MOST_WITH_VOLUME, InputError
 
 #: The effects of more than two discs.
-POSSIBLE = ("periodic", "moment_of_inertia", "friction")
+MANY_DISC_EFFECTS = ("periodic", "moment_of_inertia", "friction")
 
 #: From this number of discs on, cells list the discs that may touch. The least side of a cell over
 #: σ: it must be longer. A ring has two columns of cells, or more.
-LARGE, LEAST_SIDE = 20, 1 + 2.0**-20
+LARGE, LEAST_CELL_SIDE = 20, 1 + 2.0**-20
 
 #: The most decimal digits before or after the point of the volume of the prism: a double can then
 #: represent it.
@@ -20,10 +20,10 @@ MOST_DIGITS = 150
 
 def check_box(box):
     """Raise ``InputError`` for a ``Box`` with an invalid effect, or in an unfit unit of length."""
-    if other := [name for name in box.effects if name not in POSSIBLE]:
+    if other := [name for name in box.effects if name not in MANY_DISC_EFFECTS]:
         raise InputError(
             f"{other[0]} must be left out with {box.discs} discs, because more than two discs "
-            f"have no effects except {', '.join(POSSIBLE)}, not {box.effects[other[0]]!r}"
+            f"have no effects except {', '.join(MANY_DISC_EFFECTS)}, not {box.effects[other[0]]!r}"
         )
     if box.periodic not in ("", "x"):
         raise InputError(
@@ -61,7 +61,7 @@ def largest_radius(scene):
 
 def require_followable(scene):
     """Raise ``InputError`` for ``LARGE`` numbers of discs on a ring that just fits two of them."""
-    longest = scene.width / (4 * LEAST_SIDE)
+    longest = scene.width / (4 * LEAST_CELL_SIDE)
     if scene.periodic and scene.discs >= LARGE and scene.radius > longest:
         raise InputError(
             f"radius {scene.radius!r} must not exceed {longest!r} for {scene.discs} discs on a "

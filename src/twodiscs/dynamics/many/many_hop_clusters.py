@@ -33,10 +33,10 @@ from twodiscs.theory.flux import flux_constant
 
 #: For the rate of hops, if it is not known exactly: states on the surface, the most proposals of
 #: them, and samples of the volume. The rate then has an error of about one per cent.
-STATES, PROPOSALS, SAMPLES = 2**14, 2**24, 2**20
+SURFACE_STATES, MOST_SURFACE_PROPOSALS, VOLUME_SAMPLES = 2**14, 2**24, 2**20
 
 #: The least fraction of proposals that is accepted: below it states take longer than their motion.
-LEAST_ACCEPTED = 1e-4
+LEAST_ACCEPTED_FRACTION = 1e-4
 
 
 class Pair(NamedTuple):
@@ -205,10 +205,10 @@ def require_coefficient(scene, hop):
             f"hop {hop!r} must be open for passages, but is blocked at radius {scene.radius!r}"
         )
     accepted, proposals = surface_fraction(scene, hop)
-    if accepted < LEAST_ACCEPTED * proposals:
+    if accepted < LEAST_ACCEPTED_FRACTION * proposals:
         raise InputError(
             f"radius {scene.radius!r} is so large for {scene.discs} discs that fewer than "
-            f"{LEAST_ACCEPTED:g} of the proposals of a hop have no overlap"
+            f"{LEAST_ACCEPTED_FRACTION:g} of the proposals of a hop have no overlap"
         )
 
 
@@ -216,8 +216,8 @@ def require_coefficient(scene, hop):
 def surface_fraction(scene, hop):
     """Return (accepted, proposals) of states on the surface of a ``hop``, from the stream 0."""
     pair = surface_pair(scene, hop)
-    states = np.zeros((pair.sampler.rows, STATES))
-    return draw_on_surface(open_stream(np.uint64(0), 0), pair, states, PROPOSALS)
+    states = np.zeros((pair.sampler.rows, SURFACE_STATES))
+    return draw_on_surface(open_stream(np.uint64(0), 0), pair, states, MOST_SURFACE_PROPOSALS)
 
 
 def neighbours(scene, hop):
@@ -237,7 +237,7 @@ def hop_rate(scene, hop):
         return rate
     scene, hop = hopping_along(scene, hop, "x")
     accepted, proposals = surface_fraction(scene, hop)
-    volume, _ = insertions.sample(scene, SAMPLES, 0)
+    volume, _ = insertions.sample(scene, VOLUME_SAMPLES, 0)
     a, b, n = scene.range_x, scene.range_y, scene.discs
     level = n * (n - 1) / 2 * (scene.clearance(hop) / b) ** 2 / a * accepted / proposals
     empty = math.exp(n * math.log(a * b) - volume.log_volume)

@@ -17,9 +17,6 @@ from twodiscs.sampling.streams import open_stream
 #: Numbers that are summed in each bin of intervals: Σ c, Σ c² and Σ c n.
 INTERVAL_SUMS = 3
 
-#: The largest factor by which the window of ``LARGE`` numbers of discs is longer.
-LONGER = 64
-
 
 def mean_interval(scene, hop):
     """Return the mean time between two hops of any pair, maybe within a few per cent only."""
@@ -35,12 +32,12 @@ def _window(scene, hop):
     """Return a time in which ``RETURNS`` intervals begin, or up to twice as many.
 
     ``LARGE`` numbers of discs have a longer window, the duration of a replica, but at most
-    ``LONGER`` times the usual one. Their initial states take as much time to draw.
+    64 times the usual one. Their initial states take as much time to draw.
     """
     window = 2.0 ** math.ceil(math.log2(ensemble.RETURNS * mean_interval(scene, hop)))
     if scene.discs < LARGE:
         return window
-    return min(max(window, many_rates.replica_duration(scene)), LONGER * window)
+    return min(max(window, many_rates.replica_duration(scene)), 64 * window)
 
 
 def intervals_of_chain(scene, hop):

@@ -15,7 +15,7 @@ from twodiscs.sampling.many.cell_grid import make_grid
 from twodiscs.sampling.many.many_initial_states import large_grid
 
 #: Entries of a log before it is read.
-ENTRIES = 2**14
+LOG_ENTRIES = 2**14
 
 #: The wall and disc events of a trajectory, and the most rows, with hops, because rows are long.
 LONGEST_TRAJECTORY, MOST_ROWS = 1500, 2**13
@@ -42,7 +42,8 @@ class Followed:
         self.scene, self.law, self.grid = scene, many_disc_law(scene), make_grid(scene)
         self.epoch, self.laps = usual_epoch(scene), np.zeros(scene.discs)
         self.motion = cell_list.new_motion(scene.discs, self.grid, self.law.rough)
-        self.log = cell_list.new_log(scene.discs, ENTRIES, 4 if self.law.rough is None else 5)
+        rows = 4 if self.law.rough is None else 5
+        self.log = cell_list.new_log(scene.discs, LOG_ENTRIES, rows)
         self.counts = np.zeros(N_CLASSES, np.int64)
         self.hops = [True if hop in counted else None for hop in ("vertical_hop", "horizontal_hop")]
 

@@ -7,18 +7,18 @@ from twodiscs.dynamics import ensemble
 from twodiscs.dynamics.many.all_pairs import EVENT_CLASSES
 from twodiscs.model.many_geometry import LARGE
 from twodiscs.sampling.many import insertions
-from twodiscs.sampling.many.chains import DENSEST, crowding
+from twodiscs.sampling.many.chains import MOST_CROWDING, crowding
 from twodiscs.sampling.many.many_initial_states import method
 from twodiscs.theory import n_discs
 from twodiscs.theory.equation_of_state import bulk_derivatives
 from twodiscs.theory.flux import rates
 
 #: Events of a replica, and of a replica whose initial state takes as long as ten thousand events.
-REPLICA_EVENTS, EVENTS_OF_CHAIN = 256, 8192
+REPLICA_EVENTS, CHAIN_REPLICA_EVENTS = 256, 8192
 
 #: Events of each disc in a replica of ``LARGE`` numbers of discs, and the fewest replicas of a
 #: block of crowded ones.
-EVENTS_OF_DISC, FEWEST = 64, 8
+EVENTS_PER_DISC, FEWEST_REPLICAS = 64, 8
 
 #: The time that a pair of discs adds to an event, over the time of an event of the plain ensemble.
 #: Events of 3, 4 and 8 discs take 3.7, 5.9 and 22 times as long. Pairs of rough discs take longer.
@@ -29,7 +29,7 @@ EVENT_COST, DISC_COST = 50.0, 0.25
 
 #: The time of a kick for each of ``LARGE`` numbers of discs, over the time of an event. The time to
 #: draw the velocity of a disc, over the time of an event of the plain ensemble.
-KICK_COST, DRAW_COST = 0.45, 8.0
+KICK_COST, VELOCITY_COST = 0.45, 8.0
 
 
 @lru_cache(maxsize=256)
@@ -40,7 +40,7 @@ def expected_rates(scene):
     within a few per cent. If insertions find no room, the rates of wall hits and collisions are
     guessed (``expected_duration``), and so is one of them for which insertions give 0. For
     ``LARGE`` numbers of discs rates follow from an equation of state, within some ten per cent. It
-    ends where discs are ``DENSEST``; there the guess, if it is more, takes its place.
+    ends where discs are ``MOST_CROWDING``; there the guess, if it is more, takes its place.
     """
     known = n_discs.known_derivatives(scene)
     if known is None:
@@ -51,7 +51,11 @@ def expected_rates(scene):
     by_class = rates(scene, known)
     summed = {e: sum(by_class[name] for name in parts) for e, parts in EVENT_CLASSES.items()}
     by_event = guess | {e: rate for e, rate in summed.items() if rate and e in scene.events}
-    if scene.discs >= LARGE and crowding(scene) == DENSEST and not n_discs.exact_method(scene):
+    if (
+        scene.discs >= LARGE
+        and crowding(scene) == MOST_CROWDING
+        and not n_discs.exact_method(scene)
+    ):
         by_event |= {event: max(rate, by_event[event]) for event, rate in guess.items()}
     return by_event
 
@@ -66,12 +70,13 @@ def expected_duration(scene, events=None):
     """Return a power of two in which about ``events`` happen, within a factor of two.
 
     The rate is guessed from the wall hits of an ideal gas and from the distance to the largest
-    radius. By default ``events`` is 256, or ``EVENTS_OF_CHAIN`` if an initial state takes a chain
-    of moves. ``LARGE`` numbers of discs have ``EVENTS_OF_DISC`` each, more if replicas are fewer.
+    radius. By default ``events`` is 256, or ``CHAIN_REPLICA_EVENTS`` if an initial state takes a
+    chain of moves. ``LARGE`` numbers of discs have ``EVENTS_PER_DISC`` each, more if replicas are
+    fewer.
     """
     if events is None and scene.discs >= LARGE:
-        events = EVENTS_OF_DISC * scene.discs * _roomy_replicas(scene) // block_replicas(scene)
-    events = events or (EVENTS_OF_CHAIN if method(scene) == "chain" else REPLICA_EVENTS)
+        events = EVENTS_PER_DISC * scene.discs * _roomy_replicas(scene) // block_replicas(scene)
+    events = events or (CHAIN_REPLICA_EVENTS if method(scene) == "chain" else REPLICA_EVENTS)
     return ensemble.nearest_power_of_two(events / _guessed_rate(scene))
 
 
@@ -97,7 +102,7 @@ def block_replicas(scene):
     if scene.discs < LARGE:
         return ensemble.REPLICAS
     usual = _roomy_replicas(scene)
-    return min(usual, max(FEWEST, usual >> (math.frexp(crowding(scene))[1] - 1)))
+    return min(usual, max(FEWEST_REPLICAS, usual >> (math.frexp(crowding(scene))[1] - 1)))
 
 
 def _roomy_replicas(scene):
@@ -105,8 +110,8 @@ def _roomy_replicas(scene):
 
 
 def usual_epoch(scene):
-    """Return a time in which each disc of a ``Scene`` has some ``EVENTS_OF_DISC`` events."""
-    return expected_duration(scene, EVENTS_OF_DISC * scene.discs)
+    """Return a time in which each disc of a ``Scene`` has some ``EVENTS_PER_DISC`` events."""
+    return expected_duration(scene, EVENTS_PER_DISC * scene.discs)
 
 
 def expected_rate(scene, event):
@@ -124,7 +129,7 @@ def work_per_event(scene):
     discs it costs ``KICK_COST`` events for each disc.
     """
     few = scene.discs < LARGE
-    kick = 1.0 + DRAW_COST * scene.discs / cost_ratio(scene) if few else KICK_COST * scene.discs
+    kick = 1.0 + VELOCITY_COST * scene.discs / cost_ratio(scene) if few else KICK_COST * scene.discs
     return 1.0 + kick * scene.friction / expected_event_rate(scene)
 
 

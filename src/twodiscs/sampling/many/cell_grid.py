@@ -9,15 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.many_geometry import LEAST_SIDE
+from twodiscs.model.many_geometry import LEAST_CELL_SIDE
 from twodiscs.sampling.jit import compiled, inlined, optional
-
-#: The least side of a cell over the root of the area per disc.
-SPACING = 1.25
-
-#: The number of columns around a ring, if there is room for them. A short ring has two or three.
-#: With two columns each is the neighbour of the other on both sides, by another image.
-COLUMNS = 4
 
 
 class CellGrid(NamedTuple):
@@ -42,11 +35,13 @@ class Places(NamedTuple):
 
 def make_grid(scene):
     """Return the ``CellGrid`` of a ``Scene``, which must be followable."""
-    a, b = scene.range_x, scene.range_y
-    side = max(LEAST_SIDE * scene.contact_distance, SPACING * math.sqrt(a * b / scene.discs))
+    a, b, least = scene.range_x, scene.range_y, LEAST_CELL_SIDE * scene.contact_distance
+    side = max(least, 1.25 * math.sqrt(a * b / scene.discs))
     columns, rows = max(1, int(a / side)), max(1, int(b / side))
     if scene.periodic:
-        columns = max(columns, min(COLUMNS, int(a / (LEAST_SIDE * scene.contact_distance))))
+        # A ring has four columns if there is room, otherwise two or three. With two columns each is
+        # the neighbour of the other on both sides, by another image.
+        columns = max(columns, min(4, int(a / least)))
     return CellGrid(_borders(a, columns), _borders(b, rows))
 
 

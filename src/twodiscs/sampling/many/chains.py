@@ -20,19 +20,19 @@ from twodiscs.sampling.many.insertions import ring_separation
 from twodiscs.sampling.streams import next_bits, uniform
 
 #: The approximate numbers of contacts of each disc, and of a chain.
-CONTACTS, CONTACTS_OF_CHAIN = 512, 16
+CONTACTS_PER_DISC, CONTACTS_PER_CHAIN = 512, 16
 
 #: Below this room of discs, relative to their radius, contacts are more in proportion: each moves a
-#: disc by less. They are at most ``DENSEST`` times as many: closer to the largest radius all free
-#: lengths shrink by the same factor, and as many moves, which shrink with them, mix the centres as
-#: well.
-ROOMY, DENSEST = 1 / 3, 16
+#: disc by less. They are at most ``MOST_CROWDING`` times as many: closer to the largest radius all
+#: free lengths shrink by the same factor, and as many moves, which shrink with them, mix the
+#: centres as well.
+AMPLE_ROOM, MOST_CROWDING = 1 / 3, 16
 
 
 def crowding(scene):
-    """Return how many times as many contacts a ``Scene`` has as a roomy one, 1 to ``DENSEST``."""
+    """Return the contacts of a ``Scene`` over those of a roomy one, 1 to ``MOST_CROWDING``."""
     room = (scene.largest_radius - scene.radius) / scene.radius
-    return min(max(1.0, ROOMY / room), DENSEST)
+    return min(max(1.0, AMPLE_ROOM / room), MOST_CROWDING)
 
 
 def plan(scene):
@@ -42,11 +42,11 @@ def plan(scene):
     factor Z. This is also the number of contacts in a length (π/4) σ of chain.
     """
     room = (scene.largest_radius - scene.radius) / scene.radius
-    length = CONTACTS_OF_CHAIN * math.pi / 4 * scene.contact_distance * room
+    length = CONTACTS_PER_CHAIN * math.pi / 4 * scene.contact_distance * room
     # Small discs hardly touch.
     length = min(length, 4 * max(scene.width, scene.height))
-    contacts = CONTACTS * crowding(scene)
-    return math.ceil(contacts * scene.discs / CONTACTS_OF_CHAIN), length
+    contacts = CONTACTS_PER_DISC * crowding(scene)
+    return math.ceil(contacts * scene.discs / CONTACTS_PER_CHAIN), length
 
 
 @optional(lambda column, columns, ring: column if 0 <= column < columns else -1)

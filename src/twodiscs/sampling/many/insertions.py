@@ -31,32 +31,31 @@ from twodiscs.theory.equation_of_state import pair_overlap
 from twodiscs.theory.flux import Derivatives
 
 #: Samples with one random stream.
-BLOCK = 1 << 12
+INSERTIONS_PER_BLOCK = 1 << 12
 
 #: Units of a typical weight.
-UNITS = 2.0**20
+WEIGHT_UNITS = 2.0**20
 
 #: The names of the sums: the volume and the fields of ``Derivatives`` after the logarithm.
-QUANTITIES = (
+SUM_NAMES = (
     "volume", "per_width", "per_height", "per_contact", "horizontal_hops", "vertical_hops",
 )  # fmt: skip
 
 #: The index of the sum of an event; both walls of an axis have the same one.
-SUM_OF = by_kind(
+SUM_OF_EVENT = by_kind(
     "sampling/many/insertions.py",
     {
-        "hop": lambda event: QUANTITIES.index(f"{event.name}s"),
-        "collision": lambda event: QUANTITIES.index("per_contact"),
-        "wall": lambda event: QUANTITIES.index("per_width" if event.axis == "x" else "per_height"),
+        "hop": lambda event: SUM_NAMES.index(f"{event.name}s"),
+        "collision": lambda event: SUM_NAMES.index("per_contact"),
+        "wall": lambda event: SUM_NAMES.index("per_width" if event.axis == "x" else "per_height"),
     },
     SHELLS,
 )
 
 #: The index of the sum of each quantity of a point, in the order of the sums.
-SUMS = {"volume": 0} | {f"{event}_area": SUM_OF[event] for event in sorted(SUM_OF, key=SUM_OF.get)}
-
-#: The time of one disc over the time of a sample of the prism of two discs, roughly.
-COST_RATIO = 10.0
+SUM_OF_QUANTITY = {"volume": 0} | {
+    f"{event}_area": SUM_OF_EVENT[event] for event in sorted(SUM_OF_EVENT, key=SUM_OF_EVENT.get)
+}
 
 
 class Bounds(NamedTuple):
@@ -155,10 +154,10 @@ def free_at_sides(centres, k, y, box, walls):
 def sample_blocks(seed, first, stop, discs, box, walls):
     """Return (sums, products) of the samples of blocks ``first`` … ``stop`` − 1, int64.
 
-    Sums (6) are in ``UNITS`` of a typical weight, in the order of ``QUANTITIES``. Products (6, 6),
-    for errors, are Σ w_e w_f in the same units. ``walls`` is None on a ring.
+    Sums (6) are in ``WEIGHT_UNITS`` of a typical weight, in the order of ``SUM_NAMES``. Products
+    (6, 6), for errors, are Σ w_e w_f in the same units. ``walls`` is None on a ring.
     """
-    n = len(QUANTITIES)
+    n = len(SUM_NAMES)
     centres = np.empty((2, discs))
     starts, ends = np.empty(3 * discs), np.empty(3 * discs)
     weights = np.zeros(n)
@@ -166,7 +165,7 @@ def sample_blocks(seed, first, stop, discs, box, walls):
     length, last = 2 * box.half_x, discs - 1
     for block in range(first, stop):
         state = open_stream(seed, block)
-        for _ in range(BLOCK):
+        for _ in range(INSERTIONS_PER_BLOCK):
             weight = 1.0 / box.typical
             for k in range(last):
                 y = box.half_y * signed_uniform(state)
@@ -194,10 +193,10 @@ def sample_blocks(seed, first, stop, discs, box, walls):
                 weights[5] = 1.0 if is_free(centres, last, x, centres[1, j], box, -1) else 0.0
             for e in range(n):
                 weights[e] *= weight
-                sums[e] += np.int64(weights[e] * UNITS + uniform(state))
+                sums[e] += np.int64(weights[e] * WEIGHT_UNITS + uniform(state))
             for e in range(n):
                 for f in range(e, n):
-                    products[e, f] += np.int64(weights[e] * weights[f] * UNITS)
+                    products[e, f] += np.int64(weights[e] * weights[f] * WEIGHT_UNITS)
     return sums, products
 
 
@@ -219,7 +218,7 @@ def run_blocks(scene, seed, first, stop):
 def free_fraction(scene):
     """Return the estimate of V/(AB)^N from the first block of the stream 0, maybe 0."""
     sums, _ = call_in_thread(run_blocks, scene, 0, 0, 1)
-    return float(sums[0]) / UNITS / BLOCK * make_bounds(scene).typical
+    return float(sums[0]) / WEIGHT_UNITS / INSERTIONS_PER_BLOCK * make_bounds(scene).typical
 
 
 def estimate(scene, sums, products, samples):
@@ -231,7 +230,7 @@ def estimate(scene, sums, products, samples):
     n, a, b = scene.discs, scene.range_x, scene.range_y
     if sums[0] == 0:
         raise InputError(f"samples must be more than {samples}: in none of them {n} discs fit")
-    unit = UNITS * samples
+    unit = WEIGHT_UNITS * samples
     mean = np.asarray(sums) / unit
     second = np.triu(products) / unit
     second = second + np.triu(second, 1).T
@@ -254,8 +253,10 @@ def estimate(scene, sums, products, samples):
 
 def sample(scene, samples, seed):
     """Return the ``estimate`` of a ``Scene`` from a number of ``samples``, in whole blocks."""
-    blocks = -(-samples // BLOCK)
-    return estimate(scene, *call_in_thread(run_blocks, scene, seed, 0, blocks), blocks * BLOCK)
+    blocks = -(-samples // INSERTIONS_PER_BLOCK)
+    return estimate(
+        scene, *call_in_thread(run_blocks, scene, seed, 0, blocks), blocks * INSERTIONS_PER_BLOCK
+    )
 
 
 # The pipeline -------------------------------------------------------------------------------------
@@ -275,23 +276,25 @@ def insertion_sampler(scene, quantities, shell, seed):
     wanted = {*quantities, "volume"}
     if "any_wall_area" in wanted:
         wanted |= {f"{event}_area" for event in ("right_wall", "top_wall") if event in scene.events}
-    sampled = {name: k for name, k in SUMS.items() if name in wanted}
+    sampled = {name: k for name, k in SUM_OF_QUANTITY.items() if name in wanted}
 
     measures = _volume_and_areas(scene)
     constants = {
         "method": InsertionPoint.METHOD,
-        "samples": BLOCK,
-        "unit": int(UNITS),
+        "samples": INSERTIONS_PER_BLOCK,
+        "unit": int(WEIGHT_UNITS),
         "quantities": {n: {"place": k, "measure": measures[k]} for n, k in sampled.items()},
     }
-    return Sampler(
-        scene, BLOCK, lambda first, stop: np.vstack(run_blocks(scene, seed, first, stop)),
-        constants, COST_RATIO * scene.discs,
-    )  # fmt: skip
+
+    def run(first, stop):
+        return np.vstack(run_blocks(scene, seed, first, stop))
+
+    # A disc takes about ten times as long as a sample of the prism of two discs.
+    return Sampler(scene, INSERTIONS_PER_BLOCK, run, constants, 10.0 * scene.discs)
 
 
 def _volume_and_areas(scene):
-    """Return volume and areas for a mean weight of 1, in the order of ``QUANTITIES``.
+    """Return volume and areas for a mean weight of 1, in the order of ``SUM_NAMES``.
 
     Areas are those of ``theory.n_discs.surfaces``: of any pair, or of one disc at one wall.
     """
@@ -309,6 +312,6 @@ def expected(scene):
     It is the same on every machine, and None if the discs fit in no sample.
     """
     try:
-        return sample(scene, 16 * BLOCK, 0)[0]
+        return sample(scene, 16 * INSERTIONS_PER_BLOCK, 0)[0]
     except InputError:
         return None

@@ -4,12 +4,12 @@ Velocities are uniform on a sphere. A state is a column of x of all discs, then 
 discs also their spins s, as the speeds rω of their surfaces.
 
 * ``rejection``: N centres are drawn; after an overlap all are drawn again. Exact. The acceptance is
-  V/(AB)^N, and the method is used if it is at least ``LEAST_FREE``.
+  V/(AB)^N, and the method is used if it is at least ``LEAST_FREE_FRACTION``.
 * ``channel``: in an ordered channel heights have the density (A − S)₊^N, S = Σ d. A Markov chain
   proposes them cell by cell, with weights that are not below exp(−c d). They are accepted with the
   rest of the ratio. Positions along the channel are then order statistics. Exact at every density.
-* ``chain``: otherwise ``TRIALS`` sweeps of trial moves of one disc at a time, which begin at the
-  widest known arrangement; each state has a new chain. From ``LARGE`` discs on, event chains
+* ``chain``: otherwise ``CHAIN_SWEEPS`` sweeps of trial moves of one disc at a time, which begin at
+  the widest known arrangement; each state has a new chain. From ``LARGE`` discs on, event chains
   (``chains``) take their place. Not exact: tests compare its states with rejection and channels, if
   these can be used, and with chains of other lengths. If discs cannot go from one arrangement to
   another, it stays near the known one.
@@ -35,20 +35,13 @@ from twodiscs.sampling.threads import call_in_thread, draw_in_calls
 from twodiscs.theory import channel
 
 #: The least free fraction of (AB)^N for rejection, which then takes less time than a chain.
-LEAST_FREE = 1e-3
+LEAST_FREE_FRACTION = 1e-3
 
 #: Sweeps of a chain, and the least number of sizes of its moves; each is half of the one before.
-TRIALS, SCALES = 4000, 8
+CHAIN_SWEEPS, LEAST_SCALES = 4000, 8
 
 #: The most discs for rejection of heights in a channel: with more, too few would be accepted.
 MOST_REJECTED = 64
-
-#: Weights of cells are (1 + z/64)^(−64), which is not below exp(−z).
-POWER = 64
-
-#: The most states that a call of a kernel draws for ``labelled``, and the longest short call in
-#: seconds.
-PIECE, SHORT = 2**13, 0.05
 
 
 class Cells(NamedTuple):
@@ -102,7 +95,7 @@ def method(scene):
         return "channel"
     if scene.discs >= LARGE:
         return "chain"
-    return "rejection" if insertions.free_fraction(scene) >= LEAST_FREE else "chain"
+    return "rejection" if insertions.free_fraction(scene) >= LEAST_FREE_FRACTION else "chain"
 
 
 def make_initial(scene, by=None):
@@ -125,10 +118,10 @@ def spin_factor(scene):
 def _chain(scene):
     # The smallest moves are a fraction of the free length that is left to the discs.
     tightness = max(scene.range_x, scene.range_y) / (scene.largest_radius - scene.radius)
-    scales = min(62, max(SCALES, 2 + math.frexp(tightness)[1]))
+    scales = min(62, max(LEAST_SCALES, 2 + math.frexp(tightness)[1]))
     centres, grid = np.array(arrangement(scene)).T.copy(), large_grid(scene)
     if grid is None:
-        return Chain(centres, TRIALS, scales)
+        return Chain(centres, CHAIN_SWEEPS, scales)
     number, length = chains.plan(scene)
     return Chain(centres, number, scales, _rounded(length), grid)
 
@@ -179,7 +172,8 @@ def fill_cells(ends, tilt, sigma, height, least, weights, backward):
             # Two cells have the least d at their far ends.
             far = max(ends[k + 1] - ends[l], ends[l + 1] - ends[k])
             z = tilt * excess(min(far, height), sigma, height, least)
-            weight = 1.0 / (1.0 + z / POWER)
+            # The weight is (1 + z/64)^(−64), which is not below exp(−z).
+            weight = 1.0 / (1.0 + z / 64)
             for _ in range(6):
                 weight *= weight
             weights[k, l] = weight
@@ -463,7 +457,7 @@ def labelled(scene, number, seed, block=0, progress=None):
         first, step = 0, 1
         while first < number:
             yield first, min(first + step, number)
-            first, step = first + step, step if seconds > SHORT else min(2 * step, PIECE)
+            first, step = first + step, step if seconds > 0.05 else min(2 * step, 2**13)
 
     draw_in_calls(fill, calls(), number, progress)
     return filled
