@@ -410,7 +410,6 @@ td.transmission(td.Scene(1.5, 1, 0.249), "horizontal_hop", 128) →
 """
 
 
-@pytest.mark.filterwarnings("ignore::twodiscs.AccuracyWarning")
 @pytest.mark.parametrize("line", NOTES.strip().splitlines())
 def test_a_result_says_what_was_done_instead(line):
     call, _, said = line.partition(" →")

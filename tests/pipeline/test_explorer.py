@@ -379,11 +379,18 @@ def type_number(page, name, text):
 
 def test_the_address_holds_the_scene_and_brings_it_back(driven):
     page = driven("seed=7")
-    for text in ("", "-1", "0"):  # which are no lengths
+    problem = "at('problem').innerText"
+    for text in ("", "-1", "0", "1,5,0", "1e999"):  # which are no lengths
         type_number(page, "width", text)
         assert page.look("[runs.scene[0], +at('width').nextElementSibling.value]") == [1.5, 1.5]
-    type_number(page, "radius", "0.123")
+        assert page.look(problem) == f'width must be a number above 0, such as 0.5, not "{text}".'
+    type_number(page, "radius", "9")
+    assert page.look(problem) == "radius 9 is out of range: this page shows 0.383."
+    type_number(page, "radius", "0,123")
+    assert page.look(problem) == ""
     type_number(page, "width", "2.75")
+    # The wheel over a field changes it only if the field has steps.
+    assert page.look("NUMBERS.map(name => numberOf(name).type)") == ["text"] * 5
     address = page.look("location.hash.slice(1)")
     assert address == "seed=7&width=2.75&height=1&radius=0.123"
     page = driven(address)
@@ -415,7 +422,7 @@ def test_what_the_address_cannot_ask_for_is_named(driven):
     wrong = "radius=abc, width=-1, height=0, periodic=z, field=-1, friction=Infinity, mass_ratio=2"
     for good, bad in (("seed=7", wrong), ("periodic=y", "field=1")):
         page = driven(f"{good}&{bad.replace(', ', '&')}")
-        assert f"asks for {bad}: " in page.look("at('problem').innerText")
+        assert f"asks for {bad}: " in page.look("at('problem').innerText"), bad
         assert page.look("[...runs.scene.slice(0, 3), state.field]") == [1.5, 1, 0.2, 0]
 
 

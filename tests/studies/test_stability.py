@@ -317,7 +317,6 @@ COUNTED += [slow(call, SOME) for call in calibration.CALLS]
 COUNTED += [slow(study, (kind,)) for study, kind in calibration.STUDIES]
 
 
-@pytest.mark.filterwarnings("ignore::twodiscs.AccuracyWarning")
 @pytest.mark.parametrize(("call", "cases"), COUNTED)
 def test_errors_are_what_they_say(call, cases):
     """16 fresh seeds: no mean square is beyond five sigma of chance, at Bonferroni's bound."""

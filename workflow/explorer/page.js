@@ -106,7 +106,7 @@ function readAddress() {
       && (LENGTHS.includes(name) ? Number(text) > 0 : Number(text) >= 0)
       && !(name === "field" && Number(text) && periodic.includes("y")));
   const wrong = given.filter((pair) => !taken(pair)).map((pair) => pair.join("="));
-  at("problem").textContent = wrong.length
+  const problem = wrong.length
     ? `The address asks for ${wrong.join(", ")}: this page knows ${KEYS.join(", ")}, each a number, and `
       + "periodic, which is x, y or xy. A field needs walls along y." : "";
   asked = Object.fromEntries(given.filter(taken).map(
@@ -119,6 +119,7 @@ function readAddress() {
   const own = [...SIDES, "periodic", ...RATES].some((name) => name in asked);
   chooseEffects(own ? asked : first);
   changed();
+  at("problem").append(problem);
 }
 
 /** Write the scene into the address, so that a copy of the address shows the same scene. */
@@ -129,16 +130,21 @@ function writeAddress() {
   history.replaceState(null, "", `#${new URLSearchParams(asked)}`);
 }
 
-/** Take a typed number; a box of another size gets new sliders. */
-function typed(name, value) {
+/** Take a typed number, with a point or a comma; a box of another size gets new sliders. */
+function typed(name, text) {
+  const value = Number(text.trim().replace(",", ".") || NaN);
   if (value < Infinity && (value > 0 || (value === 0 && RATES.includes(name)))) {
     const numbers = Object.fromEntries(NUMBERS.map((each) => [each, printed(each)]));
     numbers[name] = value;
     if (SIDES.includes(name)) choose(numbers);
     state.radius = inUnits(numbers.radius);
     chooseEffects({ ...numbers, periodic: state.periodic });
+    changed();
+  } else {
+    showControls();
+    at("problem").textContent = `${name} must be a number ${RATES.includes(name) ? "from 0 on" : "above 0"}, `
+      + `such as 0.5, not "${text}".`;
   }
-  changed();
 }
 
 function prepareControls() {
@@ -153,7 +159,7 @@ function prepareControls() {
   }
   for (const name of NUMBERS) {
     numberOf(name).addEventListener("change", (event) => {
-      typed(name, event.target.valueAsNumber);
+      typed(name, event.target.value);
       writeAddress();
     });
   }
@@ -200,19 +206,21 @@ function showControls() {
     const text = short(printed(name), 12);
     numberOf(name).value = text;
     if (RATES.includes(name)) continue;
-    const slider = at(name);
-    Object.assign(slider, { value: state[name], ariaValueText: text });
-    numberOf(name).step = short(unit * slider.step, 12);
+    Object.assign(at(name), { value: state[name], ariaValueText: text });
   }
   for (const axis of "xy") at(axis).checked = state.periodic.includes(axis);
   at("field").disabled = state.periodic.includes("y");
 }
 
-/** Start again with another box or radius. */
+/** Start again with another box or radius, and name the numbers that are out of range. */
 function changed() {
   if (state.periodic.includes("y")) state.field = 0; // else the discs would fall for ever
+  const wanted = Object.fromEntries(NUMBERS.map((name) => [name, printed(name)]));
   for (const name of RATES) state[name] = Math.min(state[name], STRONGEST[name]);
   state.radius = Math.min(Math.max(state.radius, 0.01), lastRadius());
+  at("problem").textContent = NUMBERS.filter((name) => printed(name) !== wanted[name]).map(
+    (name) => `${name} ${short(wanted[name], 12)} is out of range: this page shows ${short(printed(name), 12)}.`,
+  ).join(" ");
   showControls();
   at("duration").textContent = short(unit * DURATION);
   runs = new Runs(state.width, state.height, state.radius, asked.seed ?? DATA.seed, effects());
