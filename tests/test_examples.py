@@ -138,6 +138,10 @@ def test_citation_agrees_with_the_package():
     assert f'license = "{citation["license"]}"' in package
     assert f"{citation['license']} License" in (REPOSITORY / "LICENSE").read_text(encoding="utf-8")
     assert twodiscs.__name__ == citation["title"].partition(":")[0]
+    deposit = json.loads((REPOSITORY / ".zenodo.json").read_text(encoding="utf-8"))
+    for name in ("title", "version", "license", "keywords"):
+        assert deposit[name] == citation[name]
+    assert deposit["creators"] == citation["authors"]
 
 
 @pytest.mark.parametrize("made", ["config/schema.json", "src/twodiscs/__init__.pyi"])

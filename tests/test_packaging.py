@@ -15,8 +15,12 @@ import tomllib
 from zipfile import ZipFile
 
 import pytest
+import yaml
 from checkout import REPOSITORY
 from commands import python
+from jinja2 import Environment, StrictUndefined
+
+import twodiscs
 
 PROJECT = tomllib.loads((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
@@ -169,6 +173,22 @@ def test_the_lines_of_the_readme_run_in_an_empty_environment(version, sdist, tmp
     (code,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     subprocess.run([python, "-c", code], cwd=tmp_path, check=True)
     assert (tmp_path / "trajectory.png").exists()
+
+
+def test_the_recipe_for_conda_has_the_version_and_the_packages_of_the_project():
+    """Names in conda-forge differ for matplotlib, whose base has no windows."""
+    text = (REPOSITORY / "packaging/recipe.yaml").read_text(encoding="utf-8")
+    forms = {"variable_start_string": "${{", "variable_end_string": "}}"}
+    context = yaml.safe_load(text)["context"] | {"python_min": "3.11", "PYTHON": "python"}
+    recipe = yaml.safe_load(
+        Environment(undefined=StrictUndefined, **forms).from_string(text).render(context)
+    )
+    assert recipe["package"] == {"name": "twodiscs", "version": twodiscs.__version__}
+    run = {line.replace(" ", "").replace("-base", "") for line in recipe["requirements"]["run"]}
+    assert run == {f"python{PROJECT['requires-python']}", *PROJECT["dependencies"]}
+    (script,) = recipe["build"]["python"]["entry_points"]
+    assert script == f"twodiscs = {PROJECT['scripts']['twodiscs']}"
+    assert (REPOSITORY / "packaging" / recipe["source"]["path"] / "pyproject.toml").exists()
 
 
 def test_the_lock_has_everything():
