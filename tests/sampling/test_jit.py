@@ -3,6 +3,7 @@
 Without these tests compiled code could be that of other sources, or change a user's process.
 """
 
+import compileall
 import os
 import shutil
 from pathlib import Path
@@ -50,12 +51,17 @@ def test_an_edit_of_what_a_kernel_imports_changes_the_result(tmp_path):
     assert output(environment) == before
     assert kernels() == kept
 
-    # If no code can be kept, a sentence says so.
+    # If no code can be kept, a sentence says so: a file is in the way, the disk full, a file cut.
     (blocked := tmp_path / "file").touch()
-    done = python("-c", SCRIPT, env=environment | {"NUMBA_CACHE_DIR": str(blocked)})
-    assert done.stdout == before
-    assert done.stderr.startswith("Compiled code cannot be kept, so every process compiles again: ")
-    assert done.stderr.count("\n") == 1
+    full = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (9, 9))"
+    shutil.copytree(cache, cut := tmp_path / "cut")
+    for path in cut.rglob("*.nb?"):
+        os.truncate(path, 9)
+    for folder, limit in ((blocked, ""), (tmp_path / "full", full), (cut, "")):
+        done = python("-c", limit + SCRIPT, env=environment | {"NUMBA_CACHE_DIR": str(folder)})
+        assert done.stdout == before
+        assert done.stderr.startswith("Compiled code cannot be kept, so every process compiles aga")
+        assert done.stderr.count("\n") == 1
 
     streams = sources / "sampling" / "streams.py"
     status, text = streams.stat(), streams.read_text()
@@ -64,7 +70,18 @@ def test_an_edit_of_what_a_kernel_imports_changes_the_result(tmp_path):
     assert edited != text
     streams.write_text(edited)
     os.utime(streams, ns=(status.st_atime_ns, status.st_mtime_ns))
-    assert output(environment) != before
+    after = output(environment)
+    assert after != before
+
+    # In a small image only compiled modules lie.
+    for version, result in ((edited, after), (text, before)):
+        streams.write_text(version)
+        compileall.compile_dir(sources, quiet=2, legacy=True, force=True)
+        for path in sources.rglob("*.py"):
+            path.rename(path.with_suffix(".was"))
+        assert output(environment) == result
+        for path in sources.rglob("*.was"):
+            path.rename(path.with_suffix(".py"))
 
 
 def test_two_processes_that_save_together_keep_their_kernels_apart(tmp_path, monkeypatch):

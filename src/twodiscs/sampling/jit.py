@@ -66,31 +66,59 @@ _FLOORS = [f"twodiscs/{name}" for name in ("model", "points", "theory", "samplin
 #: {package whose kernels are kept: folders of the sources that are compiled into them}.
 SOURCES = {"twodiscs": _FLOORS, "twodiscs_paper": [*_FLOORS, "twodiscs_paper/studies"]}
 
+#: Endings of modules, of which ``compileall -b`` and a deletion leave the second.
+_MODULES = ".py", ".pyc"
+
 
 @cache
 def cache_folder(package):
     """Return the folder for compiled code of a ``package``, None if no code can be kept.
 
-    Its name is a digest of the text of each file in ``SOURCES``, and of its path below the
-    packages, so a copy of the sources elsewhere has the same folder.
+    Its name is a digest of each file in ``SOURCES``, and of its path below the packages, so a copy
+    of the sources elsewhere has the same folder. If only compiled modules lie there, they are its
+    files; without any file the sources are unknown, and no code is kept.
     """
     digest = blake2b(repr(SOURCES[package]).encode(), digest_size=8)
-    for path in sorted(p for folder in SOURCES[package] for p in (_ROOT / folder).rglob("*.py")):
-        text = path.read_bytes()
-        digest.update(f"{path.relative_to(_ROOT)} {len(text)}\n".encode() + text)
     try:
-        home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-        kept = Path(numba.config.CACHE_DIR or Path(home, "twodiscs"), digest.hexdigest())
+        for folder in SOURCES[package]:
+            found = sorted((_ROOT / folder).rglob("*.py*"))
+            paths = [p for p in found if "__pycache__" not in p.parts and p.suffix in _MODULES]
+            if not paths:
+                raise FileNotFoundError(f"no modules lie in {_ROOT / folder}")
+            for path in paths:
+                text = path.read_bytes()
+                digest.update(f"{path.relative_to(_ROOT)} {len(text)}\n".encode() + text)
+        home = Path(os.environ.get("XDG_CACHE_HOME", "")).expanduser()
+        home = home if home.is_absolute() else Path.home() / ".cache"
+        kept = Path(numba.config.CACHE_DIR or home / "twodiscs").expanduser().absolute()
+        kept /= digest.hexdigest()
         kept.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=kept).close()
     except (OSError, RuntimeError) as error:  # the user may have no home
-        print(
-            f"Compiled code cannot be kept, so every process compiles again: {error}; "
-            "NUMBA_CACHE_DIR names another folder",
-            file=sys.stderr,
-        )
-        return None
+        return _warn_not_kept(str(error))
     return str(kept)
+
+
+@cache
+def _warn_not_kept(reason):
+    print(
+        f"Compiled code cannot be kept, so every process compiles again: {reason}; NUMBA_CACHE_DIR "
+        "names another folder",
+        file=sys.stderr,
+    )
+
+
+def _or_not_kept(call):
+    """Return a method of Numba's cache without its failures: a full disk, a file that was cut."""
+
+    def attempt(*arguments):
+        try:
+            return call(*arguments)
+        except Exception as error:
+            why = getattr(error, "strerror", None) or error
+            return _warn_not_kept(f"{call.__self__.cache_path}: {why}")
+
+    return attempt
 
 
 class Locator(caching.UserProvidedCacheLocator):
@@ -134,8 +162,10 @@ def _kept(kernel):
         kernel.enable_caching()
         numba.config.CACHE_LOCATOR_CLASSES = users
         # Numba numbers its files: two processes that save together would use a number twice.
-        file = kernel._cache._cache_file
-        file._data_name = lambda number: f"{function.__name__}.{uuid.uuid4().hex}.nbc"
+        kept = kernel._cache
+        kept._cache_file._data_name = lambda number: f"{function.__name__}.{uuid.uuid4().hex}.nbc"
+        kept.save_overload = _or_not_kept(kept.save_overload)
+        kept.load_overload = _or_not_kept(kept.load_overload)
     return kernel
 
 
