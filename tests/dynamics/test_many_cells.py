@@ -68,15 +68,6 @@ def test_a_few_events_are_the_same_ones(scene):
         assert np.array_equal(some, same)
 
 
-@pytest.mark.parametrize("velocity", [3.7, -3.7])
-def test_discs_that_fly_around_a_ring_pass_each_other_at_every_turn(velocity):
-    """Their separation is then a multiple of the circumference."""
-    ring = (1.5, 0.75, 0.5)
-    due = sorted(t for k in range(-9, 9) if 0 < (t := (1.5 * k + 0.4) / velocity) < 2)
-    found = [many_cells.exchange_time(-0.4, velocity, k, ring) for k in range(len(due))]
-    assert found == pytest.approx(due)
-
-
 def test_which_kernel_runs():
     """By the number of discs."""
     small, large = (

@@ -10,11 +10,12 @@ A contact is kept by the disc that looked for it last. If the other disc has an 
 contact is out of date. The first disc then looks again at the time of the old contact, because it
 cannot meet another disc before.
 
-A hop of two discs is a change of sign of their separation. Both move straight after the later of
-their last events. All hops of a disc are therefore found at its events, by one comparison with each
-of the other discs. If no hop is counted, there are no comparisons. Along a ring the separation is
-that of the nearest image. It changes sign where the separation that is not folded is a multiple of
-the circumference, and also discs that go around between two events are counted.
+A hop of two discs is a change of sign of their separation. Both discs are then in the same row of
+cells, or in the same column if the hop is along x. ``Bands`` have the discs of each row or column
+side by side in memory. A disc moves straight after its last event and its entry into the band. All
+its hops are therefore found at its events and where it leaves a band, by one comparison with each
+of the other discs of the band. Around a ring this is the order of nearest images. If no hop is
+counted, there are no bands.
 
 A ``Log`` has the times of all this, but hops are not in order in it. At the end of a stretch all
 discs are advanced to the same time, so no earlier hop is missing.
@@ -60,6 +61,22 @@ class Motion(NamedTuple):
     tree: np.ndarray
     places: grids.Places
     s: np.ndarray | None = None
+
+
+class Bands(NamedTuple):
+    """The discs in the order of the rows of cells, or of the columns, for the hops along one axis.
+
+    Band b has the entries ``first[b]`` … ``first[b + 1]`` − 1 of the arrays (N,). The disc of an
+    entry was ``at`` a place at the time ``since``, and moves with its ``speed``. Disc i has the
+    entry ``entry[i]``.
+    """
+
+    first: np.ndarray
+    entry: np.ndarray
+    disc: np.ndarray
+    at: np.ndarray
+    speed: np.ndarray
+    since: np.ndarray
 
 
 class Log(NamedTuple):
@@ -245,63 +262,110 @@ def first_disc(tree):
 # Events -------------------------------------------------------------------------------------------
 
 
-@optional(lambda ring: NEVER)
-def self_separation(ring):
-    """Return a separation that is far from any change of order."""
-    return ring[1]
+@optional(lambda discs, borders, hops: None)
+def new_bands(discs, borders, hops):
+    """Return the ``Bands`` of a number of ``discs`` between ``borders``; None without ``hops``."""
+    whole, real = np.zeros((2, discs), np.int64), np.zeros((3, discs))
+    first = np.zeros(borders.size, np.int64)
+    return Bands(first, whole[0], whole[1], real[0], real[1], real[2])
 
 
-@optional(lambda before, after, ring: 1 if crosses(before, after) else 0)
-def exchanges(before, after, ring):
-    """Return how many times a separation changes sign, on a ring that of the nearest image.
-
-    ``before`` and ``after`` are not folded: the sign changes at multiples of the circumference.
-    """
-    return abs(np.int64(np.floor(after / ring[0])) - np.int64(np.floor(before / ring[0])))
-
-
-@optional(lambda before, velocity, number, ring: crossing_time(before, velocity))
-def exchange_time(before, velocity, number, ring):
-    """Return when a separation changes sign after a ``number`` of changes."""
-    turn = np.floor(before / ring[0])
-    turn += 1.0 + number if velocity > 0.0 else -number
-    return crossing_time(before - turn * ring[0], velocity)
-
-
-@optional(lambda i, at, now, positions, velocities, times, kind, ring, log, hops: 0)
-def count_hops(i, at, now, positions, velocities, times, kind, ring, log, hops):
-    """Return how many times disc ``i``, now ``at`` a place, has changed order with another one."""
-    start, speed, since, count = positions[i], velocities[i], times[i], 0
-    # A disc has not changed order with itself.
-    positions[i] = start - self_separation(ring)
-    for k in range(positions.size):
-        last = max(since, times[k])
-        there = positions[k] + velocities[k] * (now - times[k])
-        apart = start + speed * (last - since) - (positions[k] + velocities[k] * (last - times[k]))
-        for number in range(exchanges(apart, at - there, ring)):
-            count += 1
-            until = exchange_time(apart, speed - velocities[k], number, ring)
-            note_hop(last + until, kind, i, k, log)
-    positions[i] = start
-    return count
+@optional(lambda cells, at, speeds, bands: None)
+def fill_bands(cells, at, speeds, bands):
+    """Put the discs, which are in these ``cells`` (N,) along an axis, into their ``bands``."""
+    n = 0
+    for band in range(bands.first.size - 1):
+        for i in range(cells.size):
+            if cells[i] == band:
+                bands.entry[i], bands.disc[n] = n, i
+                bands.at[n], bands.speed[n], bands.since[n] = at[i], speeds[i], 0.0
+                n += 1
+        bands.first[band + 1] = n
 
 
 @inlined
-def put(i, x, y, now, motion, counts, ring, log, hops, hops_x):
+def exchange_entries(n, m, bands):
+    """Exchange two entries of a band."""
+    i, j = bands.disc[n], bands.disc[m]
+    bands.entry[i], bands.entry[j], bands.disc[n], bands.disc[m] = m, n, j, i
+    for values in (bands.at, bands.speed, bands.since):
+        values[n], values[m] = values[m], values[n]
+
+
+@optional(lambda i, at, now, band, kind, log, bands: 0)
+def count_hops(i, at, now, band, kind, log, bands):
+    """Return how many discs of its ``band`` disc ``i``, now ``at`` a place, has come past."""
+    own, count = bands.entry[i], 0
+    start, speed, since = bands.at[own], bands.speed[own], bands.since[own]
+    # A disc has not changed order with itself.
+    bands.at[own] = NEVER
+    first, end = bands.first[band], bands.first[band + 1]
+    # Parts of arrays, whose indices cannot be negative, become vectors.
+    places, speeds, times = bands.at[first:end], bands.speed[first:end], bands.since[first:end]
+    for n in range(places.size):
+        last = max(since, times[n])
+        apart = start + speed * (last - since) - (places[n] + speeds[n] * (last - times[n]))
+        if crosses(apart, at - (places[n] + speeds[n] * (now - times[n]))):
+            count += 1
+            until = crossing_time(apart, speed - speeds[n])
+            note_hop(last + until, kind, i, bands.disc[first + n], log)
+    bands.at[own], bands.since[own] = at, now
+    return count
+
+
+@optional(lambda i, now, band, target, ahead, borders, kind, log, bands: 0)
+def leave_band(i, now, band, target, ahead, borders, kind, log, bands):
+    """Move disc ``i`` from its ``band`` to another one and return its hops.
+
+    It is at the upper border of its band if ``ahead`` is 1, at the lower one if it is 0.
+    """
+    count = count_hops(i, borders[band + ahead], now, band, kind, log, bands)
+    while band != target:
+        up = 1 if target > band else 0
+        # The disc comes to the end of a band, which then ends before it or begins behind it.
+        end = bands.first[band + up] - up
+        exchange_entries(bands.entry[i], end, bands)
+        bands.first[band + up] = end + 1 - up
+        band += 2 * up - 1
+    bands.at[bands.entry[i]] = borders[band + 1 - ahead]
+    return count
+
+
+@optional(lambda time, bands: None)
+def begin_again(time, bands):
+    """Make a ``time`` the zero of all times."""
+    for n in range(bands.since.size):
+        bands.since[n] -= time
+
+
+@optional(lambda i, speed, bands: None)
+def set_speed(i, speed, bands):
+    """Set the ``speed`` of disc ``i`` after an event."""
+    bands.speed[bands.entry[i]] = speed
+
+
+@inlined
+def set_speeds(i, motion, hops, hops_x):
+    """Set the speeds of disc ``i`` along both axes."""
+    set_speed(i, motion.v[i], hops)
+    set_speed(i, motion.u[i], hops_x)
+
+
+@inlined
+def put(i, x, y, now, motion, counts, log, hops, hops_x):
     """Put disc ``i`` at (x, y), where it has come by now, and count its hops."""
-    times, kind = motion.time, VERTICAL_HOPS
-    counts[kind] += count_hops(i, y, now, motion.y, motion.v, times, kind, None, log, hops)
-    kind = HORIZONTAL_HOPS
-    counts[kind] += count_hops(i, x, now, motion.x, motion.u, times, kind, ring, log, hops_x)
+    places = motion.places
+    counts[VERTICAL_HOPS] += count_hops(i, y, now, places.row[i], VERTICAL_HOPS, log, hops)
+    counts[HORIZONTAL_HOPS] += count_hops(i, x, now, places.column[i], HORIZONTAL_HOPS, log, hops_x)
     motion.x[i], motion.y[i], motion.time[i] = x, y, now
 
 
 @inlined
-def fly(i, now, motion, counts, ring, log, hops, hops_x):
+def fly(i, now, motion, counts, log, hops, hops_x):
     """Advance disc ``i`` to the time ``now``."""
     lag = now - motion.time[i]
     x, y = motion.x[i] + motion.u[i] * lag, motion.y[i] + motion.v[i] * lag
-    put(i, x, y, now, motion, counts, ring, log, hops, hops_x)
+    put(i, x, y, now, motion, counts, log, hops, hops_x)
 
 
 @inlined
@@ -335,8 +399,8 @@ def is_wall(ahead, columns, ring):
 
 
 @compiled
-def start_from(states, replica, motion, grid, law):
-    """Begin with a column of ``states`` (rows, replicas)."""
+def start_from(states, replica, motion, grid, law, hops, hops_x):
+    """Begin with a column of ``states`` (rows, replicas); see ``follow_discs``."""
     discs = motion.x.size
     motion.places.head[:] = -1
     motion.events[:] = 0
@@ -347,6 +411,8 @@ def start_from(states, replica, motion, grid, law):
         column = grids.find_interval(motion.x[i], grid.x)
         grids.enter(i, column, grids.find_interval(motion.y[i], grid.y), motion.places, grid)
     all_pairs.copy_spins(spins_in(states, discs, law.rough), replica, 0, motion.s)
+    fill_bands(motion.places.row, motion.y, motion.v, hops)
+    fill_bands(motion.places.column, motion.x, motion.u, hops_x)
     look_for_all(motion, grid, law)
 
 
@@ -366,14 +432,15 @@ def is_kicked(time, lane, kicks):
     return kicks.waits[lane] <= 0.0
 
 
-@optional(lambda motion, laps, grid, law, log, lane, kicks: None)
-def kick_discs(motion, laps, grid, law, log, lane, kicks):
+@optional(lambda motion, laps, grid, law, log, hops, hops_x, lane, kicks: None)
+def kick_discs(motion, laps, grid, law, log, hops, hops_x, lane, kicks):
     """Draw the velocities of all discs anew, at the time 0 that all have come to."""
     discs = motion.x.size
     u, v = motion.u.reshape((discs, 1)), motion.v.reshape((discs, 1))
     all_pairs.redraw(u, v, motion.s, 0, lane, law, kicks)
     look_for_all(motion, grid, law)
     for i in range(discs):
+        set_speeds(i, motion, hops, hops_x)
         note_event(0.0, KICKS, i, i, motion, laps, law.ring, log)
 
 
@@ -384,7 +451,8 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
     On a ring the rounds of the discs are added to ``laps`` (N,). A ``log``, which may be None, gets
     all events and counted hops; the discs stop when it is full. Returns the time that is left. All
     discs have come to the same time, from which they can be followed on. ``kicks`` are those of a
-    ``lane``, None without friction.
+    ``lane``, None without friction. ``hops`` and ``hops_x`` are the ``Bands`` of the rows and of
+    the columns, None where hops in y or in x are not counted.
     """
     discs, tree = motion.x.size, motion.tree
     columns, rows = grid.x.size - 1, grid.y.size - 1
@@ -406,11 +474,18 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
                 stops = ahead < 0 or ahead == rows if upwards else is_wall(ahead, columns, law.ring)
                 if not stops:
                     grids.leave(i, motion.places, grid)
+                    side = 1 if step > 0 else 0
                     if upwards:
+                        counts[VERTICAL_HOPS] += leave_band(
+                            i, now, r, ahead, side, grid.y, VERTICAL_HOPS, log, hops
+                        )
                         r = ahead
                         wide, high = (c - 1, c + 1), (r + step, r + step)
                     else:
-                        c = pass_seam(i, ahead, columns, motion, laps, law.ring)
+                        left, c = c, pass_seam(i, ahead, columns, motion, laps, law.ring)
+                        counts[HORIZONTAL_HOPS] += leave_band(
+                            i, now, left, c, side, grid.x, HORIZONTAL_HOPS, log, hops_x
+                        )
                         wide, high = (c + step, c + step), (r - 1, r + 1)
                     grids.enter(i, c, r, motion.places, grid)
                     time, partner = find_contact(i, now, wide, high, motion, grid, law)
@@ -426,22 +501,25 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
                     y = grid.y[rows if step > 0 else 0]
                 else:
                     x = grid.x[columns if step > 0 else 0]
-                put(i, x, y, now, motion, counts, law.ring, log, hops, hops_x)
+                put(i, x, y, now, motion, counts, log, hops, hops_x)
                 s = all_pairs.only_lane(motion.s)
                 all_pairs.rub_walls(motion.u, motion.v, i, not upwards, upwards, s, law.rough)
                 kind, velocities = (
                     (all_pairs.Y_WALLS, motion.v) if upwards else (all_pairs.X_WALLS, motion.u)
                 )
                 velocities[i] = -velocities[i]
+                set_speeds(i, motion, hops, hops_x)
                 counts[kind] += 1
                 note_event(now, kind, i, i, motion, laps, law.ring, log)
                 motion.events[i] += 1
             else:
                 j = motion.partner[i]
                 if motion.events[j] == motion.seen[i]:
-                    fly(i, now, motion, counts, law.ring, log, hops, hops_x)
-                    fly(j, now, motion, counts, law.ring, log, hops, hops_x)
+                    fly(i, now, motion, counts, log, hops, hops_x)
+                    fly(j, now, motion, counts, log, hops, hops_x)
                     collide(i, j, motion, law)
+                    set_speeds(i, motion, hops, hops_x)
+                    set_speeds(j, motion, hops, hops_x)
                     motion.events[i] += 1
                     motion.events[j] += 1
                     counts[COLLISIONS] += 1
@@ -458,16 +536,18 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
         done, kicked = full | (end == duration), is_kicked(end, lane, kicks)
         if done | kicked:
             for i in range(discs):
-                fly(i, end, motion, counts, law.ring, log, hops, hops_x)
+                fly(i, end, motion, counts, log, hops, hops_x)
         for i in range(discs):
             motion.time[i] -= end
             motion.contact[i] -= end
             motion.border[i] -= end
             enlist(i, motion)
+        begin_again(end, hops)
+        begin_again(end, hops_x)
         duration -= end
         go_on(end, log)
         if kicked:
-            kick_discs(motion, laps, grid, law, log, lane, kicks)
+            kick_discs(motion, laps, grid, law, log, hops, hops_x, lane, kicks)
         if done:
             return duration
 
@@ -483,13 +563,14 @@ def count_events(states, seed, first, duration, epoch, law, grid, hops, hops_x, 
     laps = np.zeros(discs)
     motion, count = new_motion(discs, grid, law.rough), np.zeros(N_CLASSES, np.int64)
     sums, products = np.zeros(N_CLASSES, np.int64), np.zeros((N_CLASSES, N_CLASSES), np.int64)
+    bands, bands_x = new_bands(discs, grid.y, hops), new_bands(discs, grid.x, hops_x)
     lane = np.int64(0)  # for a literal 0 numba would compile ``follow_discs`` once more
     for replica in range(states.shape[1]):
         count[:] = 0
-        start_from(states, replica, motion, grid, law)
+        start_from(states, replica, motion, grid, law, bands, bands_x)
         open_kicks(lane, seed, first + replica, kicks)
         follow_discs(
-            duration, epoch, motion, laps, grid, law, count, lane, kicks, None, hops, hops_x
+            duration, epoch, motion, laps, grid, law, count, lane, kicks, None, bands, bands_x
         )
         all_pairs.add_counts(count, sums, products)
     return sums, products
@@ -506,12 +587,13 @@ def advance_all(states, laps, time, epoch, law, grid, kicks, hops_x):
     discs, replicas = laps.shape
     motion, rounds = new_motion(discs, grid, law.rough), np.zeros(discs)
     counts, spins = np.zeros((N_CLASSES, 1), np.int64), spins_in(states, discs, law.rough)
+    bands_x = new_bands(discs, grid.x, hops_x)
     for replica in range(replicas):
         rounds[:], counts[:] = 0.0, 0
-        start_from(states, replica, motion, grid, law)
+        start_from(states, replica, motion, grid, law, None, bands_x)
         follow_discs(
             time, epoch, motion, rounds, grid, law, counts[:, 0], replica, kicks, None, None,
-            hops_x,
+            bands_x,
         )  # fmt: skip
         all_pairs.add_hops(counts, replica, hops_x)
         for i in range(discs):

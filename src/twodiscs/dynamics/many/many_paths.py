@@ -45,13 +45,17 @@ class Followed:
         rows = 4 if self.law.rough is None else 5
         self.log = cell_list.new_log(scene.discs, LOG_ENTRIES, rows)
         self.counts = np.zeros(N_CLASSES, np.int64)
-        self.hops = [True if hop in counted else None for hop in ("vertical_hop", "horizontal_hop")]
+        axes = ("vertical_hop", self.grid.y), ("horizontal_hop", self.grid.x)
+        self.bands = [
+            cell_list.new_bands(scene.discs, borders, True if hop in counted else None)
+            for hop, borders in axes
+        ]
 
     def start(self, state, seed, replica=0):
         """Begin a path with a ``state``, a column of numbers, and the kicks of its stream."""
         self.kicks = ensemble.open_block_kicks(new_kicks(self.scene, 1), seed, replica)
         self.log.origin[0] = self.laps[:] = 0.0
-        cell_list.start_from(state, 0, self.motion, self.grid, self.law)
+        cell_list.start_from(state, 0, self.motion, self.grid, self.law, *self.bands)
 
     def go_on(self, duration):
         """Yield the log of one stretch after the other, with the order of its entries in time."""
@@ -59,7 +63,7 @@ class Followed:
             self.log.size[0] = 0
             duration = cell_list.follow_discs(
                 duration, self.epoch, self.motion, self.laps, self.grid, self.law, self.counts,
-                0, self.kicks, self.log, *self.hops,
+                0, self.kicks, self.log, *self.bands,
             )  # fmt: skip
             yield self.log, np.argsort(self.log.times[: self.log.size[0]], kind="stable")
 
