@@ -20,6 +20,7 @@ import pandas as pd
 import pytest
 from effect_scenes import SCENES
 from matplotlib.backend_bases import FigureCanvasBase
+from numba.core.compiler_lock import global_compiler_lock
 
 import twodiscs as td
 from twodiscs.dynamics.stages import STAGES
@@ -28,6 +29,7 @@ from twodiscs.model.checks import PRESETS
 from twodiscs.model.formats import texts_with_error
 from twodiscs.points.base import file_content, write_json
 from twodiscs.sampling import rounds
+from twodiscs.sampling.threads import call_in_thread
 
 SCENE = td.Scene(1.5, 1.0, 0.2)
 NARROW = td.Scene(1.5, 1.0, 0.249)
@@ -308,12 +310,23 @@ def test_progress_is_shown_where_someone_looks(progress, monkeypatch, capsys):
     assert ("trajectory r = 0.2" in said.err) == (progress is True)
 
 
-def test_a_bar_is_where_the_work_is():
+def test_a_bar_is_where_the_work_is(monkeypatch):
+    """It says when that is a compilation. A logger in the place of the terminal has none."""
     tqdm = pytest.importorskip("tqdm", reason="tqdm shows progress").tqdm
+    monkeypatch.setattr(progress_module, "PATIENCE", 0.0)
     with progress_module.progress_bar(True, "work") as watch:
         for done in (2, 5, None, 9):
             watch(done, 10)
         assert [(bar.n, bar.total) for bar in tqdm._instances] == [(9, 10)]
+        with global_compiler_lock:
+            call_in_thread(watch, None, 10)
+        assert [bar.desc for bar in tqdm._instances] == ["work, compiling"]
+        watch(10, 10)
+        assert [bar.desc for bar in tqdm._instances] == ["work"]
+    for progress, stderr in ((None, SimpleNamespace(write=len)), (True, None)):
+        monkeypatch.setattr(sys, "stderr", stderr)
+        with progress_module.progress_bar(progress, "work") as watch:
+            assert watch is None
 
 
 # States -------------------------------------------------------------------------------------------

@@ -196,15 +196,17 @@ def progress_bar(progress, what):
     or a notebook, so that logs stay clean. Without a bar there is no function, but None.
     """
     if progress is None:
-        terminal = sys.stderr is not None and sys.stderr.isatty()
-        progress = terminal or "ipykernel" in sys.modules
+        terminal = getattr(sys.stderr, "isatty", bool)  # a logger in its place may have none
+        progress = terminal() or "ipykernel" in sys.modules
     elif not isinstance(progress, bool):
         raise InputError(f"progress must be True, False or None, not {quote(progress)}")
-    if not progress:
+    if not progress or sys.stderr is None:
         yield None
         return
     from importlib.util import find_spec
     from time import monotonic
+
+    from twodiscs.sampling.jit import compiling
 
     # A notebook without widgets shows a line of text, which is enough. tqdm.auto would warn of it.
     if "ipykernel" in sys.modules and find_spec("ipywidgets"):
@@ -212,14 +214,17 @@ def progress_bar(progress, what):
     else:
         from tqdm import tqdm
 
-    start = monotonic()
+    shown = monotonic()
     with tqdm(desc=what, total=1, leave=False, delay=PATIENCE, bar_format=BAR) as bar:
 
         def progress(done, total):
+            nonlocal shown
             bar.total = max(total, bar.n if done is None else done)
             if done is not None:
+                bar.set_description_str(what, refresh=False)
                 bar.update(done - bar.n)
-            elif monotonic() - start > PATIENCE:
-                bar.refresh()
+            elif monotonic() - shown > PATIENCE:
+                shown = monotonic()
+                bar.set_description_str(f"{what}, compiling" if compiling() else what)
 
         yield progress

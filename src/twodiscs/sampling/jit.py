@@ -169,6 +169,13 @@ def _kept(kernel):
     return kernel
 
 
+def compiling():
+    """Return whether another thread compiles at the moment."""
+    if free := global_compiler_lock._lock.acquire(blocking=False):
+        global_compiler_lock._lock.release()
+    return not free
+
+
 def _package(module):
     return module.partition(".")[0]
 
