@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 from marks import slow
 
+import twodiscs as td
 from twodiscs.dynamics import paths
-from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import all_pairs as many
 from twodiscs.dynamics.many import cell_list as many_cells
 from twodiscs.dynamics.many import class_counts, many_paths, many_rates
 from twodiscs.model.scene import Box, Scene
-from twodiscs.sampling.many import many_initial_states
+from twodiscs.sampling.many import chains, many_initial_states
 from twodiscs.sampling.many.cell_grid import make_grid
 
 #: At the border: where one kernel ends and the other one begins, and on rings.
@@ -131,14 +131,34 @@ def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
 
 @pytest.mark.parametrize("share", [0.5, 0.999])
 def test_events_are_as_many_as_expected_within_a_factor_of_two(share):
-    """Those of a replica, too: 64 of each disc, and more if crowded ones have fewer replicas."""
+    """Those of a replica, too: 256 of each disc, and more if discs are crowded."""
     box = Box(5.0, 4.0, discs=many_initial_states.LARGE)
     scene = box.scene(share * box.largest_radius)
     time, replicas = many_rates.expected_duration(scene), 8
     sums, _ = class_counts.run_classes(scene, 1, 0, 1, time, replicas=replicas)
     events = class_counts.simulated_events(sums) / replicas
     assert 0.5 < events / (time * many_rates.expected_event_rate(scene)) < 2
-    assert 0.5 < events / (64 * box.discs * REPLICAS / many_rates.block_replicas(scene)) < 2
+    assert 0.5 < events / (256 * box.discs * chains.crowding(scene)) < 2
+
+
+@pytest.mark.parametrize(
+    ("discs", "packing"),
+    [(20, 0.3), *(slow(n, p) for n in (64, 1024) for p in (0.3, 0.6)), slow(64, 0.7)],
+)
+def test_a_small_budget_has_an_error_bar(discs, packing):
+    """If discs are so crowded that replicas have to be long, the warning has one that is enough."""
+    side = math.sqrt(discs * math.pi / packing) / 10
+    scene, budget = Scene(side, side, 0.1, discs=discs), 1e6
+    with pytest.warns(td.AccuracyWarning):
+        md = td.simulate(scene, budget=budget, seed=1)
+    if packing == 0.7:
+        assert "after 8 of the 100 replicas that an error needs" in md.note
+        budget = float(md.note.split("a budget of ")[1].split()[0])
+        with pytest.warns(td.AccuracyWarning):
+            md = md.more(budget=budget)
+    assert 100 <= md.point.replicas < 300
+    assert md.point.events < 1.1 * budget
+    assert all(one.stderr for one in md.values())
 
 
 def check_state(scene, state):

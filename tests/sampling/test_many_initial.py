@@ -138,7 +138,7 @@ def test_ways_to_draw_agree(scene, one, other):
 )
 def test_chains_of_events_have_the_law_of_chains_of_single_moves(scene):
     chain = many_initial_states._chain(scene)
-    singly = many_initial_states.Chain(chain.centres, 4000, chain.scales)
+    singly = many_initial_states.Chain(chain.centres, 4000, 0, chain.scales)
     assert difference(scene, drawn(scene, 500, 1), drawn(scene, 250, 2, chain=singly)) < 5
 
 

@@ -390,6 +390,12 @@ def shortfall(rows, budget, events=None, seconds=None, ends="ended", what="event
     more = ((worst["relative_stderr"] or math.inf) / worst["target"]) ** 2
     text = f"{format_number(worst['target'], 'g')} asked for; the {limit} {ends} it "
     if not math.isfinite(more):
+        replicas = worst.get("replicas", MIN_EVENTS)
+        if events and replicas < MIN_EVENTS:
+            # Half more, because replicas come in whole blocks.
+            enough = 1.5 * MIN_EVENTS / replicas * events
+            text += f"after {replicas} of the {MIN_EVENTS} replicas that an error needs"
+            return f"{text}; a budget of {round_up(enough)} is enough"
         seen = f"events {worst['event']}" if "event" in worst else f"hits for {worst['quantity']}"
         return f"{text}before there are enough {seen} for an error"
     reached = format_number(worst["relative_stderr"], ".2g")

@@ -31,7 +31,7 @@ from twodiscs.points.dynamics_point import DynamicsPoint, simulated_events
 from twodiscs.points.estimates import relative_variance
 from twodiscs.points.intervals_point import BINS, GRAIN, IntervalsPoint, wide_edges
 from twodiscs.sampling.initial_states import require_initial_states
-from twodiscs.sampling.rounds import Run, SequentialRun, fixed, round_up_blocks
+from twodiscs.sampling.rounds import Ended, Run, SequentialRun, fixed, round_up_blocks
 from twodiscs.theory.exact import corner_variance, replicas_needed
 
 #: Chains of intervals that share a stream, and the usual budget of their wall and disc events.
@@ -84,6 +84,11 @@ class DynamicsRun(Run):
         """The budget, or without one the number of events of a day, roughly."""
         return self.budget or DAY / find_engine(self.scene).cost_ratio(self.scene)
 
+    @cached_property
+    def replica_duration(self):
+        """The time T of a replica."""
+        return find_engine(self.scene).replica_duration(self.scene, self.budget)
+
     @property
     def _events(self):
         return [event for event in EVENTS if event in self.target]
@@ -127,7 +132,7 @@ class DynamicsRun(Run):
 
     def _everything(self, budget):
         scene, engine = self.scene, find_engine(self.scene)
-        duration, each = engine.replica_duration(scene), engine.block_replicas(scene)
+        duration, each = self.replica_duration, engine.block_replicas(scene)
         index = [EVENTS.index(event) for event in self._waited]
         goals = np.array([self.target[event] for event in self._waited])
         replicas = (
@@ -162,13 +167,21 @@ class DynamicsRun(Run):
             budget,
             round_up_blocks(planned),
             engine.cost_ratio(scene),
+            engine.first_round(scene),
         )
+
+    def run(self, progress=None, cores=1, resume_from=None):
+        """Return the point; replicas of another duration, from another budget, are done again."""
+        old = None if isinstance(resume_from, Ended) else resume_from
+        if old and old["all"]["duration"] != self.replica_duration:
+            resume_from = None
+        return super().run(progress, cores, resume_from)
 
     def point(self, ranges):
         """Return the ``DynamicsPoint``, given {component: ranges of blocks with their sums}."""
         engine = find_engine(self.scene)
         constants = {
-            "duration": engine.replica_duration(self.scene),
+            "duration": self.replica_duration,
             "replicas": engine.block_replicas(self.scene),
             "target": self._target,
         }
@@ -228,7 +241,7 @@ class TimedRun(DynamicsRun):
     def components(self):
         """The ``SequentialRun`` of all blocks, {"all": run}."""
         engine = find_engine(self.scene)
-        each = engine.replica_duration(self.scene) * engine.block_replicas(self.scene)
+        each = self.replica_duration * engine.block_replicas(self.scene)
         blocks, run = max(1, math.ceil(self.duration / each)), self._everything(self.most_events)
         return {"all": fixed(run.work, blocks, run.block_events, run.cost_ratio)}
 

@@ -387,10 +387,11 @@ def simulate(
     """Measure mean times by molecular dynamics: {quantity: ``Measurement``}, in time.
 
     Many independent trajectories start in the invariant measure. Each has the same duration T, a
-    power of two that depends on the scene. The mean count in T is exactly T times the rate, for
-    every T. Trajectories are added until every relative standard error is below ``error``, or
-    ``budget`` events are simulated; with a ``duration``, until that time is simulated. ``cost``
-    measures how long an error takes.
+    power of two that depends on the scene, and from 20 discs on also on a small ``budget``, so that
+    100 trajectories fit into it unless the discs are crowded. The mean count in T is exactly T
+    times the rate, for every T. Trajectories are added until every relative standard error is below
+    ``error``, or ``budget`` events are simulated; with a ``duration``, until that time is
+    simulated. ``cost`` measures how long an error takes.
 
     Work comes in whole blocks of 1024 trajectories, 2.4e5 events each for a radius of 0.2 in a box
     of 1.5 × 1. Without a ``duration`` the minimum is 32 blocks, 7.7e6 events there, or fewer within

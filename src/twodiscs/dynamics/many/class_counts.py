@@ -23,15 +23,15 @@ def run_blocks(scene, events, seed, first, stop, duration, **shape):
 def run_classes(scene, seed, first, stop, duration, *, replicas=None, lanes=None, hops=True):
     """Count all classes of events of a ``Scene`` in the blocks ``first`` … ``stop`` − 1.
 
-    A block is ``replicas`` states of the invariant measure from the stream ``seed``, each followed
-    for ``duration``. Returns (sums, products) as ``count_events`` does: integers, which depend on
-    neither lanes nor shards. ``LARGE`` numbers of discs have the kernel ``cell_list``, which
-    leaves out hops if ``hops`` is not True.
+    A block is ``replicas`` states of the invariant measure from the stream ``seed``, successive
+    ones of a chain if a chain draws them, each followed for ``duration``. Returns (sums, products)
+    as ``count_events`` does: integers, which depend on neither lanes nor shards. ``LARGE`` numbers
+    of discs have the kernel ``cell_list``, which leaves out hops if ``hops`` is not True.
     """
     n, replicas = len(CLASSES), replicas or block_replicas(scene)
     lanes = lanes or ensemble.LANES
     hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
-    law, grid, initial = many_disc_law(scene), large_grid(scene), make_initial(scene)
+    law, grid, initial = many_disc_law(scene), large_grid(scene), make_initial(scene, chained=True)
     counts = np.zeros(n, np.int64), np.zeros((n, n), np.int64)
     for block in range(first, stop):
         states = block_states(initial, replicas, seed, block)

@@ -9,6 +9,7 @@ from twodiscs.model.many_geometry import LARGE
 from twodiscs.sampling.many import insertions
 from twodiscs.sampling.many.chains import MOST_CROWDING, crowding
 from twodiscs.sampling.many.many_initial_states import method
+from twodiscs.sampling.rounds import FIRST_ROUND
 from twodiscs.theory import n_discs
 from twodiscs.theory.equation_of_state import bulk_derivatives
 from twodiscs.theory.flux import rates
@@ -16,16 +17,24 @@ from twodiscs.theory.flux import rates
 #: Events of a replica, and of a replica whose initial state takes as long as ten thousand events.
 REPLICA_EVENTS, CHAIN_REPLICA_EVENTS = 256, 8192
 
-#: Events of each disc in a replica of ``LARGE`` numbers of discs, and the fewest replicas of a
-#: block of crowded ones.
-EVENTS_PER_DISC, FEWEST_REPLICAS = 64, 8
+#: Events of each roomy disc in a replica of ``LARGE`` numbers of discs, and the most of all discs
+#: together. The motion then takes several times as long as the draw of the state.
+EVENTS_PER_DISC, MOST_REPLICA_EVENTS = 256, 2**18
+
+#: Replicas that a budget has room for, if they can be shorter. Those of crowded discs cannot: for
+#: states of a chain that are still alike, they would not be independent.
+BUDGET_REPLICAS, CROWDED = 128, 2.5
+
+#: The events of a block of ``LARGE`` numbers of discs and its fewest replicas, and the events of
+#: each disc in an epoch.
+BLOCK_EVENTS, FEWEST_REPLICAS, EPOCH_EVENTS = 2**20, 8, 64
 
 #: The time that a pair of discs adds to an event, over the time of an event of the plain ensemble.
 #: Events of 3, 4 and 8 discs take 3.7, 5.9 and 22 times as long. Pairs of rough discs take longer.
 PAIR_COST, ROUGH_PAIR_COST = 0.8, 1.3
 
 #: The same for ``LARGE`` numbers of discs: the time of an event, and the time that each disc adds.
-EVENT_COST, DISC_COST = 50.0, 0.25
+EVENT_COST, DISC_COST = 50.0, 0.04
 
 #: The time of a kick for each of ``LARGE`` numbers of discs, over the time of an event. The time to
 #: draw the velocity of a disc, over the time of an event of the plain ensemble.
@@ -71,11 +80,11 @@ def expected_duration(scene, events=None):
 
     The rate is guessed from the wall hits of an ideal gas and from the distance to the largest
     radius. By default ``events`` is 256, or ``CHAIN_REPLICA_EVENTS`` if an initial state takes a
-    chain of moves. ``LARGE`` numbers of discs have ``EVENTS_PER_DISC`` each, more if replicas are
-    fewer.
+    chain of moves. ``LARGE`` numbers of discs have ``EVENTS_PER_DISC`` each, crowded ones more, and
+    at most ``MOST_REPLICA_EVENTS``.
     """
     if events is None and scene.discs >= LARGE:
-        events = EVENTS_PER_DISC * scene.discs * _roomy_replicas(scene) // block_replicas(scene)
+        events = _replica_events(scene)
     events = events or (CHAIN_REPLICA_EVENTS if method(scene) == "chain" else REPLICA_EVENTS)
     return ensemble.nearest_power_of_two(events / _guessed_rate(scene))
 
@@ -85,33 +94,46 @@ def _guessed_rate(scene):
     return math.sqrt(scene.discs) * (0.5 / scene.range_x + 0.5 / scene.range_y + 0.35 / room)
 
 
-def replica_duration(scene):
+def replica_duration(scene, budget=None):
     """Return the time T of one replica, a power of two, see ``expected_duration``.
 
-    With friction it is shorter, so that kicks do not add to the work.
+    With friction it is shorter, so that kicks do not add to the work. For ``LARGE`` numbers of
+    discs, if they are not crowded, it is also so short that ``BUDGET_REPLICAS`` have no more events
+    than the ``budget``, but one event for each disc.
     """
-    return ensemble.nearest_power_of_two(expected_duration(scene) / work_per_event(scene))
+    work = work_per_event(scene)
+    duration = ensemble.nearest_power_of_two(expected_duration(scene) / work)
+    if budget is None or scene.discs < LARGE or crowding(scene) > CROWDED:
+        return duration
+    events = budget / BUDGET_REPLICAS / work
+    longest = max(events, scene.discs) / expected_event_rate(scene)
+    return min(duration, math.ldexp(0.5, math.frexp(longest)[1]))
 
 
 def block_replicas(scene):
-    """Return the number of replicas of a block.
+    """Return the number of replicas of a block: for ``LARGE`` numbers of discs a power of two.
 
-    ``LARGE`` numbers of discs have fewer replicas. If their initial states take many contacts, they
-    have still fewer, which last longer.
+    A block then has about ``BLOCK_EVENTS``, and at least ``FEWEST_REPLICAS``.
     """
     if scene.discs < LARGE:
         return ensemble.REPLICAS
-    usual = _roomy_replicas(scene)
-    return min(usual, max(FEWEST_REPLICAS, usual >> (math.frexp(crowding(scene))[1] - 1)))
+    return max(FEWEST_REPLICAS, 1 << int(BLOCK_EVENTS / _replica_events(scene)).bit_length() - 1)
 
 
-def _roomy_replicas(scene):
-    return ensemble.REPLICAS >> (scene.discs.bit_length() - 5)
+def first_round(scene):
+    """Return the number of blocks of a first round, fewer if blocks have ``LARGE`` numbers."""
+    if scene.discs < LARGE:
+        return FIRST_ROUND
+    return max(FIRST_ROUND // 4, -(-BUDGET_REPLICAS // block_replicas(scene)))
+
+
+def _replica_events(scene):
+    return min(EVENTS_PER_DISC * crowding(scene) * scene.discs, MOST_REPLICA_EVENTS)
 
 
 def usual_epoch(scene):
-    """Return a time in which each disc of a ``Scene`` has some ``EVENTS_PER_DISC`` events."""
-    return expected_duration(scene, EVENTS_PER_DISC * scene.discs)
+    """Return a time in which each disc of a ``Scene`` has some ``EPOCH_EVENTS``."""
+    return expected_duration(scene, EPOCH_EVENTS * scene.discs)
 
 
 def expected_rate(scene, event):

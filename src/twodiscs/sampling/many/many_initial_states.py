@@ -14,6 +14,11 @@ discs also their spins s, as the speeds rω of their surfaces.
   these can be used, and with chains of other lengths. If discs cannot go from one arrangement to
   another, it stays near the known one.
 
+Counts of events may take successive states of one chain, which cost a part of a new chain. Those
+states have the same law, and all that follow are closer to it. Between two of them the discs have
+so many contacts that neighbours in a chain are almost independent: the study of calibration has
+the correlation of their counts.
+
 The arithmetic is + − × / and √ only.
 """
 
@@ -40,6 +45,10 @@ LEAST_FREE_FRACTION = 1e-3
 #: Sweeps of a chain, and the least number of sizes of its moves; each is half of the one before.
 CHAIN_SWEEPS, LEAST_SCALES = 4000, 8
 
+#: The sweeps to a new state over those to the next state of a chain of roomy discs. Close to the
+#: largest radius discs forget slowly where they were, and each state has a new chain.
+APART = 8
+
 #: The most discs for rejection of heights in a channel: with more, too few would be accepted.
 MOST_REJECTED = 64
 
@@ -59,12 +68,13 @@ class Cells(NamedTuple):
 class Chain(NamedTuple):
     """A chain from an arrangement (2, N), its number of sweeps, and the number of sizes of moves.
 
-    With a ``grid`` there are event chains: their number is ``sweeps``, their mean length
-    ``length``.
+    After ``between`` more sweeps it gives the next state; if they are 0, that has a new chain. With
+    a ``grid`` there are event chains: their number is ``sweeps``, their mean length ``length``.
     """
 
     centres: np.ndarray
     sweeps: int
+    between: int
     scales: int
     length: float = 0.0
     grid: CellGrid | None = None
@@ -98,14 +108,17 @@ def method(scene):
     return "rejection" if insertions.free_fraction(scene) >= LEAST_FREE_FRACTION else "chain"
 
 
-def make_initial(scene, by=None):
-    """Return the ``Initial`` of a ``Scene``, by its ``method`` unless another one is named."""
+def make_initial(scene, by=None, *, chained=False):
+    """Return the ``Initial`` of a ``Scene``, by its ``method`` unless another one is named.
+
+    If states are ``chained``, those that one call draws by a chain are successive states of it.
+    """
     by = by or method(scene)
     return Initial(
         scene.discs, scene.range_x / 2, scene.range_y / 2, scene.contact_distance,
         scene.width if scene.periodic else None,
         _cells(scene) if by == "channel" else None,
-        _chain(scene) if by == "chain" or scene.discs > MOST_REJECTED else None,
+        _chain(scene, chained) if by == "chain" or scene.discs > MOST_REJECTED else None,
         (4 if scene.moment_of_inertia is None else 5) * scene.discs, spin_factor(scene),
     )  # fmt: skip
 
@@ -115,15 +128,22 @@ def spin_factor(scene):
     return None if scene.moment_of_inertia is None else 1 / math.sqrt(scene.moment_of_inertia)
 
 
-def _chain(scene):
+def _chain(scene, chained=False):
     # The smallest moves are a fraction of the free length that is left to the discs.
     tightness = max(scene.range_x, scene.range_y) / (scene.largest_radius - scene.radius)
     scales = min(62, max(LEAST_SCALES, 2 + math.frexp(tightness)[1]))
     centres, grid = np.array(arrangement(scene)).T.copy(), large_grid(scene)
     if grid is None:
-        return Chain(centres, CHAIN_SWEEPS, scales)
+        return Chain(centres, CHAIN_SWEEPS, chained * _between(scene, CHAIN_SWEEPS // 2), scales)
     number, length = chains.plan(scene)
-    return Chain(centres, number, scales, _rounded(length), grid)
+    between = chained * _between(scene, number)
+    return Chain(centres, number, between, scales, _rounded(length), grid)
+
+
+def _between(scene, sweeps):
+    """Return the part of the ``sweeps`` to the next state of a chain; 0 if discs are crowded."""
+    share = chains.crowding(scene) / APART
+    return math.ceil(share * sweeps) if share < 1 else 0
 
 
 def large_grid(scene):
@@ -287,7 +307,7 @@ def draw_velocities(state, velocities, cuts, ring, spin=None):
 # Centres -----------------------------------------------------------------------------------------
 
 
-def _rejected(state, initial, centres, chain):
+def _rejected(state, initial, centres, k, chain):
     i = 0
     while i < initial.discs:
         x, y = initial.half_x * signed_uniform(state), initial.half_y * signed_uniform(state)
@@ -295,9 +315,9 @@ def _rejected(state, initial, centres, chain):
         i = i + 1 if is_free(centres, i, x, y, initial, -1) else 0
 
 
-def _one_by_one(state, initial, centres, chain, grid):
+def _one_by_one(state, initial, centres, sweeps, chain, grid):
     width, height = 2 * initial.half_x, 2 * initial.half_y
-    for _ in range(chain.sweeps):
+    for _ in range(sweeps):
         for i in range(initial.discs):
             scale = 1.0 / np.float64(1 << (next_bits(state) % np.uint64(chain.scales)))
             x = centres[0, i] + scale * width * signed_uniform(state)
@@ -308,17 +328,22 @@ def _one_by_one(state, initial, centres, chain, grid):
 
 
 @optional(_one_by_one)
-def move_discs(state, initial, centres, chain, grid):
+def move_discs(state, initial, centres, sweeps, chain, grid):
     """Move discs by event chains, or one by one if there is no grid."""
-    chains.run_chains(state, initial, centres, chain.sweeps, chain.length, grid)
+    chains.run_chains(state, initial, centres, sweeps, chain.length, grid)
 
 
 @optional(_rejected)
-def run_chain(state, initial, centres, chain):
-    """Fill ``centres`` (2, N) by a chain of moves, or by rejection if there is no chain."""
-    for i in range(initial.discs):
+def run_chain(state, initial, centres, k, chain):
+    """Fill ``centres`` (2, N) by a chain of moves, or by rejection if there is no chain.
+
+    They have the state ``k`` − 1, from which a chain may go on.
+    """
+    begins = k == 0 or chain.between == 0
+    for i in range(initial.discs if begins else 0):
         centres[0, i], centres[1, i] = chain.centres[0, i], chain.centres[1, i]
-    move_discs(state, initial, centres, chain, chain.grid)
+    sweeps = chain.sweeps if begins else chain.between
+    move_discs(state, initial, centres, sweeps, chain, chain.grid)
 
 
 @optional(lambda chain: False)
@@ -330,7 +355,7 @@ def is_there(chain):
 @optional(lambda state, initial, centres, chain: None)
 def settle(state, initial, centres, chain):
     """Move the discs from their present centres, if there is a chain."""
-    move_discs(state, initial, centres, chain, chain.grid)
+    move_discs(state, initial, centres, chain.sweeps, chain, chain.grid)
 
 
 @inlined
@@ -373,8 +398,12 @@ def propose_heights(state, cells, sigma, heights, tilted=False):
     return uniform(state) < ratio
 
 
-@optional(lambda state, initial, centres, cells: run_chain(state, initial, centres, initial.chain))
-def draw_centres(state, initial, centres, cells):
+def _without_cells(state, initial, centres, k, cells):
+    run_chain(state, initial, centres, k, initial.chain)
+
+
+@optional(_without_cells)
+def draw_centres(state, initial, centres, k, cells):
     """Fill ``centres`` (2, N) by the method of the channel if there is one, else by the others."""
     along, across = (1, 0) if cells.turned else (0, 1)
     half = initial.half_y if cells.turned else initial.half_x
@@ -413,7 +442,7 @@ def draw_states(state, initial, states):
     centres = np.empty((2, initial.discs))
     velocities, cuts = velocity_memory(initial.discs, initial.spin)
     for k in range(states.shape[1]):
-        draw_centres(state, initial, centres, initial.cells)
+        draw_centres(state, initial, centres, k, initial.cells)
         draw_velocities(state, velocities, cuts, initial.ring, initial.spin)
         put_state(states, k, centres, velocities, initial.spin)
 
