@@ -1,7 +1,7 @@
 """N discs one event at a time, by textbook formulas, for comparison with the lock-step kernels.
 
-It shares neither the law, nor the initial states, nor the random numbers of the package. On a ring
-x is never wrapped: every disc has an image in every period.
+It shares neither the law, nor the initial states, nor the random numbers of the package. Positions
+along periodic axes are never wrapped: every disc has an image in every period.
 """
 
 import math
@@ -14,7 +14,7 @@ from twodiscs.sampling.jit import compiled
 #: Vertical hops, horizontal hops, collisions, hits of the walls of x and of y.
 KINDS = 5
 
-#: Ends of a flight that are no event: on a ring discs look again; a time is over.
+#: Ends of a flight that are no event: on periodic axes discs look again; a time is over.
 LOOK_AGAIN, END = -1, 5
 
 
@@ -58,33 +58,35 @@ def impulse(gx, gy, nx, ny, spin, kappa, normal):
 
 
 @compiled
-def first_event(discs, half_x, half_y, sigma, ring, most):
-    """Return (time, kind, disc, other disc, separation of its image) of an event, or its END.
+def first_event(discs, box, most):
+    """Return (time, kind, disc, other disc, shifts of its image) of an event, or its END.
 
-    ``discs`` are (x, y, u, v, s), ``most`` is the time after which no event is looked for.
+    ``discs`` are (x, y, u, v, s), ``box`` is that of ``constants``; ``most`` is the time after
+    which no event is looked for.
     """
-    x, y, u, v, _ = discs
-    best, kind, first, second, shift = most, END, 0, 0, 0.0
+    (x, y, u, v, _), (half_x, half_y, sigma, ring_x, ring_y) = discs, box
+    best, kind, first, second, shift = most, END, 0, 0, (0.0, 0.0)
     # The largest relative speed is √2: no third image comes near before one looks again.
-    if 0 < ring < 4 * most:
-        best, kind = ring / 4, LOOK_AGAIN
+    for ring in (ring_x, ring_y):
+        if 0 < ring < 4 * best:
+            best, kind = ring / 4, LOOK_AGAIN
     for i in range(x.size):
-        if ring == 0:
-            t = time_to_wall(x[i], u[i], half_x)
-            if t < best:
-                best, kind, first = t, 3, i
-        t = time_to_wall(y[i], v[i], half_y)
+        t = time_to_wall(x[i], u[i], half_x) if ring_x == 0 else math.inf
+        if t < best:
+            best, kind, first = t, 3, i
+        t = time_to_wall(y[i], v[i], half_y) if ring_y == 0 else math.inf
         if t < best:
             best, kind, first = t, 4, i
         for j in range(i):
-            near = ring * round((x[i] - x[j]) / ring) if ring > 0 else 0.0
-            for side in range(-1, 2) if ring > 0 else range(1):
-                image = near + side * ring
-                t = time_to_contact(
-                    x[i] - x[j] - image, y[i] - y[j], u[i] - u[j], v[i] - v[j], sigma
-                )
-                if t < best:
-                    best, kind, first, second, shift = t, 2, i, j, image
+            near_x = ring_x * round((x[i] - x[j]) / ring_x) if ring_x > 0 else 0.0
+            near_y = ring_y * round((y[i] - y[j]) / ring_y) if ring_y > 0 else 0.0
+            for turn in range(-1, 2 if ring_x > 0 else 0):
+                for round_y in range(-1, 2 if ring_y > 0 else 0):
+                    across, up = near_x + turn * ring_x, near_y + round_y * ring_y
+                    dx, dy = x[i] - x[j] - across, y[i] - y[j] - up
+                    t = time_to_contact(dx, dy, u[i] - u[j], v[i] - v[j], sigma)
+                    if t < best:
+                        best, kind, first, second, shift = t, 2, i, j, (across, up)
     return best, kind, first, second, shift
 
 
@@ -98,7 +100,7 @@ def advance(discs, event, kappa):
         x[k] += time * u[k]
         y[k] += time * v[k]
     if kind == 2:
-        dx, dy = x[i] - x[j] - shift, y[i] - y[j]
+        dx, dy = x[i] - x[j] - shift[0], y[i] - y[j] - shift[1]
         distance = math.hypot(dx, dy)
         jx, jy, turn = impulse(
             u[i] - u[j], v[i] - v[j], dx / distance, dy / distance, s[i] + s[j], kappa, 1.0
@@ -116,23 +118,24 @@ def advance(discs, event, kappa):
 
 
 @compiled
-def run(x, y, u, v, half_x, half_y, sigma, ring, batches, length, s, kappa):
+def run(x, y, u, v, box, batches, length, s, kappa):
     """Return the counts (batches, kinds) of a trajectory, after a tenth of it; changes the state.
 
-    ``ring`` is the circumference along x, or 0 between walls. ``s`` are the speeds of the surfaces
-    of rough discs with the moment of inertia ``kappa`` m r², which is 0 for smooth discs.
+    ``s`` are the speeds of the surfaces of rough discs with the moment of inertia ``kappa`` m r²,
+    which is 0 for smooth discs. Hops along periodic axes are not counted.
     """
     discs, counts = (x, y, u, v, s), np.zeros((batches, KINDS), np.int64)
     now, batch = -0.1 * length * batches, 0
     while batch < batches:
-        event = first_event(discs, half_x, half_y, sigma, ring, length * (batch + 1) - now)
+        event = first_event(discs, box, length * (batch + 1) - now)
         time, kind = event[:2]
         if now >= 0:
             for i in range(x.size):
                 for j in range(i):
                     dy, dx = y[i] - y[j], x[i] - x[j]
-                    counts[batch, 0] += (dy < 0) != (dy + time * (v[i] - v[j]) < 0)
-                    if ring == 0:
+                    if box[4] == 0:
+                        counts[batch, 0] += (dy < 0) != (dy + time * (v[i] - v[j]) < 0)
+                    if box[3] == 0:
                         counts[batch, 1] += (dx < 0) != (dx + time * (u[i] - u[j]) < 0)
             if 2 <= kind < KINDS:
                 counts[batch, kind] += 1
@@ -143,18 +146,19 @@ def run(x, y, u, v, half_x, half_y, sigma, ring, batches, length, s, kappa):
 
 
 @compiled
-def put_velocities(u, v, s, normal, kappa, ring, flux):
+def put_velocities(u, v, s, normal, kappa, box, flux):
     """Set u, v and s to a state of the energy 1/2, uniform on its sphere, from normal numbers.
 
-    The momentum of smooth discs on a ``ring`` is 0. A ``flux`` above 0 takes the place of
-    |u1 − u2|/√2, which is a normal number as well.
+    The momentum of smooth discs along the periodic axes of a ``box`` is 0. A ``flux`` above 0
+    takes the place of |u1 − u2|/√2, which is a normal number as well.
     """
     n, square = u.size, 0.0
-    mean = np.sum(normal[:n]) / n if ring > 0 and kappa == 0 else 0.0
+    mean = np.sum(normal[:n]) / n if box[3] > 0 and kappa == 0 else 0.0
+    mean_v = np.sum(normal[n : 2 * n]) / n if box[4] > 0 and kappa == 0 else 0.0
     apart = normal[0] - normal[1]
     change = (flux - abs(apart) / math.sqrt(2)) / math.sqrt(2) if flux > 0 else 0.0
     for i in range(n):
-        u[i], v[i] = normal[i] - mean, normal[n + i]
+        u[i], v[i] = normal[i] - mean, normal[n + i] - mean_v
         u[i] += (0.0 if i > 1 else (1 - 2 * i) * math.copysign(1.0, apart)) * change
         s[i] = normal[2 * n + i] / math.sqrt(kappa) if kappa > 0 else 0.0
         square += u[i] ** 2 + v[i] ** 2 + kappa * s[i] ** 2
@@ -165,9 +169,9 @@ def put_velocities(u, v, s, normal, kappa, ring, flux):
 
 
 def constants(scene):
-    """Return (half-ranges of the centres, σ, the circumference or 0) and κ of a ``Scene``."""
-    ring = scene.width if scene.periodic else 0.0
-    box = scene.range_x / 2, scene.range_y / 2, scene.contact_distance, ring
+    """Return (half-ranges of the centres, σ, the periods of x and y or 0) and κ of a ``Scene``."""
+    rings = [scene.side(axis) if axis in scene.periodic else 0.0 for axis in "xy"]
+    box = scene.range_x / 2, scene.range_y / 2, scene.contact_distance, *rings
     return box, scene.moment_of_inertia or 0.0
 
 
@@ -180,8 +184,8 @@ def rates(scene, events, seed, batches=50):
     x, y = np.array(arrangement(scene)).T.copy()
     u, v, s = np.zeros((3, scene.discs))
     normal = np.random.default_rng(seed).standard_normal(3 * scene.discs)
-    put_velocities(u, v, s, normal, kappa, box[-1], 0.0)
-    trial = run(x, y, u, v, *box, 1, 4.0, s, kappa)
+    put_velocities(u, v, s, normal, kappa, box, 0.0)
+    trial = run(x, y, u, v, box, 1, 4.0, s, kappa)
     length = 4.0 * events / max(1, int(trial[0, 2:].sum())) / batches
-    counts = run(x, y, u, v, *box, batches, length, s, kappa) / length
+    counts = run(x, y, u, v, box, batches, length, s, kappa) / length
     return counts.mean(axis=0), counts.std(axis=0, ddof=1) / math.sqrt(batches)

@@ -14,9 +14,9 @@ from twodiscs.sampling.jit import compiled
 
 
 @compiled
-def on_surface(discs, half_x, half_y, sigma, ring, kappa):
+def on_surface(discs, box, kappa):
     """Set ``discs``, the arrays (x, y, u, v, s), to a state on x1 = x2."""
-    (x, y, u, v, s), apart = discs, False
+    (x, y, u, v, s), (half_x, half_y, sigma, ring, _), apart = discs, box, False
     while not apart:
         for i in range(x.size):
             x[i] = half_x * (2 * np.random.rand() - 1)
@@ -29,7 +29,7 @@ def on_surface(discs, half_x, half_y, sigma, ring, kappa):
                     dx -= ring * round(dx / ring)
                 apart &= math.hypot(dx, y[i] - y[j]) >= sigma
     flux = math.sqrt(-2 * math.log(1 - np.random.rand()))
-    put_velocities(u, v, s, np.random.standard_normal(3 * x.size), kappa, ring, flux)
+    put_velocities(u, v, s, np.random.standard_normal(3 * x.size), kappa, box, flux)
 
 
 @compiled
@@ -46,7 +46,7 @@ def follow(discs, box, kappa, times, found, gap, mean):
     # The cell of x1 − x2, −∞ … ∞ on a ring; right after the hop at time 0.
     cell = 0 if first > 0 else -1
     while k < times.size or clock - latest < gap:
-        event = first_event(discs, box[0], box[1], box[2], ring, wait)
+        event = first_event(discs, box, wait)
         step = 1 if u[0] > u[1] else -1
         # Hops on the way, and the times that are passed.
         while True:
@@ -68,7 +68,7 @@ def follow(discs, box, kappa, times, found, gap, mean):
         wait -= event[0]
         advance(discs, event, kappa)
         if event[1] == END:
-            put_velocities(u, v, s, np.random.standard_normal(3 * x.size), kappa, ring, 0.0)
+            put_velocities(u, v, s, np.random.standard_normal(3 * x.size), kappa, box, 0.0)
             wait = np.random.exponential(mean)
     return hops
 
@@ -80,7 +80,7 @@ def fill(seed, found, sizes, n, box, kappa, times, gap, mean):
     discs = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
     past = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
     for k in range(sizes.size):
-        on_surface(discs, box[0], box[1], box[2], box[3], kappa)
+        on_surface(discs, box, kappa)
         for part in range(5):
             for i in range(n):
                 past[part][i] = discs[part][i] * (1 if part < 2 else -1)

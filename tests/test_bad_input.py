@@ -80,7 +80,7 @@ discs: 1025 → discs must be an integer from 2 to 1024, not 1025
 discs: 3, field: 1 → field must be left out with 3 discs
 discs: 3, depth: 1 → depth must be left out with 3 discs
 discs: 3, periodic: xy, moment_of_inertia: 0.5 → moment_of_inertia must be left out in a box without
-discs: 3, periodic: xy → periodic must be left out or x for more than two discs, not 'xy'
+discs: 3, radius: 0.26, periodic: xy → radius 0.26 does not fit: 3 discs in a box of 1.5 × 1.0 need
 discs: 3, radius: 0.31 → radius 0.31 does not fit: 3 discs in a box of 1.5 × 1.0 need a radius below
 discs: 4, radius: 0.376, periodic: x → radius 0.376 does not fit
 discs: 20, radius: 0.2 → 20 discs in a box of 1.5 × 1.0 need a radius below 0.136
@@ -104,7 +104,6 @@ Scene(1.5, 1, 0.1, periodic='x,y') → periodic must be some of the axes x and y
 Scene('0,3', 1, 0.1) → width must be a positive number, not '0,3'; decimals follow a point, 0.3
 Scene(1.5, 1, 0.1, n_discs=3) → 'n_discs'; did you mean discs?
 Scene(1.5, 1, np.array([0.1, 0.2])) → radius must be
-Scene(1.5, 1, 0.1, discs=3, periodic='x').turned() → periodic must be left out or
 td.simulate() → missing 1 required positional argument: 'scene'
 td.simulate(PAPER, 0.5, progress=1) → progress must be True, False or None, not 1
 td.simulate(PAPER, 0.1, duration=10) → error and duration must not both be given

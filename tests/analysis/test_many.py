@@ -101,18 +101,17 @@ def test_an_equation_of_state_gives_the_rates_of_twenty_discs_within_ten_per_cen
 def test_a_trajectory_is_that_of_another_program(name):
     """From the same state, for some sixteen events, in which roundings of 1e-16 stay small."""
     scene = SCENES[name]
-    n, ring = scene.discs, scene.width if scene.periodic else 0.0
-    box = scene.range_x / 2, scene.range_y / 2, scene.contact_distance, ring
+    n, (box, _) = scene.discs, scalar_many.constants(scene)
     duration = many_rates.expected_duration(scene, 16)
     for state in initial_states.states(scene, 20, 11).T:
         frame = td.trajectory(scene, start=state, duration=1.1 * duration)
         parts = [np.array(part) for part in state.reshape(4, n)]
-        scalar_many.run.py_func(*parts, *box, 1, duration, np.zeros(n), 0.0)
+        scalar_many.run.py_func(*parts, box, 1, duration, np.zeros(n), 0.0)
         at_end = frame.states_at(1.1 * duration)[0]
         for row, part in zip("xyuv", parts, strict=True):
             found = np.array([at_end[f"{row}{disc}"] for disc in range(1, n + 1)])
-            if ring and row == "x":
-                found = found - ring * np.round((found - part) / ring)
+            if row in scene.periodic:
+                found = found - scene.side(row) * np.round((found - part) / scene.side(row))
             assert found == pytest.approx(part, abs=1e-6)
 
 

@@ -31,6 +31,13 @@ BORDER = [
 ]
 
 
+#: A torus of three columns and two rows of cells, and one with both images in reach along x alone.
+TORI = [
+    Scene(0.8, 0.6, 0.13, discs=4, periodic="xy"),
+    Scene(0.6, 4.0, 0.13, discs=many_initial_states.LARGE, periodic="xy"),
+]
+
+
 #: Rings of three columns of cells, and of two, where both images of a disc are in reach.
 SHORT = [
     Scene(0.7, 4.0, 0.1, discs=24, periodic="x"),
@@ -44,26 +51,29 @@ ROUGH = slow(Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.3))
 ROUGH_TOO = slow(BORDER[4])
 #: Rings whose discs are kicked.
 KICKED = [replace(scene, friction=4.0) for scene in (BORDER[3], *SHORT)]
+KICKED_TORUS = replace(BORDER[3], periodic="xy", friction=4.0)
 
 
 #: Few discs have as few cells as there may be.
 THREE = Scene(1.5, 1.0, 0.26, discs=3)
 
 
-@pytest.mark.parametrize("scene", [THREE, *BORDER[:3], *map(slow, BORDER[3:] + SHORT)], ids=repr)
+@pytest.mark.parametrize(
+    "scene", [THREE, *BORDER[:3], *TORI, *map(slow, BORDER[3:] + SHORT)], ids=repr
+)
 def test_a_few_events_are_the_same_ones(scene):
     """From the same states, before roundings have grown: the same counts, every one of them."""
     replicas, duration = 256, many_rates.expected_duration(scene, 2 * scene.discs)
-    hops_x = None if scene.periodic else True
+    hops_y, hops_x = (None if axis in scene.periodic else True for axis in "yx")
     given, law = (
         (many_initial_states.states(scene, replicas, 4), np.uint64(4), 0),
         many.many_disc_law(scene),
     )
     one = many_cells.count_events(
-        *given, duration, duration / 3, law, make_grid(scene), True, hops_x, None
+        *given, duration, duration / 3, law, make_grid(scene), hops_y, hops_x, None
     )
     other = many.count_events(*given, 64, duration, law, hops_x, None)
-    assert one[0].sum() > (2 if scene is THREE else 10) * replicas
+    assert one[0].sum() > (2 if scene.discs < many_initial_states.LARGE else 10) * replicas
     for some, same in zip(one, other, strict=True):
         assert np.array_equal(some, same)
 
@@ -76,23 +86,32 @@ def test_which_kernel_runs():
     )
     assert many_initial_states.large_grid(small) is None
     assert many_initial_states.large_grid(large) is not None
-    assert [make_grid(scene).x.size for scene in SHORT] == [4, 3]
+    assert [make_grid(scene).x.size for scene in [*SHORT, *TORI]] == [4, 3, 4, 3]
+    assert make_grid(TORI[0]).y.size == 3
 
 
 @pytest.mark.parametrize(
     "scene",
-    [BORDER[3], *SHORT, slow(BORDER[0]), ROUGH_TOO, slow(Scene(48.0, 1.0, 0.1, discs=64)), ROUGH],
+    [
+        BORDER[3],
+        *SHORT,
+        TORI[1],
+        slow(BORDER[0]),
+        ROUGH_TOO,
+        slow(Scene(48.0, 1.0, 0.1, discs=64)),
+        ROUGH,
+    ],
     ids=repr,
 )
 def test_advanced_states_are_those_of_the_other_kernel(scene):
     """After some events of each disc, and there and back again; rounds of a ring as well."""
     start = many_initial_states.states(scene, 20, 9)
     duration = many_rates.expected_duration(scene, 4 * scene.discs)
-    states, laps = start.copy(), np.zeros((scene.discs, 20))
+    states, laps = start.copy(), np.zeros((2 * scene.discs, 20))
     counts = scene.periodic and scene.moment_of_inertia is None
     hops, others = (np.zeros(20), np.zeros(20)) if counts else (None, None)
     many_paths.advance_all(scene, states, laps, duration, None, hops)
-    other, rounds = start.copy(), np.zeros((scene.discs, 20))
+    other, rounds = start.copy(), np.zeros((2 * scene.discs, 20))
     many.advance_states(other, rounds, duration, many.many_disc_law(scene), None, others)
     assert np.array_equal(laps, rounds)
     assert np.array_equal(hops, others)
@@ -105,14 +124,20 @@ def test_advanced_states_are_those_of_the_other_kernel(scene):
 
 @pytest.mark.parametrize(
     "scene",
-    [*KICKED, slow(BORDER[0]), ROUGH_TOO, slow(Scene(8.75, 0.6, 0.18, discs=20, friction=4.0))],
+    [
+        *KICKED,
+        slow(KICKED_TORUS),
+        slow(BORDER[0]),
+        ROUGH_TOO,
+        slow(Scene(8.75, 0.6, 0.18, discs=20, friction=4.0)),
+    ],
     ids=repr,
 )
 def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
     """In the same order, hops as well, before roundings have grown; also past a full log."""
     state = many_initial_states.states(scene, 1, 1)[:, 0]
-    if scene.periodic:
-        state[3] += 2 * scene.width
+    for axis in scene.periodic:
+        state[3 + scene.discs * (axis == "y")] += 2 * scene.side(axis)
     # The rate that is guessed for short rings is far too high.
     short = scene in KICKED[1:]
     duration = many_rates.expected_duration(scene, (10 if short else 5) * scene.discs)
@@ -165,16 +190,17 @@ def check_state(scene, state):
     """Discs do not overlap and are between the walls; energy and momenta are what they were."""
     x, y, u, v, *s = np.reshape(state, (-1, scene.discs))
     i, j = np.array([*itertools.combinations(range(scene.discs), 2)]).T
-    dx = x[i] - x[j]
-    if scene.periodic:
-        dx -= scene.width * np.round(dx / scene.width)
-    gap = np.min(np.hypot(dx, y[i] - y[j])) - scene.contact_distance
+    apart = {"x": x[i] - x[j], "y": y[i] - y[j]}
+    for axis in scene.periodic:
+        apart[axis] -= scene.side(axis) * np.round(apart[axis] / scene.side(axis))
+    gap = np.min(np.hypot(*apart.values())) - scene.contact_distance
     assert gap >= -1e-13 * max(scene.width, scene.height)
-    assert scene.periodic or np.max(np.abs(x)) <= scene.range_x / 2 * (1 + 1e-15)
-    assert np.max(np.abs(y)) <= scene.range_y / 2 * (1 + 1e-15)
+    assert "x" in scene.periodic or np.max(np.abs(x)) <= scene.range_x / 2 * (1 + 1e-15)
+    assert "y" in scene.periodic or np.max(np.abs(y)) <= scene.range_y / 2 * (1 + 1e-15)
     turning = scene.moment_of_inertia * np.sum(s[0] ** 2) if s else 0.0
     assert abs(np.sum(u * u + v * v) + turning - 1) < 1e-11
-    assert "x" not in scene.conserved or abs(np.sum(u)) < 1e-10
+    for axis, velocities in (("x", u), ("y", v)):
+        assert axis not in scene.conserved or abs(np.sum(velocities)) < 1e-10
 
 
 side = math.sqrt(256 * math.pi * 0.01 / 0.6)
@@ -184,6 +210,8 @@ STAYING = {
     "tiny": Scene(1.5, 1.0, 1e-9, discs=5),
     "ring": Scene(1.5, 1.0, 0.2, discs=4, periodic="x"),
     "dense ring": Scene(side, side, 0.1, discs=256, periodic="x"),
+    "torus": Scene(1.0, 1.0, 0.2499999, discs=3, periodic="xy"),
+    "dense torus": Scene(side, side, 0.1, discs=256, periodic="xy"),
     "three": Scene(1.5, 1.0, 0.15, discs=3),
     "many": Scene(side, side, 0.1, discs=256),
     "rough": BORDER[4],
@@ -192,11 +220,11 @@ STAYING = {
 
 @pytest.mark.parametrize(
     ("name", "events"),
-    [*((name, 4e4) for name in [*STAYING][:4]), *(slow(name, 2e7) for name in [*STAYING][4:])],
+    [*((name, 4e4) for name in [*STAYING][:6]), *(slow(name, 2e7) for name in [*STAYING][6:])],
 )
 def test_nothing_overlaps_or_drifts(name, events):
     scene, states = STAYING[name], many_initial_states.states(STAYING[name], 1, 1)
-    laps, part = np.zeros((scene.discs, 1)), many_rates.expected_duration(scene, events)
+    laps, part = np.zeros((2 * scene.discs, 1)), many_rates.expected_duration(scene, events)
     hops = np.zeros(1) if scene.periodic else None  # as the kernels that are compiled above
     for _ in range(5):
         many_paths.advance_all(scene, states, laps, part, None, hops)

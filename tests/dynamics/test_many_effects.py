@@ -69,7 +69,7 @@ def test_two_discs_are_those_of_the_engine_of_two(periodic, inertia):
 def test_velocities_and_spins_are_on_a_sphere(scene, friction, time):
     """At the start and later, also after kicks."""
     scene, replicas, n = replace(scene, friction=friction), 4096, scene.discs
-    states, laps = many_initial_states.states(scene, replicas, 7), np.zeros((n, replicas))
+    states, laps = many_initial_states.states(scene, replicas, 7), np.zeros((2 * n, replicas))
     if time:
         kicks = open_block_kicks(all_pairs.new_kicks(scene, replicas), 7)
         many_paths.advance_all(scene, states, laps, time, kicks)
@@ -157,7 +157,7 @@ def test_replicas_beyond_the_first_lanes_have_their_own_kicks_laps_and_hops():
     """They are those of the same states with the same kicks, followed alone."""
     scene, more = Scene(2.25, 1.0, 0.2, discs=3, periodic="x", friction=4.0), 3
     states = many_initial_states.states(scene, LANES + more, 9)
-    results = states, np.zeros((3, LANES + more)), np.zeros(LANES + more)
+    results = states, np.zeros((6, LANES + more)), np.zeros(LANES + more)
     alone, kicks = [each[..., LANES:].copy() for each in results], all_pairs.new_kicks(scene, more)
     open_all(np.uint64(9), LANES, kicks)
     all_kicks = open_block_kicks(all_pairs.new_kicks(scene, LANES + more), 9)

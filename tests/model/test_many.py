@@ -34,16 +34,17 @@ def test_three_discs_fit_as_far_as_closed_forms_say(width):
 
 @pytest.mark.parametrize("discs", [2, 3, 4, 5, 8, 13, 64])
 @pytest.mark.parametrize("sides", [(1.5, 1.0), (1.0, 1.0), (1.0, 6.0), (20.0, 1.0)])
-@pytest.mark.parametrize("periodic", ["", "x"])
+@pytest.mark.parametrize("periodic", ["", "x", "y", "xy"])
 def test_arrangements_fit(discs, sides, periodic):
     largest = largest_radius(discs, *sides, periodic)
     scene = Scene(*sides, largest * (1 - 1e-9), discs=discs, periodic=periodic)
     centres = arrangement(scene)
     assert len(centres) == discs
     for (x, y), (other_x, other_y) in itertools.combinations(centres, 2):
-        dx = abs(x - other_x)
-        dx = min(dx, scene.width - dx) if periodic else dx
-        assert math.hypot(dx, y - other_y) >= scene.contact_distance
+        dx, dy = abs(x - other_x), abs(y - other_y)
+        dx = min(dx, scene.width - dx) if "x" in periodic else dx
+        dy = min(dy, scene.height - dy) if "y" in periodic else dy
+        assert math.hypot(dx, dy) >= scene.contact_distance
     assert max(abs(x) for x, _ in centres) <= scene.range_x / 2 * (1 + 1e-15)
     assert max(abs(y) for _, y in centres) <= scene.range_y / 2 * (1 + 1e-15)
 
@@ -145,6 +146,9 @@ def test_parts_of_a_long_channel_are_those_of_its_corners(discs, height):
         (Scene(1.5, 1.0, 0.26, discs=3), None),
         (Scene(2.0, 1.5, 0.2, discs=8), None),
         (Scene(1.5, 0.6, 0.195, discs=4, periodic="x"), None),
+        (Scene(0.6, 3.0, 0.2, discs=4, periodic="y"), 6),
+        (Scene(1.7, 1.0, 0.2, discs=4, periodic="xy"), 1),
+        (Scene(1.0, 1.0, 0.2, discs=4, periodic="xy"), None),
     ],
     ids=repr,
 )

@@ -113,7 +113,7 @@ def _many_discs():
         trajectory_rate=many_paths.trajectory_rate,
         usual_duration=many_paths.usual_duration,
         new_kicks=all_pairs.new_kicks,
-        new_wraps=lambda scene, number: np.zeros((scene.discs, number)),
+        new_wraps=lambda scene, number: np.zeros((2 * scene.discs, number)),
         advance_all=many_paths.advance_all,
         unwrap=many_paths.unwrap,
         require_coefficient=many_hop_clusters.require_coefficient,

@@ -1,4 +1,4 @@
-"""The geometry of N equal discs in the plane, between walls or on a ring along x."""
+"""The geometry of N equal discs in the plane: between walls, on a ring or on a torus."""
 
 import math
 from fractions import Fraction
@@ -10,7 +10,7 @@ from twodiscs.model.checks import MOST_WITH_VOLUME, InputError
 MANY_DISC_EFFECTS = ("periodic", "moment_of_inertia", "friction")
 
 #: From this number of discs on, cells list the discs that may touch. The least side of a cell over
-#: σ: it must be longer. A ring has two columns of cells, or more.
+#: σ: it must be longer. Along a periodic axis there are two cells, or more.
 LARGE, LEAST_CELL_SIDE = 20, 1 + 2.0**-20
 
 #: The most decimal digits before or after the point of the volume of the prism: a double can then
@@ -24,10 +24,6 @@ def check_box(box):
         raise InputError(
             f"{other[0]} must be left out with {box.discs} discs, because more than two discs "
             f"have no effects except {', '.join(MANY_DISC_EFFECTS)}, not {box.effects[other[0]]!r}"
-        )
-    if box.periodic not in ("", "x"):
-        raise InputError(
-            f"periodic must be left out or x for more than two discs, not {box.periodic!r}"
         )
     _check_prism(box, box.width * box.height)
 
@@ -60,13 +56,15 @@ def largest_radius(scene):
 
 
 def require_followable(scene):
-    """Raise ``InputError`` for ``LARGE`` numbers of discs on a ring that just fits two of them."""
-    longest = scene.width / (4 * LEAST_CELL_SIDE)
-    if scene.periodic and scene.discs >= LARGE and scene.radius > longest:
-        raise InputError(
-            f"radius {scene.radius!r} must not exceed {longest!r} for {scene.discs} discs on a "
-            f"ring of {scene.width!r}, which has to have room for two cells that hold a disc"
-        )
+    """Raise ``InputError`` for ``LARGE`` numbers of discs if two just fit along a periodic axis."""
+    for axis in scene.periodic if scene.discs >= LARGE else "":
+        longest = scene.side(axis) / (4 * LEAST_CELL_SIDE)
+        if scene.radius > longest:
+            raise InputError(
+                f"radius {scene.radius!r} must not exceed {longest!r} for {scene.discs} discs with "
+                f"a period of {scene.side(axis)!r} along {axis}, which has to have room for two "
+                "cells that hold a disc"
+            )
 
 
 def open_axes(scene):
@@ -96,10 +94,15 @@ def ergodic_components(scene):
     nearer to each other than √(σ² − Δ²), with the separation Δ of the pair along the other axis. If
     the range along the other axis is larger than σ, neighbours can then be exchanged, and there is
     one part. Otherwise each order is a part: there are N!, on a ring (N − 1)! up to a cyclic shift.
+    On a torus discs pass each other along both axes, so they can be exchanged in a row.
     In an ordered channel too short for this, the heights of one order also form several parts
     (``_zigzags``).
     """
     n, sigma, ring = scene.discs, 2 * Fraction(scene.radius), bool(scene.periodic)
+    if scene.periodic == "xy":
+        return 1 if max(map(Fraction, scene.sides)) > n * sigma else None
+    if scene.periodic == "y":
+        return ergodic_components(scene.turned())
     a, b = Fraction(scene.width) - sigma, Fraction(scene.height) - sigma
     if Fraction(scene.width) > n * sigma if ring else a > (n - 1) * sigma:
         return 1 if b > sigma else math.factorial(n - ring)
@@ -158,33 +161,36 @@ def arrangement(scene):
 # Arrangements ------------------------------------------------------------------------------------
 
 
-def _patterns(n, along, across, ring):
+def _patterns(n, along, across, ring, torus):
     """Yield (least distance, rows, discs a row, shift, fewer, spacing) of rows of ``n`` discs.
 
-    Rows are in line, or every other row is shifted by half a spacing and may have a disc less.
+    Rows are in line, or every other row is shifted by half a spacing and may have a disc less. On a
+    torus each row is shifted against the one below, by half a spacing if the number of rows is
+    even, and else by a little less, so that the last row and the first one are shifted as well.
     """
     for rows in range(1, n + 1):
-        v = across / (rows - 1) if rows > 1 else math.inf
+        v = across / (rows - (not torus)) if rows > 1 else math.inf
         least = -(-n // rows)
+        half = rows // 2 / rows if torus else 0.5
         for count in (least, least + 1):
-            for shift, fewer in ((0.0, 0), (0.5, 0), (0.5, 1)):
+            for shift, fewer in ((0.0, 0), (half, 0), (half, 1)):
                 if count * rows - fewer * (rows // 2) < n or (ring and fewer):
                     continue
                 steps = count if ring else count - 1 + (0.0 if fewer else shift)
                 s = along / steps if steps > 0 else 0.0
                 # On a ring the only neighbour of a single disc is its image, which is no contact.
                 in_row = s if count > 1 else math.inf
-                two_on = 2 * v if shift else math.inf
+                two_on = math.hypot((1 - 2 * shift) * s, 2 * v) if shift else math.inf
                 yield min(in_row, math.hypot(shift * s, v), two_on), rows, count, shift, fewer, s
 
 
-def _rows(n, along, across, ring):
+def _rows(n, along, across, ring, torus=False):
     """Return (least distance, centres) of the best of ``_patterns``."""
-    best = max(_patterns(n, along, across, ring))
+    best = max(_patterns(n, along, across, ring, torus))
     least, rows, count, shift, fewer, s = best
-    v = across / (rows - 1) if rows > 1 else 0.0
+    v = across / (rows - (not torus)) if rows > 1 else 0.0
     centres = [
-        ((i + shift * (row % 2)) * s, row * v)
+        ((i + (shift * row % 1 if torus else shift * (row % 2))) * s, row * v)
         for row in range(rows)
         for i in range(count - fewer * (row % 2))
     ]
@@ -203,12 +209,15 @@ def _largest_triangle(a, b):
 def arranged(discs, a, b, periodic=""):
     """Return (centres in [0, ``a``] × [0, ``b``], their least distance), the best known here.
 
-    Candidates are rows in line and staggered rows along either axis; for three discs also the
-    largest triangle, which is optimal.
+    Candidates are rows in line and staggered rows along either axis, on a ring along the periodic
+    one; for three discs between walls also the largest triangle, which is optimal.
     """
-    least, centres = _rows(discs, a, b, bool(periodic))
-    if not periodic:
-        other, turned = _rows(discs, b, a, False)
+    if periodic == "y":
+        centres, least = arranged(discs, b, a, "x")
+        return [(x, y) for y, x in centres], least
+    least, centres = _rows(discs, a, b, bool(periodic), periodic == "xy")
+    if periodic != "x":
+        other, turned = _rows(discs, b, a, bool(periodic), periodic == "xy")
         if other > least:
             least, centres = other, [(x, y) for y, x in turned]
     if discs == 3 and not periodic and min(a, b) > max(a, b) * math.sqrt(3) / 2:
@@ -222,16 +231,15 @@ def arranged(discs, a, b, periodic=""):
 def largest_known_radius(discs, width, height, periodic=""):
     """Return the largest radius r for which ``arranged`` has centres at least 2r apart.
 
-    It is found by bisection, to the last digit. On a ring it is at most a quarter of the
-    circumference.
+    It is found by bisection, to the last digit. Along a periodic axis it is at most a quarter of
+    the period.
     """
-    low, high = 0.0, min(width, height) / 2
-    if periodic:
-        high = min(width / 4, height / 2)
+    low = 0.0
+    high = min(width / (4 if "x" in periodic else 2), height / (4 if "y" in periodic else 2))
     for _ in range(80):
         radius = (low + high) / 2
-        across = height - 2 * radius
-        along = width if periodic else width - 2 * radius
+        across = height if "y" in periodic else height - 2 * radius
+        along = width if "x" in periodic else width - 2 * radius
         fits = across >= 0 and along >= 0
         fits = fits and arranged(discs, along, across, periodic)[1] >= 2 * radius
         low, high = (radius, high) if fits else (low, radius)

@@ -9,6 +9,10 @@ from twodiscs.theory.flux import Derivatives
 
 def pair_overlap(scene):
     """Return q, the probability that two of the centres, drawn uniformly, overlap."""
+    if scene.periodic == "xy":
+        return math.pi * scene.contact_distance**2 / (scene.width * scene.height)
+    if scene.periodic == "y":
+        return pair_overlap(scene.turned())
     if scene.periodic:
         # On a ring the separation along x is uniform; along y it has the density 2 (B − v)/B².
         b, sigma = scene.range_y, scene.contact_distance
@@ -32,6 +36,7 @@ def bulk_derivatives(scene):
     z = (1 + packing * packing / 8) / (1 - packing) ** 2
     pairs = n * (n - 1) / 2
     return Derivatives(
-        math.nan, 0.0 if scene.periodic else n * z / a, n * z / b, 2 * n * (z - 1) / sigma,
+        math.nan, 0.0 if "x" in scene.periodic else n * z / a,
+        0.0 if "y" in scene.periodic else n * z / b, 2 * n * (z - 1) / sigma,
         pairs / a * max(0.0, 1 - sigma / b) ** 2, pairs / b * max(0.0, 1 - sigma / a) ** 2,
     )  # fmt: skip

@@ -6,9 +6,9 @@ collide. A disc is put on its wall exactly, and velocities are exchanged along t
 The states of all lanes are arrays (N, lanes). The outer loops are over discs and pairs of discs.
 The inner loops are over lanes, and become vector instructions. An event costs N(N − 1)/2 contacts.
 
-On a ring of x two images of a disc count, the nearest one and the next on the other side. A flight
-ends after half the circumference over the largest relative speed, √2, and the search begins again.
-A third image is therefore never reached.
+Along a periodic axis two images of a disc count, the nearest one and the next on the other side; on
+a torus there are four. A flight ends after half the circumference over the largest relative speed,
+√2, and the search begins again. A third image along an axis is therefore never reached.
 
 Rough discs have spins s, an array (N, lanes) like the velocities; for smooth discs it is None.
 """
@@ -57,14 +57,16 @@ EVENT_CLASSES = by_kind(
 class ManyLaw(NamedTuple):
     """The constants of the motion: half-ranges of the centres, σ, and those of effects.
 
-    ``ring`` is (circumference, half of it, the longest flight); ``half_x`` is None then. ``rough``
-    is that of ``law.Law``, ``spin`` is √(1/κ). They are None without the effect.
+    ``ring_x`` is (circumference, half of it, the longest flight) if x is periodic; ``half_x`` is
+    None then. So it is for y. ``rough`` is that of ``law.Law``, ``spin`` is √(1/κ). They are None
+    without the effect.
     """
 
     half_x: float | None
-    half_y: float
+    half_y: float | None
     sigma: float
-    ring: tuple | None = None
+    ring_x: tuple | None = None
+    ring_y: tuple | None = None
     rough: tuple | None = None
     spin: float | None = None
 
@@ -104,14 +106,15 @@ def new_lanes(states, remaining, law):
 
 def many_disc_law(scene):
     """Return the ``ManyLaw`` of a ``Scene``."""
-    half_x, ring, rough = scene.range_x / 2, None, None
-    spin = many_initial_states.spin_factor(scene)
-    if scene.periodic:
-        half_x, half = None, scene.width / 2
-        ring = scene.width, half, half / math.sqrt(2)
+    halves, rings, rough = [scene.range_x / 2, scene.range_y / 2], [None, None], None
+    for k, axis in enumerate("xy"):
+        if axis in scene.periodic:
+            halves[k], half = None, scene.side(axis) / 2
+            rings[k] = scene.side(axis), half, half / math.sqrt(2)
     if scene.moment_of_inertia is not None:
         rough = divided(1.0, scene.moment_of_inertia, 1.0)
-    return ManyLaw(half_x, scene.range_y / 2, scene.contact_distance, ring, rough, spin)
+    spin = many_initial_states.spin_factor(scene)
+    return ManyLaw(*halves, scene.contact_distance, *rings, rough, spin)
 
 
 def new_kicks(scene, lanes):
@@ -127,7 +130,7 @@ def new_kicks(scene, lanes):
 
 @optional(lambda u, l, spin, ring: 0.0)
 def drift(u, l, spin, ring):
-    """Return the conserved mean velocity along a ring in lane ``l``.
+    """Return the conserved mean of velocities ``u`` along a periodic axis in lane ``l``.
 
     It is 0 between walls, and for rough discs, whose walls take momentum.
     """
@@ -138,17 +141,18 @@ def drift(u, l, spin, ring):
 def redraw(u, v, spins, l, lane, law, kicks):
     """Draw the velocities in column ``l`` of ``u`` and ``v`` anew, in a kick of a ``lane``.
 
-    They are uniform on the sphere of the energy 1/2 and, along a ring, of the same momentum. The
-    ``spins`` of rough discs are drawn with them.
+    They are uniform on the sphere of the energy 1/2 and, along periodic axes, of the same momentum.
+    The ``spins`` of rough discs are drawn with them.
     """
-    discs, mean, velocity = u.shape[0], drift(u, l, law.spin, law.ring), kicks.velocity
+    discs, velocity = u.shape[0], kicks.velocity
+    mean_u, mean_v = drift(u, l, law.spin, law.ring_x), drift(v, l, law.spin, law.ring_y)
     many_initial_states.draw_velocities(
-        kicks.streams[lane], velocity, kicks.direction, law.ring, law.spin
+        kicks.streams[lane], velocity, kicks.direction, law.ring_x, law.ring_y, law.spin
     )
     many_initial_states.put_spins(velocity, spins, l, law.rough)
-    scale = math.sqrt(max(1.0 - discs * mean * mean, 0.0))
+    scale = math.sqrt(max(1.0 - discs * mean_u * mean_u - discs * mean_v * mean_v, 0.0))
     for i in range(discs):
-        u[i, l], v[i, l] = mean + scale * velocity[0, i], scale * velocity[1, i]
+        u[i, l], v[i, l] = mean_u + scale * velocity[0, i], mean_v + scale * velocity[1, i]
     ensemble.renew_kicks(lane, kicks)
 
 
@@ -254,7 +258,7 @@ def walled_quotient(position, velocity, half):
 
 @optional(lambda separation, ring: separation)
 def nearest(separation, ring):
-    """Return the separation of the nearest image on a ring."""
+    """Return the separation of the nearest image along a periodic axis."""
     period, half, _ = ring
     separation -= period if separation > half else 0.0
     separation += period if separation < -half else 0.0
@@ -263,7 +267,7 @@ def nearest(separation, ring):
 
 @optional(lambda before, after, ring: crosses(before, after))
 def changes_order(before, after, ring):
-    """Return whether a separation along x changes sign in a flight; on a ring, the nearest image.
+    """Return whether a separation changes sign in a flight; on a ring, that of the nearest image.
 
     A flight on a ring changes a separation by less than half of the circumference. If the change is
     larger, another image has become the nearest one.
@@ -272,14 +276,35 @@ def changes_order(before, after, ring):
     return crosses(before, after) & (abs(after - before) < ring[1])
 
 
-@optional(lambda dx, dy, du, dv, sigma, ring: pair_contact(dx, dy, du, dv, sigma))
-def pair_meeting(dx, dy, du, dv, sigma, ring):
-    """Return (gap, speed) of two discs; on a ring, of the image that is met first."""
-    gap, speed = pair_contact(dx, dy, du, dv, sigma)
-    other_gap, other_speed = pair_contact(dx - math.copysign(ring[0], dx), dy, du, dv, sigma)
+@optional(lambda before, after, ring: crosses(before, after))
+def hops_vertically(before, after, ring):
+    """Return whether a separation along y changes sign; along a periodic axis that is no hop."""
+    return False
+
+
+@inlined
+def first_image(gap, speed, other_gap, other_speed):
+    """Return (gap, speed) of the image of a disc that is met first."""
     # If one speed is not a number, the other image is met.
     other = (other_gap * speed < gap * other_speed) | (speed != speed)
     return other_gap if other else gap, other_speed if other else speed
+
+
+@optional(lambda dx, dy, du, dv, sigma, ring: pair_contact(dx, dy, du, dv, sigma))
+def meeting_along_x(dx, dy, du, dv, sigma, ring):
+    """Return (gap, speed) of two discs; on a ring of x, of the image that is met first."""
+    gap, speed = pair_contact(dx, dy, du, dv, sigma)
+    other_gap, other_speed = pair_contact(dx - math.copysign(ring[0], dx), dy, du, dv, sigma)
+    return first_image(gap, speed, other_gap, other_speed)
+
+
+@optional(lambda dx, dy, du, dv, sigma, x, ring: meeting_along_x(dx, dy, du, dv, sigma, x))
+def pair_meeting(dx, dy, du, dv, sigma, ring_x, ring):
+    """Return (gap, speed) of two discs; along periodic axes, of the image that is met first."""
+    gap, speed = meeting_along_x(dx, dy, du, dv, sigma, ring_x)
+    dy -= math.copysign(ring[0], dy)
+    other_gap, other_speed = meeting_along_x(dx, dy, du, dv, sigma, ring_x)
+    return first_image(gap, speed, other_gap, other_speed)
 
 
 @inlined
@@ -307,7 +332,8 @@ def find_events(all_lanes, law, kicks=None):
     discs, lanes = x.shape
     for l in range(lanes):
         left = ensemble.kick_limit(all_lanes.remaining[l], l, kicks)
-        times[l], codes[l] = soonest(left, END_OF_TIME, law.ring)
+        left, code = soonest(left, END_OF_TIME, law.ring_x)
+        times[l], codes[l] = soonest(left, code, law.ring_y)
         speeds[l] = 1.0
     number = 1.0
     for i in range(discs):
@@ -317,7 +343,7 @@ def find_events(all_lanes, law, kicks=None):
             gap, speed, code = earlier_event(
                 times[l], speeds[l], codes[l], gap, speed, number, law.half_x
             )
-            gap_y, speed_y = wall_quotient(yi[l], vi[l], law.half_y)
+            gap_y, speed_y = walled_quotient(yi[l], vi[l], law.half_y)
             times[l], speeds[l], codes[l] = earlier_event(
                 gap, speed, code, gap_y, speed_y, number + 1.0, law.half_y
             )
@@ -328,11 +354,11 @@ def find_events(all_lanes, law, kicks=None):
             xj, yj, uj, vj = x[j], y[j], u[j], v[j]
             for l in range(lanes):
                 gap, speed = pair_meeting(
-                    nearest(xi[l] - xj[l], law.ring), yi[l] - yj[l], ui[l] - uj[l], vi[l] - vj[l],
-                    law.sigma, law.ring,
+                    nearest(xi[l] - xj[l], law.ring_x), nearest(yi[l] - yj[l], law.ring_y),
+                    ui[l] - uj[l], vi[l] - vj[l], law.sigma, law.ring_x, law.ring_y,
                 )  # fmt: skip
                 times[l], speeds[l], codes[l] = earlier_event(
-                    times[l], speeds[l], codes[l], gap, speed, number, law.half_y
+                    times[l], speeds[l], codes[l], gap, speed, number, law.sigma
                 )
             number += 1.0
     for l in range(lanes):
@@ -357,8 +383,8 @@ def advance(all_lanes, law, hops_x):
         for l in range(lanes):
             on_x, on_y = codes[l] == number, codes[l] == number + 1.0
             oxi[l], oyi[l] = xi[l], yi[l]
-            xi[l] = nearest(snap_to_wall(xi[l] + ui[l] * times[l], on_x, law.half_x), law.ring)
-            yi[l] = snap_to_wall(yi[l] + vi[l] * times[l], on_y, law.half_y)
+            xi[l] = nearest(snap_to_wall(xi[l] + ui[l] * times[l], on_x, law.half_x), law.ring_x)
+            yi[l] = nearest(snap_to_wall(yi[l] + vi[l] * times[l], on_y, law.half_y), law.ring_y)
             rub_walls(ui, vi, l, on_x, on_y, si, law.rough)
             ui[l] = -ui[l] if on_x else ui[l]
             vi[l] = -vi[l] if on_y else vi[l]
@@ -373,10 +399,10 @@ def advance(all_lanes, law, hops_x):
             sj = row(j, spins)
             for l in range(lanes):
                 dx, dy = xi[l] - xj[l], yi[l] - yj[l]
-                hops[l] += 1.0 if crosses(oyi[l] - oyj[l], dy) else 0.0
+                hops[l] += 1.0 if hops_vertically(oyi[l] - oyj[l], dy, law.ring_y) else 0.0
                 if hops_x is not None:
-                    across[l] += 1.0 if changes_order(oxi[l] - oxj[l], dx, law.ring) else 0.0
-                dx = nearest(dx, law.ring)
+                    across[l] += 1.0 if changes_order(oxi[l] - oxj[l], dx, law.ring_x) else 0.0
+                dx, dy = nearest(dx, law.ring_x), nearest(dy, law.ring_y)
                 square = dx * dx + dy * dy
                 exchange = (dx * (ui[l] - uj[l]) + dy * (vi[l] - vj[l])) / square
                 meets = (codes[l] == number) & (square > VANISHING)
@@ -446,12 +472,12 @@ def count_events(states, seed, first, lanes, duration, law, hops_x, kicks):
             sweep(moving, law, hops_x, kicks)
 
 
-@optional(lambda laps, lanes, ring: None)
-def count_laps(laps, lanes, ring):
+@optional(lambda laps, positions, velocities, times, ring: None)
+def count_laps(laps, positions, velocities, times, ring):
     """Add to ``laps`` (N, lanes) the rounds that flights complete, as ``nearest`` undoes them."""
     for i in range(laps.shape[0]):
         for l in range(laps.shape[1]):
-            then = lanes.x[i, l] + lanes.u[i, l] * lanes.times[l]
+            then = positions[i, l] + velocities[i, l] * times[l]
             laps[i, l] += (1.0 if then > ring[1] else 0.0) - (1.0 if then < -ring[1] else 0.0)
 
 
@@ -474,19 +500,20 @@ def add_hops(counts, first, hops):
 def advance_states(states, laps, time, law, kicks, hops, lanes=ensemble.LANES):
     """Advance the columns of ``states`` (rows, replicas) by a ``time`` > 0.
 
-    On a ring the rounds of discs are added to ``laps`` (N, replicas). ``kicks`` are those of the
-    columns, None without friction. The hops in x are added to ``hops`` (replicas,) unless it is
-    None.
+    The rounds of discs along periodic axes are added to ``laps`` (2N, replicas), those along x
+    first. ``kicks`` are those of the columns, None without friction. The hops in x are added to
+    ``hops`` (replicas,) unless it is None.
     """
-    discs, replicas = laps.shape
+    discs, replicas = laps.shape[0] // 2, laps.shape[1]
     for first in range(0, replicas, lanes):
         stop = min(first + lanes, replicas)
-        some, rounds = states[:, first:stop].copy(), np.zeros((discs, stop - first))
+        some, rounds = states[:, first:stop].copy(), np.zeros((2 * discs, stop - first))
         moving = new_lanes(some, np.full(stop - first, time), law)
         some_kicks = lane_kicks(first, stop, kicks)
         while np.max(moving.remaining) > 0.0:
             find_events(moving, law, some_kicks)
-            count_laps(rounds, moving, law.ring)
+            count_laps(rounds[:discs], moving.x, moving.u, moving.times, law.ring_x)
+            count_laps(rounds[discs:], moving.y, moving.v, moving.times, law.ring_y)
             advance(moving, law, hops)
             kick_lanes(moving, law, some_kicks)
         states[:, first:stop] = some

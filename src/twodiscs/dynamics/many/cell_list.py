@@ -84,7 +84,7 @@ class Log(NamedTuple):
 
     An entry has its time after ``origin[0]``'s zero, its class, and its two discs, the same one
     twice at a wall. Its ``states`` (n, 2, 4 or 5) are x, y, u, v and maybe s of both right after an
-    event; hops have none. On a ring x goes on beyond the cell.
+    event; hops have none. Along periodic axes positions go on beyond the cell.
     """
 
     times: np.ndarray
@@ -123,13 +123,14 @@ def note_hop(time, kind, i, k, log):
     log.size[0] = n + 1
 
 
-@optional(lambda time, kind, i, j, motion, laps, ring, log: None)
-def note_event(time, kind, i, j, motion, laps, ring, log):
+@optional(lambda time, kind, i, j, motion, laps, law, log: None)
+def note_event(time, kind, i, j, motion, laps, law, log):
     """Enter an event of a class ``kind`` of discs ``i`` and ``j``, which have come to it."""
     note_hop(time, kind, i, j, log)
     states = log.states[log.size[0] - 1]
     for k, disc in enumerate((i, j)):
-        states[k, 0], states[k, 1] = unfold_x(motion.x[disc], laps[disc], ring), motion.y[disc]
+        states[k, 0] = unfold(motion.x[disc], laps[0, disc], law.ring_x)
+        states[k, 1] = unfold(motion.y[disc], laps[1, disc], law.ring_y)
         states[k, 2], states[k, 3] = motion.u[disc], motion.v[disc]
         note_spin(states, k, disc, motion.s)
 
@@ -140,10 +141,10 @@ def note_spin(states, k, disc, s):
     states[k, 4] = s[disc, 0]
 
 
-@optional(lambda x, laps, ring: x)
-def unfold_x(x, laps, ring):
-    """Return ``x`` after a number of ``laps`` around a ring."""
-    return x + laps * ring[0]
+@optional(lambda position, laps, ring: position)
+def unfold(position, laps, ring):
+    """Return a ``position`` after a number of ``laps`` around a ring."""
+    return position + laps * ring[0]
 
 
 @optional(lambda time, log: None)
@@ -174,7 +175,7 @@ def new_motion(discs, grid, rough=None):
 def image_separation(apart, column, columns, ring):
     """Return the separation to the image in a ``column``, which may be one turn too low or high.
 
-    It need not be the nearest image on a ring of less than four columns.
+    It need not be the nearest image on a ring of less than four columns. For rows it is the same.
     """
     apart -= ring[0] if column < 0 else 0.0
     return apart + (ring[0] if column >= columns else 0.0)
@@ -191,15 +192,17 @@ def find_contact(i, now, columns, rows, motion, grid, law):
     x, y = x + u * lag, y + v * lag
     gap, speed, partner = NEVER, 1.0, -1
     across, up = grid.x.size - 1, grid.y.size - 1
-    first, last = grids.columns_within(columns[0], columns[1], across, law.ring)
+    first, last = grids.columns_within(columns[0], columns[1], across, law.ring_x)
+    lowest, highest = grids.columns_within(rows[0], rows[1], up, law.ring_y)
     for column in range(first, last + 1):
-        start = grids.wrap_column(column, across, law.ring) * up
-        for cell in range(start + max(rows[0], 0), start + min(rows[1], up - 1) + 1):
-            k = motion.places.head[cell]
+        start = grids.wrap_column(column, across, law.ring_x) * up
+        for row in range(lowest, highest + 1):
+            k = motion.places.head[start + grids.wrap_column(row, up, law.ring_y)]
             while k >= 0:
                 lag = now - motion.time[k]
-                dx = image_separation(motion.x[k] + motion.u[k] * lag - x, column, across, law.ring)
-                dy = motion.y[k] + motion.v[k] * lag - y
+                dx, dy = motion.x[k] + motion.u[k] * lag - x, motion.y[k] + motion.v[k] * lag - y
+                dx = image_separation(dx, column, across, law.ring_x)
+                dy = image_separation(dy, row, up, law.ring_y)
                 other_gap, other_speed, approach = contact_quotient(
                     dx, dy, None, motion.u[k] - u, motion.v[k] - v, None, law.sigma
                 )
@@ -371,7 +374,8 @@ def fly(i, now, motion, counts, log, hops, hops_x):
 @inlined
 def collide(i, j, motion, law):
     """Exchange the velocities of two discs along the line of their centres."""
-    dx, dy = all_pairs.nearest(motion.x[i] - motion.x[j], law.ring), motion.y[i] - motion.y[j]
+    dx = all_pairs.nearest(motion.x[i] - motion.x[j], law.ring_x)
+    dy = all_pairs.nearest(motion.y[i] - motion.y[j], law.ring_y)
     du, dv = motion.u[i] - motion.u[j], motion.v[i] - motion.v[j]
     square = dx * dx + dy * dy
     exchange = (dx * du + dy * dv) / square if square > VANISHING else 0.0
@@ -383,18 +387,18 @@ def collide(i, j, motion, law):
     all_pairs.rub_discs(discs, i, discs, j, dx, dy, square > VANISHING, law.rough)
 
 
-@optional(lambda i, column, columns, motion, laps, ring: column)
-def pass_seam(i, column, columns, motion, laps, ring):
-    """Return the number of a column; a disc that has passed the seam of a ring is put back."""
+@optional(lambda i, column, columns, positions, laps, ring: column)
+def pass_seam(i, column, columns, positions, laps, ring):
+    """Return the number of a column or row; a disc past the seam of a ring is put back."""
     step = 1.0 if column == columns else (-1.0 if column < 0 else 0.0)
-    motion.x[i] -= step * ring[0]
+    positions[i] -= step * ring[0]
     laps[i] += step
     return grids.wrap_column(column, columns, ring)
 
 
 @optional(lambda ahead, columns, ring: ahead < 0 or ahead == columns)
 def is_wall(ahead, columns, ring):
-    """Say whether there is a wall before the column ``ahead``."""
+    """Say whether there is a wall before the column or row ``ahead``."""
     return False
 
 
@@ -441,18 +445,18 @@ def kick_discs(motion, laps, grid, law, log, hops, hops_x, lane, kicks):
     look_for_all(motion, grid, law)
     for i in range(discs):
         set_speeds(i, motion, hops, hops_x)
-        note_event(0.0, KICKS, i, i, motion, laps, law.ring, log)
+        note_event(0.0, KICKS, i, i, motion, laps, law, log)
 
 
 @compiled
 def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, log, hops, hops_x):
     """Follow the discs for a ``duration`` and add to ``counts`` (n,) what happens.
 
-    On a ring the rounds of the discs are added to ``laps`` (N,). A ``log``, which may be None, gets
-    all events and counted hops; the discs stop when it is full. Returns the time that is left. All
-    discs have come to the same time, from which they can be followed on. ``kicks`` are those of a
-    ``lane``, None without friction. ``hops`` and ``hops_x`` are the ``Bands`` of the rows and of
-    the columns, None where hops in y or in x are not counted.
+    The rounds of the discs along periodic axes are added to ``laps`` (2, N). A ``log``, which may
+    be None, gets all events and counted hops; the discs stop when it is full. Returns the time that
+    is left. All discs have come to the same time, from which they can be followed on. ``kicks`` are
+    those of a ``lane``, None without friction. ``hops`` and ``hops_x`` are the ``Bands`` of the
+    rows and of the columns, None where hops in y or in x are not counted.
     """
     discs, tree = motion.x.size, motion.tree
     columns, rows = grid.x.size - 1, grid.y.size - 1
@@ -471,18 +475,21 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
                 step = 1 if (motion.v[i] if upwards else motion.u[i]) > 0.0 else -1
                 c, r = motion.places.column[i], motion.places.row[i]
                 ahead = (r if upwards else c) + step
-                stops = ahead < 0 or ahead == rows if upwards else is_wall(ahead, columns, law.ring)
+                if upwards:
+                    stops = is_wall(ahead, rows, law.ring_y)
+                else:
+                    stops = is_wall(ahead, columns, law.ring_x)
                 if not stops:
                     grids.leave(i, motion.places, grid)
                     side = 1 if step > 0 else 0
                     if upwards:
+                        left, r = r, pass_seam(i, ahead, rows, motion.y, laps[1], law.ring_y)
                         counts[VERTICAL_HOPS] += leave_band(
-                            i, now, r, ahead, side, grid.y, VERTICAL_HOPS, log, hops
+                            i, now, left, r, side, grid.y, VERTICAL_HOPS, log, hops
                         )
-                        r = ahead
                         wide, high = (c - 1, c + 1), (r + step, r + step)
                     else:
-                        left, c = c, pass_seam(i, ahead, columns, motion, laps, law.ring)
+                        left, c = c, pass_seam(i, ahead, columns, motion.x, laps[0], law.ring_x)
                         counts[HORIZONTAL_HOPS] += leave_band(
                             i, now, left, c, side, grid.x, HORIZONTAL_HOPS, log, hops_x
                         )
@@ -510,7 +517,7 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
                 velocities[i] = -velocities[i]
                 set_speeds(i, motion, hops, hops_x)
                 counts[kind] += 1
-                note_event(now, kind, i, i, motion, laps, law.ring, log)
+                note_event(now, kind, i, i, motion, laps, law, log)
                 motion.events[i] += 1
             else:
                 j = motion.partner[i]
@@ -523,7 +530,7 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
                     motion.events[i] += 1
                     motion.events[j] += 1
                     counts[COLLISIONS] += 1
-                    note_event(now, COLLISIONS, i, j, motion, laps, law.ring, log)
+                    note_event(now, COLLISIONS, i, j, motion, laps, law, log)
                 else:
                     j = i
             while True:
@@ -560,7 +567,7 @@ def count_events(states, seed, first, duration, epoch, law, grid, hops, hops_x, 
     where hops in y or in x are not counted. ``kicks`` are those of one lane, None without friction.
     """
     discs = all_pairs.discs_in(states, law.rough)
-    laps = np.zeros(discs)
+    laps = np.zeros((2, discs))
     motion, count = new_motion(discs, grid, law.rough), np.zeros(N_CLASSES, np.int64)
     sums, products = np.zeros(N_CLASSES, np.int64), np.zeros((N_CLASSES, N_CLASSES), np.int64)
     bands, bands_x = new_bands(discs, grid.y, hops), new_bands(discs, grid.x, hops_x)
@@ -580,12 +587,12 @@ def count_events(states, seed, first, duration, epoch, law, grid, hops, hops_x, 
 def advance_all(states, laps, time, epoch, law, grid, kicks, hops_x):
     """Advance the columns of ``states`` (rows, replicas) by a ``time`` > 0.
 
-    On a ring the rounds of discs are added to ``laps`` (N, replicas). ``kicks`` are those of the
-    columns, None without friction. The hops in x are added to ``hops_x`` (replicas,) unless it is
-    None.
+    The rounds of discs along periodic axes are added to ``laps`` (2N, replicas), those along x
+    first. ``kicks`` are those of the columns, None without friction. The hops in x are added to
+    ``hops_x`` (replicas,) unless it is None.
     """
-    discs, replicas = laps.shape
-    motion, rounds = new_motion(discs, grid, law.rough), np.zeros(discs)
+    discs, replicas = laps.shape[0] // 2, laps.shape[1]
+    motion, rounds = new_motion(discs, grid, law.rough), np.zeros((2, discs))
     counts, spins = np.zeros((N_CLASSES, 1), np.int64), spins_in(states, discs, law.rough)
     bands_x = new_bands(discs, grid.x, hops_x)
     for replica in range(replicas):
@@ -600,5 +607,6 @@ def advance_all(states, laps, time, epoch, law, grid, kicks, hops_x):
             states[i, replica], states[discs + i, replica] = motion.x[i], motion.y[i]
             states[2 * discs + i, replica] = motion.u[i]
             states[3 * discs + i, replica] = motion.v[i]
-            laps[i, replica] += rounds[i]
+            laps[i, replica] += rounds[0, i]
+            laps[discs + i, replica] += rounds[1, i]
         all_pairs.copy_spins(motion.s, 0, replica, spins)

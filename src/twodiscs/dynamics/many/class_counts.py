@@ -30,7 +30,7 @@ def run_classes(scene, seed, first, stop, duration, *, replicas=None, lanes=None
     """
     n, replicas = len(CLASSES), replicas or block_replicas(scene)
     lanes = lanes or ensemble.LANES
-    hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
+    hops_x = None if "x" in scene.periodic or scene.height <= 4 * scene.radius else True
     law, grid, initial = many_disc_law(scene), large_grid(scene), make_initial(scene, chained=True)
     counts = np.zeros(n, np.int64), np.zeros((n, n), np.int64)
     for block in range(first, stop):
@@ -40,7 +40,8 @@ def run_classes(scene, seed, first, stop, duration, *, replicas=None, lanes=None
         if grid is None:
             of_block = all_pairs.count_events(*given, lanes, duration, law, hops_x, kicks)
         else:
-            counted = (True, hops_x) if hops else (None, None)
+            hops_y = None if "y" in scene.periodic else True
+            counted = (hops_y, hops_x) if hops else (None, None)
             given += duration, usual_epoch(scene), law, grid
             of_block = cell_list.count_events(*given, *counted, kicks)
         counts = tuple(map(np.add, counts, of_block))

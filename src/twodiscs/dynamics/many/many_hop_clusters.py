@@ -22,6 +22,7 @@ from twodiscs.dynamics.many import all_pairs
 from twodiscs.dynamics.many.all_pairs import COLLISIONS, ManyLaw, many_disc_law
 from twodiscs.dynamics.two.hop_clusters import LARGEST_CLUSTER, SUMS
 from twodiscs.model.checks import InputError
+from twodiscs.model.events import AXIS
 from twodiscs.model.many_geometry import LARGE
 from twodiscs.model.scene import hopping_along
 from twodiscs.sampling.jit import compiled
@@ -61,7 +62,7 @@ def draw_on_surface(state, pair, states, most):
     It stops before the last column after ``most`` proposals.
     """
     sampler, proposals = pair.sampler, 0
-    n, ring, spin = sampler.discs, sampler.ring, sampler.spin
+    n, ring_x, ring_y, spin = sampler.discs, sampler.ring_x, sampler.ring_y, sampler.spin
     centres, (velocities, cuts) = np.empty((2, n)), many_initial_states.velocity_memory(n, spin)
     for k in range(states.shape[1]):
         i = 0
@@ -82,7 +83,7 @@ def draw_on_surface(state, pair, states, most):
                 centres[0, i], centres[1, i] = x, y
                 i = i + 1 if is_free(centres, i, x, y, sampler, -1) else 0
         while True:
-            many_initial_states.draw_velocities(state, velocities, cuts, ring, spin)
+            many_initial_states.draw_velocities(state, velocities, cuts, ring_x, ring_y, spin)
             if math.sqrt(2.0) * uniform(state) < abs(velocities[0, 0] - velocities[0, 1]):
                 break
         many_initial_states.put_state(states, k, centres, velocities, spin)
@@ -106,8 +107,8 @@ def follow_pair(states, remaining, gap, net, hops, law, kicks):
         all_pairs.sweep(lanes, law, None, kicks)
         for l in range(remaining.size):
             apart = old_x[0, l] - old_x[1, l]
-            if all_pairs.changes_order(apart, x[0, l] - x[1, l], law.ring):
-                apart = all_pairs.nearest(apart, law.ring)
+            if all_pairs.changes_order(apart, x[0, l] - x[1, l], law.ring_x):
+                apart = all_pairs.nearest(apart, law.ring_x)
                 net[l] += math.copysign(1.0, rising[l])
                 hops[l] += 1.0
                 if gap > 0.0:
@@ -198,8 +199,11 @@ def require_coefficient(scene, hop):
     """Raise ``InputError`` unless hops of a ``Scene`` can be followed for their coefficient."""
     if scene.discs >= LARGE:
         raise InputError(f"discs must be at most {LARGE - 1} for passages, not {scene.discs}")
-    if scene.periodic and hop != "horizontal_hop":
-        raise InputError(f"hop must be horizontal_hop for passages on a ring, not {hop!r}")
+    if scene.periodic not in ("", AXIS[hop]):
+        raise InputError(
+            f"hop must be along the only periodic axis for passages of {scene.discs} discs, not "
+            f"{hop!r} with periodic {scene.periodic!r}"
+        )
     if not (scene.clearance(hop) > 0 if scene.periodic else scene.is_possible(hop)):
         raise InputError(
             f"hop {hop!r} must be open for passages, but is blocked at radius {scene.radius!r}"

@@ -40,7 +40,7 @@ class Followed:
 
     def __init__(self, scene, counted):
         self.scene, self.law, self.grid = scene, many_disc_law(scene), make_grid(scene)
-        self.epoch, self.laps = usual_epoch(scene), np.zeros(scene.discs)
+        self.epoch, self.laps = usual_epoch(scene), np.zeros((2, scene.discs))
         self.motion = cell_list.new_motion(scene.discs, self.grid, self.law.rough)
         rows = 4 if self.law.rough is None else 5
         self.log = cell_list.new_log(scene.discs, LOG_ENTRIES, rows)
@@ -69,9 +69,19 @@ class Followed:
 
 
 def unwrap(scene, columns, wraps):
-    """Add the rounds that discs have made on a ring, see ``Engine``."""
-    for disc, laps in enumerate(wraps, 1):
-        columns[f"x{disc}"] += scene.width * laps
+    """Add the rounds that discs have made along periodic axes, see ``Engine``."""
+    for axis in scene.periodic:
+        for disc, laps in enumerate(np.split(wraps, 2)["xy".index(axis)], 1):
+            columns[f"{axis}{disc}"] += scene.side(axis) * laps
+
+
+def whole_rounds(scene, state):
+    """Return the rounds (2, N) after which a ``state`` is, 0 between walls."""
+    rounds = np.zeros((2, scene.discs))
+    for axis in scene.periodic:
+        k = "xy".index(axis)
+        rounds[k] = np.round(state[k * scene.discs : (k + 1) * scene.discs] / scene.side(axis))
+    return rounds
 
 
 def trajectory_rate(scene):
@@ -123,8 +133,8 @@ def keep_spins(at, spins):
 @inlined
 def keep_discs(at, lanes, beyond):
     """Set ``at`` (4 or 5, N) to the discs of the only lane, which are ``beyond`` their cells."""
-    for i in range(beyond.size):
-        at[0, i], at[1, i] = lanes.x[i, 0] + beyond[i], lanes.y[i, 0]
+    for i in range(beyond.shape[1]):
+        at[0, i], at[1, i] = lanes.x[i, 0] + beyond[0, i], lanes.y[i, 0] + beyond[1, i]
         at[2, i], at[3, i] = lanes.u[i, 0], lanes.v[i, 0]
     keep_spins(at, lanes.spins)
 
@@ -151,16 +161,17 @@ def sort_hops(before, after, velocities, kind, times, hops, count):
 
 
 @compiled
-def record_rows(lanes, beyond, clock, duration, law, kicks, hops_x, rows):
+def record_rows(lanes, beyond, clock, duration, law, kicks, hops, rows):
     """Fill ``rows`` with the next events of the only lane, whose time is ``clock[0]``.
 
-    Discs are ``beyond`` (N,) their cells. ``hops_x`` says whether horizontal hops are rows. Returns
-    the number of rows; the last one is the end if the ``duration`` is over.
+    Discs are ``beyond`` (2, N) their cells. ``hops`` says whether vertical hops are rows, and
+    whether horizontal ones are. Returns the number of rows; the last one is the end if the
+    ``duration`` is over.
     """
-    discs, n = beyond.size, 0
+    discs, n = beyond.shape[1], 0
     most, parts = discs * (discs - 1), rows.states.shape[0] // discs
     old, new, lags = np.empty((parts, discs)), np.empty((parts, discs)), np.empty(discs)
-    times, hops = np.empty(most), np.empty((most, 3), np.int64)
+    times, found = np.empty(most), np.empty((most, 3), np.int64)
     while n + most < rows.times.size and (n == 0 or rows.kinds[n - 1] != kinds.END):
         keep_discs(old, lanes, beyond)
         kicked = ensemble.kick_limit(lanes.remaining[0], 0, kicks) < lanes.remaining[0]
@@ -169,14 +180,16 @@ def record_rows(lanes, beyond, clock, duration, law, kicks, hops_x, rows):
         all_pairs.advance(lanes, law, True)
         all_pairs.kick_lanes(lanes, law, kicks)
         for i in range(discs):
-            count_turns(beyond, i, old[0, i] + flight * old[2, i], lanes.x[i, 0], law.ring)
+            count_turns(beyond[0], i, old[0, i] + flight * old[2, i], lanes.x[i, 0], law.ring_x)
+            count_turns(beyond[1], i, old[1, i] + flight * old[3, i], lanes.y[i, 0], law.ring_y)
         keep_discs(new, lanes, beyond)
         count = 0
-        if hops_x:
-            count = sort_hops(old[0], new[0], old[2], kinds.HORIZONTAL_HOP, times, hops, count)
-        count = sort_hops(old[1], new[1], old[3], kinds.VERTICAL_HOP, times, hops, count)
+        if hops[1]:
+            count = sort_hops(old[0], new[0], old[2], kinds.HORIZONTAL_HOP, times, found, count)
+        if hops[0]:
+            count = sort_hops(old[1], new[1], old[3], kinds.VERTICAL_HOP, times, found, count)
         for k in range(count):
-            put_event(rows, n, clock[0] + times[k], hops[k, 0], hops[k, 1], hops[k, 2])
+            put_event(rows, n, clock[0] + times[k], found[k, 0], found[k, 1], found[k, 2])
             lags[:] = times[k]
             put_states(rows.states, n, old, lags)
             n += 1
@@ -201,18 +214,16 @@ def _follow_few(scene, state, duration, seed):
     law, clock = many_disc_law(scene), np.zeros(1)
     kicks = ensemble.open_block_kicks(new_kicks(scene, 1), seed)
     # The distance of centres beyond the cell in which the kernel keeps them.
-    beyond = np.zeros(scene.discs)
-    if scene.periodic:
-        beyond = scene.width * np.round(state[: scene.discs] / scene.width)
-    inside = state.copy()
-    inside[: scene.discs] -= beyond
-    state[: scene.discs] = inside[: scene.discs] + beyond
+    beyond = whole_rounds(scene, state) * np.array([[scene.width], [scene.height]])
+    inside, places = state.copy(), slice(2 * scene.discs)
+    inside[places] -= beyond.ravel()
+    state[places] = inside[places] + beyond.ravel()
     yield start_row(state)
     lanes = all_pairs.new_lanes(inside[:, None], np.full(1, duration), law)
-    hops_x, rows = "horizontal_hop" in scene.events, None
+    hops, rows = tuple(hop in scene.events for hop in ("vertical_hop", "horizontal_hop")), None
     while rows is None or rows.kinds[-1] != kinds.END:
         rows = new_rows(state.size, scene.discs**2)
-        number = record_rows(lanes, beyond, clock, duration, law, kicks, hops_x, rows)
+        number = record_rows(lanes, beyond, clock, duration, law, kicks, hops, rows)
         rows = rows.first(number)
         yield rows
 
@@ -259,9 +270,8 @@ def read_log(log, order, entry, at, since, rows):
 def _follow_large(scene, state, duration, seed):
     yield start_row(state)
     path = Followed(scene, scene.events)
-    rounds = np.round(state[: scene.discs] / scene.width) if scene.periodic else 0.0
-    inside = state.copy()
-    inside[: scene.discs] -= rounds * scene.width
+    rounds, inside = whole_rounds(scene, state), state.copy()
+    inside[: 2 * scene.discs] -= (rounds * np.array([[scene.width], [scene.height]])).ravel()
     path.start(inside[:, None], seed)
     path.laps[:] = rounds
     at, since = np.reshape(state, (-1, scene.discs)).copy(), np.zeros(scene.discs)

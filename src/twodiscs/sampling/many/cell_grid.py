@@ -37,12 +37,12 @@ def make_grid(scene):
     """Return the ``CellGrid`` of a ``Scene``, which must be followable."""
     a, b, least = scene.range_x, scene.range_y, LEAST_CELL_SIDE * scene.contact_distance
     side = max(least, 1.25 * math.sqrt(a * b / scene.discs))
-    columns, rows = max(1, int(a / side)), max(1, int(b / side))
-    if scene.periodic:
-        # A ring has four columns if there is room, otherwise two or three. With two columns each is
+    numbers = {"x": max(1, int(a / side)), "y": max(1, int(b / side))}
+    for axis in scene.periodic:
+        # Along it there are four cells if there is room, otherwise two or three. With two each is
         # the neighbour of the other on both sides, by another image.
-        columns = max(columns, min(4, int(a / least)))
-    return CellGrid(_borders(a, columns), _borders(b, rows))
+        numbers[axis] = max(numbers[axis], min(4, int(scene.side(axis) / least)))
+    return CellGrid(_borders(a, numbers["x"]), _borders(b, numbers["y"]))
 
 
 def _borders(length, number):
@@ -93,12 +93,12 @@ def leave(i, places, grid):
 
 @optional(lambda column, columns, ring: column)
 def wrap_column(column, columns, ring):
-    """Return the number of a column on a ring; ``column`` may be one turn too low or high."""
+    """Return the number of a column or row on a ring; it may be one turn too low or high."""
     column -= columns if column >= columns else 0
     return column + (columns if column < 0 else 0)
 
 
 @optional(lambda low, high, columns, ring: (max(low, 0), min(high, columns - 1)))
 def columns_within(low, high, columns, ring):
-    """Return the numbers of the first and last column; on a ring they may be a turn off."""
+    """Return the numbers of the first and last column or row; on a ring they may be a turn off."""
     return low, high

@@ -51,7 +51,7 @@ def plan(scene):
 
 @optional(lambda column, columns, ring: column if 0 <= column < columns else -1)
 def find_column(column, columns, ring):
-    """Return the number of a column, −1 if there is none."""
+    """Return the number of a column or row, −1 if there is none."""
     return wrap_column(column, columns, ring)
 
 
@@ -64,7 +64,7 @@ def image_ahead(dx, sign, ring):
 @inlined
 def first_contact(i, axis, sign, left, centres, places, grid, initial):
     """Return (distance, disc) of the first contact of disc ``i``; (``left``, −1) without one."""
-    sigma, ring = initial.sigma, initial.ring
+    sigma, ring_x, ring_y = initial.sigma, initial.ring_x, initial.ring_y
     columns, rows = grid.x.size - 1, grid.y.size - 1
     borders = grid.x if axis == 0 else grid.y
     along, across = (places.column[i], places.row[i])
@@ -80,14 +80,18 @@ def first_contact(i, axis, sign, left, centres, places, grid, initial):
             break
         a = along + (step if sign > 0.0 else -step)
         for b in range(across - 1, across + 2):
-            column = find_column(a if axis == 0 else b, columns, ring)
-            row = b if axis == 0 else a
-            if column < 0 or row < 0 or row >= rows:
+            column = find_column(a if axis == 0 else b, columns, ring_x)
+            row = find_column(b if axis == 0 else a, rows, ring_y)
+            if column < 0 or row < 0:
                 continue
             k = places.head[column * rows + row]
             while k >= 0:
-                dx, dy = ring_separation(centres[0, k] - at_x, ring), centres[1, k] - at_y
-                ahead, apart = (image_ahead(dx, sign, ring), dy) if axis == 0 else (dy, dx)
+                dx = ring_separation(centres[0, k] - at_x, ring_x)
+                dy = ring_separation(centres[1, k] - at_y, ring_y)
+                if axis == 0:
+                    ahead, apart = image_ahead(dx, sign, ring_x), dy
+                else:
+                    ahead, apart = image_ahead(dy, sign, ring_y), dx
                 square = (sigma - apart) * (sigma + apart)
                 if square > 0.0 and sign * ahead > 0.0:
                     gap = sign * ahead - math.sqrt(square)
@@ -103,10 +107,10 @@ def short_of_half(left, ring):
     return min(left, ring / 4)
 
 
-@optional(lambda axis, position, sign, half, ring: half - sign * position)
-def wall_distance(axis, position, sign, half, ring):
+@optional(lambda position, sign, half, ring: half - sign * position)
+def wall_distance(position, sign, half, ring):
     """Return the distance to the wall ahead, infinite along a ring."""
-    return math.inf if axis == 0 else half - sign * position
+    return math.inf
 
 
 @compiled
@@ -124,13 +128,18 @@ def run_chains(state, initial, centres, number, length, grid):
         left = 2 * length * uniform(state)
         while left > 0.0:
             position = centres[axis, i]
-            wall = wall_distance(axis, position, sign, half, initial.ring)
-            limit = short_of_half(min(left, wall), initial.ring)
+            if axis == 0:
+                wall = wall_distance(position, sign, half, initial.ring_x)
+            else:
+                wall = wall_distance(position, sign, half, initial.ring_y)
+            limit = short_of_half(min(left, wall), initial.ring_x)
+            limit = short_of_half(limit, initial.ring_y)
             step, k = first_contact(i, axis, sign, limit, centres, places, grid, initial)
             left -= step
             bounces = k < 0 and limit == wall
             centres[axis, i] = position + sign * step
-            centres[0, i] = ring_separation(centres[0, i], initial.ring)
+            centres[0, i] = ring_separation(centres[0, i], initial.ring_x)
+            centres[1, i] = ring_separation(centres[1, i], initial.ring_y)
             if bounces:
                 centres[axis, i], sign = sign * half, -sign
             column, row = find_interval(centres[0, i], grid.x), find_interval(centres[1, i], grid.y)

@@ -59,18 +59,19 @@ SUM_OF_QUANTITY = {"volume": 0} | {
 
 
 class Bounds(NamedTuple):
-    """The constants of a scene: half-ranges, σ, circumference of a ring or None, typical weight."""
+    """The constants of a scene: half-ranges, σ, periods (None between walls), typical weight."""
 
     half_x: float
     half_y: float
     sigma: float
-    ring: float | None
+    ring_x: float | None
+    ring_y: float | None
     typical: float
 
 
 @optional(lambda dx, ring: dx)
 def ring_separation(dx, ring):
-    """Return the separation to the nearest image on a ring."""
+    """Return the separation to the nearest image along a periodic axis."""
     dx -= ring if dx > ring / 2 else 0.0
     dx += ring if dx < -ring / 2 else 0.0
     return dx
@@ -101,11 +102,11 @@ def free_place(state, centres, k, y, box, starts, ends):
     """Return (free length at height ``y`` beside the first ``k`` discs, a random x in it)."""
     n = 0
     for j in range(k):
-        dy = y - centres[1, j]
+        dy = ring_separation(y - centres[1, j], box.ring_y)
         square = (box.sigma - dy) * (box.sigma + dy)
         if square > 0.0:
             d, x = math.sqrt(square), centres[0, j]
-            n = put_interval(starts, ends, n, x - d, x + d, box.half_x, box.ring)
+            n = put_interval(starts, ends, n, x - d, x + d, box.half_x, box.ring_x)
     # Sort the short list by starts.
     for i in range(1, n):
         low, high, j = starts[i], ends[i], i
@@ -137,25 +138,41 @@ def is_free(centres, k, x, y, box, but):
     if (abs(x) > box.half_x) | (abs(y) > box.half_y):
         return False
     for j in range(k):
-        dx, dy = ring_separation(x - centres[0, j], box.ring), y - centres[1, j]
+        dx = ring_separation(x - centres[0, j], box.ring_x)
+        dy = ring_separation(y - centres[1, j], box.ring_y)
         if j != but and dx * dx + dy * dy < box.sigma * box.sigma:
             return False
     return True
 
 
-@optional(lambda centres, k, y, box, walls: 0.0)
-def free_at_sides(centres, k, y, box, walls):
-    """Return the number of x-walls, 0 to 2, at which a disc is free at height ``y``."""
+def _free_at_sides(centres, k, y, box, ring):
     free = 1.0 if is_free(centres, k, box.half_x, y, box, -1) else 0.0
     return free + (1.0 if is_free(centres, k, -box.half_x, y, box, -1) else 0.0)
 
 
+@optional(_free_at_sides)
+def free_at_sides(centres, k, y, box, ring):
+    """Return the number of x-walls, 0 to 2, at which a disc is free at height ``y``."""
+    return 0.0
+
+
+def _free_at_top_and_bottom(centres, k, x, box, ring):
+    free = 1.0 if is_free(centres, k, x, box.half_y, box, -1) else 0.0
+    return free + (1.0 if is_free(centres, k, x, -box.half_y, box, -1) else 0.0)
+
+
+@optional(_free_at_top_and_bottom)
+def free_at_top_and_bottom(centres, k, x, box, ring):
+    """Return the number of y-walls, 0 to 2, at which a disc is free at ``x``."""
+    return 0.0
+
+
 @compiled
-def sample_blocks(seed, first, stop, discs, box, walls):
+def sample_blocks(seed, first, stop, discs, box):
     """Return (sums, products) of the samples of blocks ``first`` … ``stop`` − 1, int64.
 
     Sums (6) are in ``WEIGHT_UNITS`` of a typical weight, in the order of ``SUM_NAMES``. Products
-    (6, 6), for errors, are Σ w_e w_f in the same units. ``walls`` is None on a ring.
+    (6, 6), for errors, are Σ w_e w_f in the same units.
     """
     n = len(SUM_NAMES)
     centres = np.empty((2, discs))
@@ -179,15 +196,14 @@ def sample_blocks(seed, first, stop, discs, box, walls):
                 x, y = box.half_x * signed_uniform(state), box.half_y * signed_uniform(state)
                 free, _ = free_place(state, centres, last, y, box, starts, ends)
                 weights[0] = free / length
-                weights[1] = free_at_sides(centres, last, y, box, walls) / 2
-                top = is_free(centres, last, x, box.half_y, box, -1)
-                bottom = is_free(centres, last, x, -box.half_y, box, -1)
-                weights[2] = ((1.0 if top else 0.0) + (1.0 if bottom else 0.0)) / 2
+                weights[1] = free_at_sides(centres, last, y, box, box.ring_x) / 2
+                weights[2] = free_at_top_and_bottom(centres, last, x, box, box.ring_y) / 2
                 j = np.int64(next_bits(state) % np.uint64(last))
                 p, q, square = draw_in_disc(state)
                 scale = box.sigma / math.sqrt(square)
-                at_x = ring_separation(centres[0, j] + p * scale, box.ring)
-                touches = is_free(centres, last, at_x, centres[1, j] + q * scale, box, j)
+                at_x = ring_separation(centres[0, j] + p * scale, box.ring_x)
+                at_y = ring_separation(centres[1, j] + q * scale, box.ring_y)
+                touches = is_free(centres, last, at_x, at_y, box, j)
                 weights[3] = 1.0 if touches else 0.0
                 weights[4] = 1.0 if is_free(centres, last, centres[0, j], y, box, -1) else 0.0
                 weights[5] = 1.0 if is_free(centres, last, x, centres[1, j], box, -1) else 0.0
@@ -205,14 +221,18 @@ def make_bounds(scene):
     pairs = scene.discs * (scene.discs - 1) / 2
     # Rounded to a power of two: the same on every machine.
     typical = 2.0 ** round(pairs * math.log2(1 - pair_overlap(scene)))
-    ring = scene.width if scene.periodic else None
-    return Bounds(scene.range_x / 2, scene.range_y / 2, scene.contact_distance, ring, typical)
+    ranges = scene.range_x / 2, scene.range_y / 2
+    return Bounds(*ranges, scene.contact_distance, *periods(scene), typical)
+
+
+def periods(scene):
+    """Return the periods of a ``Scene`` along x and y, None between walls."""
+    return tuple(scene.side(axis) if axis in scene.periodic else None for axis in "xy")
 
 
 def run_blocks(scene, seed, first, stop):
     """Return (sums, products) of the samples of a ``Scene``, integers that shards can add."""
-    walls = None if scene.periodic else True
-    return sample_blocks(np.uint64(seed), first, stop, scene.discs, make_bounds(scene), walls)
+    return sample_blocks(np.uint64(seed), first, stop, scene.discs, make_bounds(scene))
 
 
 def free_fraction(scene):
@@ -225,7 +245,7 @@ def estimate(scene, sums, products, samples):
     """Return (``Derivatives``, standard errors in the same form) from a number of ``samples``.
 
     Errors are linearly propagated: for ratios to the volume with their covariance, for ln V from
-    the error of V. On a ring the walls of x have 0.
+    the error of V. On a periodic axis the walls have 0.
     """
     n, a, b = scene.discs, scene.range_x, scene.range_y
     if sums[0] == 0:
@@ -239,8 +259,8 @@ def estimate(scene, sums, products, samples):
     factors = np.array(
         [n / a, n / b, pairs * 2 * math.pi * scene.contact_distance / (a * b), pairs / a, pairs / b]
     )
-    if scene.periodic:
-        factors[0] = 0.0
+    for axis in scene.periodic:
+        factors["xy".index(axis)] = 0.0
     ratios = mean[1:] / mean[0]
     spread = np.diag(covariance)[1:] - 2 * ratios * covariance[0, 1:] + ratios**2 * covariance[0, 0]
     errors = np.sqrt(np.maximum(spread, 0.0)) / mean[0]

@@ -87,7 +87,8 @@ class Initial(NamedTuple):
     half_x: float
     half_y: float
     sigma: float
-    ring: float | None
+    ring_x: float | None  # the period along x, None between walls
+    ring_y: float | None
     cells: Cells | None
     chain: Chain | None
     rows: int  # of a state
@@ -116,7 +117,7 @@ def make_initial(scene, by=None, *, chained=False):
     by = by or method(scene)
     return Initial(
         scene.discs, scene.range_x / 2, scene.range_y / 2, scene.contact_distance,
-        scene.width if scene.periodic else None,
+        *insertions.periods(scene),
         _cells(scene) if by == "channel" else None,
         _chain(scene, chained) if by == "chain" or scene.discs > MOST_REJECTED else None,
         (4 if scene.moment_of_inertia is None else 5) * scene.discs, spin_factor(scene),
@@ -230,21 +231,41 @@ def sort(values):
         values[j] = value
 
 
+@optional(lambda values, ring: None)
+def subtract_mean(values, ring):
+    """Subtract their mean from ``values`` (N,), velocities along a periodic axis."""
+    mean = 0.0
+    for value in values:
+        mean += value
+    mean /= values.size
+    for i in range(values.size):
+        values[i] -= mean
+
+
+@optional(lambda ring_x, ring_y: ring_x)
+def either(ring_x, ring_y):
+    """Return one of two periods that is not None, None between walls."""
+    return ring_y
+
+
 @optional(lambda velocities, ring: None)
-def keep_still(velocities, ring):
-    """Subtract the mean from ``velocities[0]`` of (2, N), and scale all to the energy 1/2."""
-    n = velocities.shape[1]
-    mean, total = 0.0, 0.0
+def scale_energy(velocities, ring):
+    """Scale ``velocities`` (2, N) to the energy 1/2."""
+    n, total = velocities.shape[1], 0.0
     for i in range(n):
-        mean += velocities[0, i]
-    mean /= n
-    for i in range(n):
-        velocities[0, i] -= mean
         total += velocities[0, i] * velocities[0, i] + velocities[1, i] * velocities[1, i]
     scale = 1.0 / math.sqrt(total)
     for i in range(n):
         velocities[0, i] *= scale
         velocities[1, i] *= scale
+
+
+@inlined
+def keep_still(velocities, ring_x, ring_y):
+    """Make the momenta along periodic axes 0, at the energy 1/2."""
+    subtract_mean(velocities[0], ring_x)
+    subtract_mean(velocities[1], ring_y)
+    scale_energy(velocities, either(ring_x, ring_y))
 
 
 @optional(lambda discs, spin: (np.empty((2, discs)), np.empty(discs - 1)))
@@ -253,8 +274,8 @@ def velocity_memory(discs, spin):
     return np.empty((2, 2 * discs)), np.empty(2 * discs - 1)
 
 
-@optional(lambda velocities, ring, spin: keep_still(velocities, ring))
-def keep_spins(velocities, ring, spin):
+@optional(lambda velocities, ring_x, ring_y, spin: keep_still(velocities, ring_x, ring_y))
+def keep_spins(velocities, ring_x, ring_y, spin):
     """Scale ``velocities`` and spins of rough discs, (2, 2N), to the energy 1/2.
 
     Columns from N on have a spin in their first row; the second row is not used.
@@ -284,8 +305,8 @@ def spins_in(states, discs, spin):
 
 
 @compiled
-def draw_velocities(state, velocities, cuts, ring, spin=None):
-    """Fill ``velocities`` (2, N) uniformly on the unit sphere, on a ring with no momentum along x.
+def draw_velocities(state, velocities, cuts, ring_x, ring_y, spin=None):
+    """Fill ``velocities`` (2, N) uniformly on the unit sphere, without momentum on periodic axes.
 
     The energies of N discs in the plane are uniform on their simplex: they are the spacings of
     N − 1 sorted uniform numbers (``cuts``). All directions have the same probability. Rough discs
@@ -301,7 +322,7 @@ def draw_velocities(state, velocities, cuts, ring, spin=None):
         p, q, square = draw_in_disc(state)
         scale = math.sqrt((high - low) / square)
         velocities[0, i], velocities[1, i] = p * scale, q * scale
-    keep_spins(velocities, ring, spin)
+    keep_spins(velocities, ring_x, ring_y, spin)
 
 
 # Centres -----------------------------------------------------------------------------------------
@@ -322,7 +343,7 @@ def _one_by_one(state, initial, centres, sweeps, chain, grid):
             scale = 1.0 / np.float64(1 << (next_bits(state) % np.uint64(chain.scales)))
             x = centres[0, i] + scale * width * signed_uniform(state)
             y = centres[1, i] + scale * height * signed_uniform(state)
-            x = ring_separation(x, initial.ring)
+            x, y = ring_separation(x, initial.ring_x), ring_separation(y, initial.ring_y)
             if is_free(centres, initial.discs, x, y, initial, i):
                 centres[0, i], centres[1, i] = x, y
 
@@ -443,7 +464,7 @@ def draw_states(state, initial, states):
     velocities, cuts = velocity_memory(initial.discs, initial.spin)
     for k in range(states.shape[1]):
         draw_centres(state, initial, centres, k, initial.cells)
-        draw_velocities(state, velocities, cuts, initial.ring, initial.spin)
+        draw_velocities(state, velocities, cuts, initial.ring_x, initial.ring_y, initial.spin)
         put_state(states, k, centres, velocities, initial.spin)
 
 
