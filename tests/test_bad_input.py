@@ -75,8 +75,8 @@ def pattern(sentence):
 
 #: Keys of a scene: the face, the shell and the configuration say the same.
 SCENES = """
-discs: 1 → discs must be an integer from 2 to 1024, not 1
-discs: 1025 → discs must be an integer from 2 to 1024, not 1025
+discs: 1 → discs must be an integer from 2 to 16384, not 1
+discs: 16385 → discs must be an integer from 2 to 16384, not 16385
 discs: 3, field: 1 → field must be left out with 3 discs
 discs: 3, depth: 1 → depth must be left out with 3 discs
 discs: 3, periodic: xy, moment_of_inertia: 0.5 → moment_of_inertia must be left out in a box without
@@ -84,8 +84,6 @@ discs: 3, radius: 0.26, periodic: xy → radius 0.26 does not fit: 3 discs in a 
 discs: 3, radius: 0.31 → radius 0.31 does not fit: 3 discs in a box of 1.5 × 1.0 need a radius below
 discs: 4, radius: 0.376, periodic: x → radius 0.376 does not fit
 discs: 20, radius: 0.2 → 20 discs in a box of 1.5 × 1.0 need a radius below 0.136
-discs: 64, width: 300, height: 1.3, radius: 0.33 → must be in a unit of length in which
-discs: 64, width: 300, height: 1.3, radius: 0.33, periodic: x → and 1e150, not 300.0 and 1.3
 radius: 0.5 → radius 0.5 does not fit: … need a radius below 0.3839745962155614
 width: 0.2, radius: 1.5 → radius 1.5 does not fit
 height: 1.0e+99 → height must … between 1e-60 and 1e60, not 1
@@ -104,6 +102,7 @@ Scene(1.5, 1, 0.1, periodic='x,y') → periodic must be some of the axes x and y
 Scene('0,3', 1, 0.1) → width must be a positive number, not '0,3'; decimals follow a point, 0.3
 Scene(1.5, 1, 0.1, n_discs=3) → 'n_discs'; did you mean discs?
 Scene(1.5, 1, np.array([0.1, 0.2])) → radius must be
+td.sample(Scene(20, 20, 0.5, discs=64)) → … double holds the volume …: divide all lengths by 16.0
 td.simulate() → missing 1 required positional argument: 'scene'
 td.simulate(PAPER, 0.5, progress=1) → progress must be True, False or None, not 1
 td.simulate(PAPER, 0.1, duration=10) → error and duration must not both be given
@@ -273,7 +272,7 @@ box: {width: 1,5, height: 1} → .box has an unknown key 5; decimals have a poin
 box: {width: 1.5, heigth: 1} → .box has an unknown key 'heigth'; did you mean 'height'?
 box: {width: 1, height: 1, heigth: 2} → .box … 'heigth'; its keys are width, height, depth
 box: {width: 1, height: '1,2'} → .box.height must be a positive length …; decimals …, 1.2
-discs: 2.5 → .discs must be an integer from 2 to 1024, not 2.5
+discs: 2.5 → .discs must be an integer from 2 to 16384, not 2.5
 discs: 65⏎radii: [0.01]⏎watch: {volume: true} → .watch.volume must be false for more than 64 discs…
 radii: [0.1, 0.2, 1e-1] → .radii must hold every radius once, but …
 radii: {smallest: 0.4} → .radii.smallest: radius 0.4 does not fit: …

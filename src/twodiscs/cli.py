@@ -71,7 +71,7 @@ def add_scene(parser):
     """Add the arguments of a ``Scene``: sides, a radius, the number of discs and effects."""
     for length in ("width", "height", "radius"):
         parser.add_argument(f"--{length}", type=value, required=True, help="a length")
-    parser.add_argument("--discs", type=value, default=2, help="their number (2), at most 1024")
+    parser.add_argument("--discs", type=value, default=2, help="their number (2), at most 16384")
     effects = parser.add_argument_group("effects", "absent by default")
     for effect in EFFECTS.values():
         kind = {"type": value} if effect.is_number else {"nargs": "+", "metavar": "AXIS"}

@@ -42,9 +42,7 @@ def published(packing):
 
 def force(discs, width, height, events, seed, replicas=64):
     """Return (force on a wall of y over its length, standard error), on a ring in units of σ."""
-    # A scene needs a unit of length in which a volume to the power N is a double.
-    size = math.sqrt(width * height)
-    scene = Scene(width / size, height / size, 0.5 / size, discs=discs, periodic="x")
+    scene = Scene(width, height, 0.5, discs=discs, periodic="x")
     duration = many_rates.expected_duration(scene, events / replicas)
     sums, products = class_counts.run_classes(
         scene, seed, 0, 1, duration, replicas=replicas, hops=False
@@ -52,7 +50,7 @@ def force(discs, width, height, events, seed, replicas=64):
     wall = [*SHELLS].index("top_wall")
     mean = sums[wall] / replicas
     error = math.sqrt((products[wall, wall] / replicas - mean**2) / (replicas - 1))
-    unit = duration * flux_constant(scene.velocity_components) * size * width
+    unit = duration * flux_constant(scene.velocity_components) * width
     return mean / unit, error / unit
 
 

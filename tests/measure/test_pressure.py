@@ -50,6 +50,20 @@ def test_forces_are_derivatives_of_the_free_energy(name):
         assert td.pressure(scene)[f"{wall}_pressure"] == pytest.approx(due, rel=2e-7)
 
 
+@pytest.mark.parametrize("name", ["three", "file"])
+@pytest.mark.parametrize("unit", [2.0**-190, 2.0**180])
+def test_only_a_volume_has_a_limit_of_its_unit(name, unit):
+    """Free energies have logarithms, and rates have a unit of their own."""
+    scene = EXACT[name]
+    other = replace(scene, **{side: getattr(scene, side) * unit for side in scene.LENGTHS})
+    assert td.free_energy(other) == pytest.approx(td.free_energy(scene), rel=1e-12)
+    assert td.volume(other) is None
+    ideal = scene.discs * math.log(scene.width * scene.height)
+    assert td.free_energy(scene) == pytest.approx(ideal - math.log(td.volume(scene)), rel=1e-12)
+    for event in scene.events:
+        assert td.rate(other, event) * unit == pytest.approx(td.rate(scene, event), rel=1e-12)
+
+
 @pytest.mark.parametrize("name", [n for n in EXACT if n not in ("balls", "masses", "channel")])
 def test_walls_and_collisions_tell_one_pressure(name):
     found = td.pressure(EXACT[name])

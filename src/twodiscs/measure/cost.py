@@ -20,9 +20,10 @@ import numpy as np
 
 from twodiscs.measure.result import Printed
 from twodiscs.model.calls import checked_call
-from twodiscs.model.checks import MOST_WITH_VOLUME, THINNEST, check_error, check_fraction
+from twodiscs.model.checks import THINNEST, check_error, check_fraction
 from twodiscs.model.events import EVENTS
 from twodiscs.model.formats import format_number, format_seconds, quote
+from twodiscs.model.many_geometry import has_volume
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.points.monte_carlo_point import WALL_AREAS
 from twodiscs.theory import exact
@@ -216,7 +217,7 @@ def _prices_of_samples(scene, shell):
     from twodiscs.sampling.montecarlo import samplers
 
     wanted = ["volume", *(f"{event}_area" for event in scene.events if scene.is_possible(event))]
-    makers = samplers(scene) if scene.discs <= MOST_WITH_VOLUME else {}
+    makers = samplers(scene) if scene.discs == 2 or has_volume(scene) else {}
     for method, make in makers.items():
         sampler = make(scene, wanted, shell, 0)
         sums, blocks, each = timed(sampler.count, OF_SPEED)

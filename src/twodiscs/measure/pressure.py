@@ -21,7 +21,7 @@ from twodiscs.model.checks import InputError
 from twodiscs.model.events import AXIS, WALLS
 from twodiscs.model.formats import quote
 from twodiscs.model.scene import Scene
-from twodiscs.theory import exact, virial
+from twodiscs.theory import exact, n_discs, virial
 
 
 class Pressures(dict):
@@ -216,8 +216,10 @@ def free_energy(of):
         raise InputError(f"field must be 0 for the free energy of hard discs, not {scene.field!r}")
     ideal = scene.discs * math.fsum(math.log(scene.side(axis)) for axis in scene.axes)
     if not is_result:
-        volume = exact.volume(scene)
-        return None if volume is None else ideal - math.log(volume)
+        if scene.discs > 2:
+            known = n_discs.known_derivatives(scene, False)
+            return None if known is None else ideal - known.log_volume
+        return ideal - math.log(exact.volume(scene))
     from uncertainties.umath import log
 
     volume = of["volume"]

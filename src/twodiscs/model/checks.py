@@ -21,7 +21,7 @@ LARGEST_INTEGER = 2**63 - 1
 THINNEST = 1e-6
 
 #: The largest number of discs, and the largest for the volume of configuration space.
-MOST_DISCS, MOST_WITH_VOLUME = 1024, 64
+MOST_DISCS, MOST_WITH_VOLUME = 16384, 64
 
 #: Relative errors that have a name.
 PRESETS = {"draft": 1e-2, "paper": 3e-4, "reference": 1e-4}

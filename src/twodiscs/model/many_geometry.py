@@ -13,30 +13,30 @@ MANY_DISC_EFFECTS = ("periodic", "moment_of_inertia", "friction")
 #: σ: it must be longer. Along a periodic axis there are two cells, or more.
 LARGE, LEAST_CELL_SIDE = 20, 1 + 2.0**-20
 
-#: The most decimal digits before or after the point of the volume of the prism: a double can then
-#: represent it.
+#: The most discs for which all numbers of rows are tried.
+MOST_TRIED = 1024
+
+#: The most decimal digits before or after the point of the volume of the prism: a double then holds
+#: the volume, and its square.
 MOST_DIGITS = 150
 
 
 def check_box(box):
-    """Raise ``InputError`` for a ``Box`` with an invalid effect, or in an unfit unit of length."""
+    """Raise ``InputError`` for a ``Box`` with an invalid effect."""
     if other := [name for name in box.effects if name not in MANY_DISC_EFFECTS]:
         raise InputError(
             f"{other[0]} must be left out with {box.discs} discs, because more than two discs "
             f"have no effects except {', '.join(MANY_DISC_EFFECTS)}, not {box.effects[other[0]]!r}"
         )
-    _check_prism(box, box.width * box.height)
 
 
-def _check_prism(box, area, where=""):
-    """Raise ``InputError`` if the volume of all centres in ``area`` each is out of range."""
-    size = box.discs * math.log10(area)
-    if box.discs <= MOST_WITH_VOLUME and abs(size) > MOST_DIGITS:
-        raise InputError(
-            f"width and height must be in a unit of length in which the prism of all centres of "
-            f"{box.discs} discs is between 1e-{MOST_DIGITS} and 1e{MOST_DIGITS}, not "
-            f"{box.width!r} and {box.height!r}{where}"
-        )
+def has_volume(scene):
+    """Return whether a double holds the volume of configuration space in the unit of length.
+
+    More than ``MOST_WITH_VOLUME`` discs have none, because almost no sample of it has a weight.
+    """
+    digits = scene.discs * math.log10(scene.range_x * scene.range_y)
+    return scene.discs <= MOST_WITH_VOLUME and abs(digits) <= MOST_DIGITS
 
 
 def check(scene):
@@ -47,7 +47,6 @@ def check(scene):
             f"{scene.width!r} × {scene.height!r} need a radius below {scene.largest_radius!r}, as "
             "far as arrangements are known here"
         )
-    _check_prism(scene, scene.range_x * scene.range_y, f" at radius {scene.radius!r}")
 
 
 def largest_radius(scene):
@@ -168,7 +167,12 @@ def _patterns(n, along, across, ring, torus):
     torus each row is shifted against the one below, by half a spacing if the number of rows is
     even, and else by a little less, so that the last row and the first one are shifted as well.
     """
-    for rows in range(1, n + 1):
+    tried = range(1, n + 1)
+    if n > MOST_TRIED and min(along, across) > 0:
+        # The best rows are about as far apart as the discs of a row.
+        about = math.sqrt(n * across / along)
+        tried = tried[int(about / 3) : int(3 * about) + 3]
+    for rows in tried:
         v = across / (rows - (not torus)) if rows > 1 else math.inf
         least = -(-n // rows)
         half = rows // 2 / rows if torus else 0.5

@@ -499,7 +499,7 @@ class Scene(Box):
         The rate γ of a Poisson process, in 1/time. At its times all velocities and spins are drawn
         anew, uniformly on the sphere of the same kinetic energy and the same conserved momenta.
     discs : int, default 2
-        The number of discs, from 2 to 1024.
+        The number of discs, from 2 to 16384.
 
     Raises
     ------

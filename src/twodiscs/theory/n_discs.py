@@ -6,13 +6,16 @@ value is known here; their events may be possible.
 """
 
 import math
+from dataclasses import replace
 from functools import lru_cache
 
-from twodiscs.model.checks import MOST_WITH_VOLUME
 from twodiscs.model.events import DECLARED, EVENTS, by_kind
-from twodiscs.model.many_geometry import is_ordered
+from twodiscs.model.many_geometry import has_volume, is_ordered
 from twodiscs.theory import channel, three
-from twodiscs.theory.flux import flux_constant
+from twodiscs.theory.flux import Derivatives, flux_constant
+
+#: The largest shortest side in which exact values are computed without another unit of length.
+LARGEST_UNIT = 2.0**20
 
 
 def exact_method(scene):
@@ -30,6 +33,15 @@ def known_derivatives(scene, hops=True):
 
     ``hops`` False leaves out the hops in a channel, which take longest.
     """
+    unit = 2.0 ** round(math.log2(scene.shortest))
+    if not LARGEST_UNIT > unit > 1 / LARGEST_UNIT:
+        # Powers of lengths would leave the range of doubles.
+        lengths = {name: getattr(scene, name) / unit for name in scene.LENGTHS}
+        if (known := known_derivatives(replace(scene, friction=0.0, **lengths), hops)) is None:
+            return None
+        log_volume, *rest = known
+        rest = (value and value / unit for value in rest)
+        return Derivatives(log_volume + 2 * scene.discs * math.log(unit), *rest)
     name = exact_method(scene)
     if name == "three":
         return three.derivatives(scene)
@@ -46,11 +58,10 @@ def volume_and_areas(scene):
 
     The volume is in length^2N. Areas are for an event of any pair, or of one disc at one wall. An
     area is 0.0 if the event is impossible or does not exist in the scene. If no exact value is
-    known, an area and the volume are None. Both are None for more than ``MOST_WITH_VOLUME`` discs,
-    whose volume a double may not hold.
+    known, an area and the volume are None. Both are None without ``has_volume``.
     """
     areas = {event: None if scene.is_possible(event) else 0.0 for event in EVENTS}
-    if scene.discs > MOST_WITH_VOLUME or (known := known_derivatives(scene)) is None:
+    if not has_volume(scene) or (known := known_derivatives(scene)) is None:
         return None, areas
     volume = math.exp(known.log_volume)
     over_volume = surfaces(scene, known)

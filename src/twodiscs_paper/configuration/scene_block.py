@@ -6,6 +6,7 @@ A mistake raises ``InputError`` with the key in the block of the scene.
 from twodiscs.model.checks import MOST_WITH_VOLUME, PRESETS, InputError
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.formats import format_number
+from twodiscs.model.many_geometry import has_volume
 from twodiscs.model.scene import Box
 from twodiscs.theory.exact import MIN_FRACTION, events_per_interval, free_fraction
 from twodiscs_paper.configuration.model import Accuracy, Histogram, Watch
@@ -86,7 +87,7 @@ def _radii(asked, box):
 def _everything(scene):
     """Return all quantities that a scene has and that can be computed by default."""
     can_hop = bool(_hops(scene))
-    can_sample = scene.discs <= MOST_WITH_VOLUME
+    can_sample = scene.discs == 2 or has_volume(scene)
     return Watch(
         volume=can_sample,
         areas=can_sample,

@@ -8,7 +8,7 @@ from twodiscs.dynamics.many.all_pairs import EVENT_CLASSES
 from twodiscs.model.many_geometry import LARGE
 from twodiscs.sampling.many import insertions
 from twodiscs.sampling.many.chains import MOST_CROWDING, crowding
-from twodiscs.sampling.many.many_initial_states import method
+from twodiscs.sampling.many.many_initial_states import CROWDED, method
 from twodiscs.sampling.rounds import FIRST_ROUND
 from twodiscs.theory import n_discs
 from twodiscs.theory.equation_of_state import bulk_derivatives
@@ -21,9 +21,9 @@ REPLICA_EVENTS, CHAIN_REPLICA_EVENTS = 256, 8192
 #: together. The motion then takes several times as long as the draw of the state.
 EVENTS_PER_DISC, MOST_REPLICA_EVENTS = 256, 2**18
 
-#: Replicas that a budget has room for, if they can be shorter. Those of crowded discs cannot: for
-#: states of a chain that are still alike, they would not be independent.
-BUDGET_REPLICAS, CROWDED = 128, 2.5
+#: Replicas that a budget has room for, if they can be shorter. Those of crowded discs cannot,
+#: because each has a new chain.
+BUDGET_REPLICAS = 128
 
 #: The events of a block of ``LARGE`` numbers of discs and its fewest replicas, and the events of
 #: each disc in an epoch.

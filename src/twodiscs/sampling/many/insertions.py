@@ -21,6 +21,7 @@ import numpy as np
 
 from twodiscs.model.checks import MOST_WITH_VOLUME, InputError
 from twodiscs.model.events import SHELLS, by_kind
+from twodiscs.model.many_geometry import has_volume
 from twodiscs.points.monte_carlo_point import InsertionPoint
 from twodiscs.sampling.conditioned import draw_in_disc
 from twodiscs.sampling.jit import compiled, inlined, optional
@@ -292,6 +293,13 @@ def insertion_sampler(scene, quantities, shell, seed):
         raise InputError(
             f"discs must be at most {MOST_WITH_VOLUME} for Monte Carlo by insertion, not "
             f"{scene.discs}: almost every insertion of more discs has the weight 0"
+        )
+    if not has_volume(scene):
+        unit = 2.0 ** round(math.log2(scene.range_x * scene.range_y) / 2)
+        raise InputError(
+            f"width and height must be in a unit of length in which a double holds the volume of "
+            f"{scene.discs} discs, not {scene.width!r} and {scene.height!r}: divide all lengths by "
+            f"{unit!r}"
         )
     wanted = {*quantities, "volume"}
     if "any_wall_area" in wanted:

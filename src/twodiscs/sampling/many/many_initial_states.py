@@ -45,9 +45,10 @@ LEAST_FREE_FRACTION = 1e-3
 #: Sweeps of a chain, and the least number of sizes of its moves; each is half of the one before.
 CHAIN_SWEEPS, LEAST_SCALES = 4000, 8
 
-#: The sweeps to a new state over those to the next state of a chain of roomy discs. Close to the
-#: largest radius discs forget slowly where they were, and each state has a new chain.
-APART = 8
+#: The sweeps to a new state over those to the next state of a chain of roomy discs. More crowded
+#: discs forget slowly where they were, so each state has a new chain. Few discs have longer moves,
+#: and twice this limit.
+APART, CROWDED = 8, 2.5
 
 #: The most discs for rejection of heights in a channel: with more, too few would be accepted.
 MOST_REJECTED = 64
@@ -143,8 +144,8 @@ def _chain(scene, chained=False):
 
 def _between(scene, sweeps):
     """Return the part of the ``sweeps`` to the next state of a chain; 0 if discs are crowded."""
-    share = chains.crowding(scene) / APART
-    return math.ceil(share * sweeps) if share < 1 else 0
+    crowding, most = chains.crowding(scene), CROWDED if scene.discs >= LARGE else 2 * CROWDED
+    return math.ceil(crowding / APART * sweeps) if crowding <= most else 0
 
 
 def large_grid(scene):
