@@ -156,7 +156,7 @@ td.intervals(Scene(1, 1, 0.1, discs=3, moment_of_inertia=1), 'vertical_hop') →
 insertions.sample(Scene(1.5, 1.0, 0.13, discs=16), 1000, 1) → in none of them 16 discs fit
 td.pressure(FIELD) → field must be 0 for a pressure
 td.pressure(Scene(1, 1, 0.1, radius_ratio=2)) → radius_ratio must be 1 for a pressure
-td.pressure(Scene(1, 1, 0.1, periodic='xy')) → must have walls along x or y for a pressure
+td.pressure(Scene(1, 1, 0.1, depth=1, periodic='xy')) → must have walls along x or y for a pressure
 td.pressure(td.sample(PAPER, 1)) → a Scene or a result of simulate, not a result of sample
 td.free_energy(FIELD) → field must be 0 for the free energy
 td.free_energy('a') → of must be a Scene or a result of sample, not 'a'

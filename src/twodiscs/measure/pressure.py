@@ -8,6 +8,10 @@ theorem for the two walls together is
     h A P_right + w B P_top = 2 N kT (1 + σ ν_coll/(√2 N c_D))
 
 with the rate ν_coll of all collisions: a pressure without wall hits. For two discs √2 N is √8.
+
+On a torus P w h/(N kT) = 1 + σ ν_coll/(√2 N c_D) with D = 2N − 2, because the total momentum is 0.
+The 1 belongs to all N discs: P is kT ∂lnV/∂(w h) at a fixed shape, and V scales as a length to the
+power 2N. The force of collisions is σ kT (−∂lnV/∂σ), and their rate −(c_D/√2) ∂lnV/∂σ (``flux``).
 """
 
 from __future__ import annotations
@@ -41,23 +45,35 @@ def _require_simple(scene):
         raise InputError(
             f"field must be 0 for a pressure, which depends on the height, not {scene.field!r}"
         )
-    if scene.radius_ratio != 1:
+    if scene.radius_ratio != 1 and scene.walled:
         raise InputError(
             "radius_ratio must be 1 for a pressure, because only the hits of disc 1 are counted, "
             f"not {scene.radius_ratio!r}"
         )
-    if not any(AXIS[wall] in scene.walled for wall in WALLS):
-        raise InputError("scene must have walls along x or y for a pressure, but both are periodic")
+    if scene.walled == ("z",):
+        raise InputError(
+            "scene must have walls along x or y for a pressure, or no walls at all, but it has "
+            "walls along z only"
+        )
 
 
 def terms(scene):
     """Return {quantity: (constant, {event: factor of its rate})} of all pressures of a ``Scene``.
 
-    The virial pressure is among them between walls, for equal discs.
+    The virial pressure is among them between walls, for equal discs, and without any wall.
     """
     _require_simple(scene)
     n, kt = scene.discs, 1 / scene.velocity_components
     volume = math.prod(scene.side(axis) for axis in scene.axes)
+    ideal = n * kt / volume
+    if not scene.walled:
+        push = virial.momentum_per_hit(scene, "disc_collision") / (len(scene.axes) * volume)
+        collisions = scene.contact_distance * push
+        return {
+            "virial_pressure": (ideal, {"disc_collision": collisions}),
+            "ideal_pressure": (ideal, {}),
+            "compressibility_factor": (1.0, {"disc_collision": collisions / ideal}),
+        }
     pressures, weighted, norm = {}, {}, 0.0
     for wall in WALLS:
         axis = AXIS[wall]
@@ -72,7 +88,6 @@ def terms(scene):
         kinetic = 2 * n * kt / norm
         collisions = {"disc_collision": -kinetic * weights["disc_collision"]}
         pressures["virial_pressure"] = kinetic, collisions
-    ideal = n * kt / volume
     pressures["ideal_pressure"] = ideal, {}
     ratio = {wall: factor / ideal for wall, factor in mean.items()}
     pressures["compressibility_factor"] = 0.0, ratio
@@ -102,9 +117,11 @@ def pressure(of):
         - right_wall_pressure, top_wall_pressure: the force of all discs on a wall over its length
         - wall_pressure: their mean with the weights h A and w B, with the ranges A and B of the
           centres; the error includes the correlation of the two
-        - virial_pressure: the same mean from the collisions of the discs only
+        - virial_pressure: the same mean from the collisions of the discs only; on a torus, the
+          mean of the pressures along its axes
         - ideal_pressure: N kT/(w h), the pressure of points
-        - compressibility_factor: wall_pressure over ideal_pressure
+        - compressibility_factor: wall_pressure over ideal_pressure; on a torus, virial_pressure
+          over ideal_pressure
 
         A number is None if no exact value is known, for more than two discs. A result has the
         pressures whose events it counted. On a periodic axis there are no walls.
@@ -112,8 +129,8 @@ def pressure(of):
     Raises
     ------
     InputError
-        In a field, for unequal radii, without walls, and for anything but a ``Scene`` or a result
-        of ``simulate``.
+        In a field, for unequal radii between walls, if only z has walls, and for anything but a
+        ``Scene`` or a result of ``simulate``.
 
     Notes
     -----

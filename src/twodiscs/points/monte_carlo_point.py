@@ -214,7 +214,7 @@ class InsertionPoint(SampledPoint):
     def all_walls(self):
         """Return the area of all walls as ``Sampled``, or None."""
         weights = wall_weights(self.scene)
-        if not weights.keys() <= self.quantities.keys():
+        if not weights or not weights.keys() <= self.quantities.keys():
             return None
         misses = min(estimates.effective_misses(*self._sums(wall)) for wall in weights)
         return self._sampled(*self.total(weights), misses)

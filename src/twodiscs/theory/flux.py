@@ -1,8 +1,8 @@
 """Rates as fluxes of the invariant measure: derivatives of the volume of configuration space.
 
 With N discs, D components of velocity uniform on a sphere at total energy 1/2, all events of a
-class together have the rates below. D is 2N, minus 1 if a momentum is conserved; it is 3N with the
-spins of rough discs.
+class together have the rates below. D is 2N, minus 1 for each momentum that is conserved; it is 3N
+with the spins of rough discs.
 
     collisions     −(c_D/√2) ∂lnV/∂σ
     walls of x     c_D ∂lnV/∂A                              walls of y likewise

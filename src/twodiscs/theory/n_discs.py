@@ -1,8 +1,8 @@
 """The exact numbers of N discs, as far as they are known, by the method for each scene.
 
-Three discs have the quadrature between kinks. Any number of discs has the transfer operator, if the
-channel is so low that they keep their order. For other scenes no exact
-value is known here; their events may be possible.
+Three discs have the quadrature between kinks, or Mayer's sum on a torus. Any number of discs has
+the transfer operator, if the channel is so low that they keep their order. For other scenes no
+exact value is known here; their events may be possible.
 """
 
 import math
@@ -20,10 +20,10 @@ LARGEST_UNIT = 2.0**20
 
 def exact_method(scene):
     """Return the theory for a ``Scene``: "three", "channel", or None."""
+    if scene.discs == 3 and scene.periodic in ("", "xy"):
+        return "three"
     if scene.periodic:
         return None
-    if scene.discs == 3:
-        return "three"
     return "channel" if is_ordered(scene) or is_ordered(scene.turned()) else None
 
 
@@ -44,7 +44,7 @@ def known_derivatives(scene, hops=True):
         return Derivatives(log_volume + 2 * scene.discs * math.log(unit), *rest)
     name = exact_method(scene)
     if name == "three":
-        return three.derivatives(scene)
+        return (three.torus_derivatives if scene.periodic else three.derivatives)(scene)
     if name == "channel":
         if is_ordered(scene):
             return channel.derivatives(scene, hops)
@@ -78,7 +78,7 @@ def surfaces(scene, known):
     root, discs = math.sqrt(2), scene.discs
     over = {
         "hop": lambda event: (
-            root * (known.vertical_hops if event.axis == "y" else known.horizontal_hops)
+            root * ((known.vertical_hops if event.axis == "y" else known.horizontal_hops) or 0.0)
         ),
         "collision": lambda event: root * known.per_contact,
         "wall": lambda event: (known.per_width if event.axis == "x" else known.per_height) / discs,

@@ -1,4 +1,4 @@
-"""Three discs in any box, exact by quadrature between the kinks of the integrand.
+"""Three discs in any box, exact by quadrature between the kinks of the integrand, or on a torus.
 
 With centres x1 < x2 < x3 the discs i and j are at least d_ij = √(σ² − (y_i − y_j)²)₊ apart along x.
 For given heights the x fill a volume g(s) = (A − s)₊³/6, s = d12 + d23, if d13 ≤ s, and otherwise
@@ -22,10 +22,22 @@ q = p + c, at which the discs form an equilateral triangle. Closed forms give al
 the t at which two of them meet. Between them the variables are angles: P, Q and t below σ are σ
 times a sine, so that the roots d are smooth too. Relative errors are some 1e-14, times
 r/(r_max − r) if the discs hardly fit.
+
+On a torus of the area S = w h, each pair overlaps at one image at most, because σ ≤ w/2 and
+σ ≤ h/2. With β = πσ²/S, Mayer's sum over pairs, chains of two pairs and triangles ends with
+
+    V/S³ = 1 − 3β + 3β² − T/S²,    T = Σ_W ∫∫ 1(|a| < σ) 1(|b| < σ) 1(|W − a − b| < σ) da db
+
+over the vectors W of the lattice of images: the three separations of a triangle add up to W. For
+W = 0 the integral is (π² − 3√3π/4) σ⁴. It is the whole T if σ ≤ w/3 and σ ≤ h/3, because no
+triangle winds around the torus; otherwise W shorter than 3σ count as well. With the overlap L(t) of
+two circles of radius σ at a distance t, their integral and its derivative by σ are
+
+    ∫ L(t) 2 acos((t² + W² − σ²)/(2tW)) t dt from W − σ to 2σ,    6σ ∫ L(|W − σe(θ)|) dθ from 0 to π
 """
 
 import math
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 
@@ -135,6 +147,45 @@ def _gaps(a, sigma, t, c):
     q = np.where(near_p, q_of_p, np.where(near_q, q, 0.0))
     weight = np.where(near_p, weight_p, np.where(near_q, weight_q, (high - low) * w))
     return np.where(near_p, p, 0.0), q, weight, near_p, near_q
+
+
+def torus_derivatives(scene):
+    """Return the ``Derivatives`` of a ``Scene`` of three discs on a torus, without hops."""
+    area, sigma = scene.width * scene.height, scene.contact_distance
+    overlap, total, slope = math.pi * sigma**2 / area, 0.0, 0.0
+    for i, j in product(range(-2, 3), repeat=2):
+        part, part_slope = _triangles(math.hypot(i * scene.width, j * scene.height), sigma)
+        total, slope = total + part, slope + part_slope
+    volume = 1 - 3 * overlap + 3 * overlap**2 - total / area**2
+    loss = (6 * overlap - 12 * overlap**2) / sigma + slope / area**2
+    return Derivatives(3 * math.log(area) + math.log(volume), 0.0, 0.0, loss / volume)
+
+
+def _triangles(winding, sigma):
+    """Return the integral for |W| = ``winding`` and its derivative by σ."""
+    if winding == 0:
+        plane = math.pi**2 - math.sqrt(27) * math.pi / 4
+        return plane * sigma**4, 4 * plane * sigma**3
+    if winding >= 3 * sigma:
+        return 0.0, 0.0
+    x, w = _nodes(OUTER)
+
+    def lens(t):
+        half = np.minimum(t / (2 * sigma), 1.0)
+        return 2 * sigma**2 * (np.arccos(half) - half * np.sqrt(1 - half * half))
+
+    # Powers of a half at the ends are smooth in the angle of a sine squared, or of a sine.
+    t = winding - sigma + (3 * sigma - winding) * np.sin(math.pi / 2 * x) ** 2
+    weight = (3 * sigma - winding) * math.pi / 2 * np.sin(math.pi * x) * w
+    inside = np.minimum((t * t + winding**2 - sigma**2) / (2 * t * winding), 1.0)
+    end = math.acos((winding**2 - 3 * sigma**2) / (2 * winding * sigma))
+    angle = end * np.sin(math.pi / 2 * x)
+    arc = end * math.pi / 2 * np.cos(math.pi / 2 * x) * w
+    far = np.sqrt(winding**2 + sigma**2 - 2 * winding * sigma * np.cos(angle))
+    return (
+        float(weight @ (lens(t) * 2 * np.arccos(inside) * t)),
+        float(6 * sigma * arc @ lens(far)),
+    )
 
 
 def derivatives(scene):

@@ -54,11 +54,15 @@ def expected_rates(scene):
     known = n_discs.known_derivatives(scene)
     if known is None:
         known = insertions.expected(scene) if scene.discs < LARGE else bulk_derivatives(scene)
-    guess = dict.fromkeys(("disc_collision", "any_wall"), _guessed_rate(scene) / 2)
+    half = _guessed_rate(scene) / 2
+    guess = {"disc_collision": half, "any_wall": half if scene.walled else 0.0}
     if known is None:
         return guess
     by_class = rates(scene, known)
-    summed = {e: sum(by_class[name] for name in parts) for e, parts in EVENT_CLASSES.items()}
+    summed = {
+        event: sum(by_class.get(name, 0.0) for name in parts)
+        for event, parts in EVENT_CLASSES.items()
+    }
     by_event = guess | {e: rate for e, rate in summed.items() if rate and e in scene.events}
     if (
         scene.discs >= LARGE
