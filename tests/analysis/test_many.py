@@ -31,9 +31,10 @@ SCENES = {
     "four, upright": Scene(0.6, 2.0, 0.18, discs=4),
     "four": Scene(1.5, 1.0, 0.12, discs=4),
     "four on a ring": Scene(1.5, 1.0, 0.15, periodic="x", discs=4),
+    "three on a torus": Scene(1.5, 1.0, 0.22, periodic="xy", discs=3),
 }
 
-KNOWN = ("three", "three, dense", "eight in a channel", "four, upright")
+KNOWN = ("three on a torus", "three", "three, dense", "eight in a channel", "four, upright")
 
 
 def test_what_is_known_is_told_from_what_is_impossible():
@@ -76,7 +77,7 @@ def test_the_check_fails_if_a_rate_is_wrong_and_else_it_does_not(name):
 
 
 def test_expected_rates_are_near_what_is_counted():
-    for name in ("four", "four on a ring"):
+    for name in ("four", "four on a ring", "three on a torus"):
         scene = SCENES[name]
         duration = find_engine(scene).replica_duration(scene)
         sums, _ = find_engine(scene).run_blocks(scene, scene.events, 8, 0, 2, duration)

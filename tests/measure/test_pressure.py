@@ -30,6 +30,8 @@ EXACT = {
     "channel": SCENES["channel"],
     "three": THREE,
     "file": td.Scene(3.0, 0.6, 0.18, discs=5),
+    "torus": td.Scene(1.5, 1.0, 0.2, radius_ratio=0.6, mass_ratio=3, periodic="xy"),
+    "three on a torus": td.Scene(1.5, 1.0, 0.22, discs=3, periodic="xy"),
 }
 
 
@@ -50,7 +52,7 @@ def test_forces_are_derivatives_of_the_free_energy(name):
         assert td.pressure(scene)[f"{wall}_pressure"] == pytest.approx(due, rel=2e-7)
 
 
-@pytest.mark.parametrize("name", ["three", "file"])
+@pytest.mark.parametrize("name", ["three", "file", "three on a torus"])
 @pytest.mark.parametrize("unit", [2.0**-190, 2.0**180])
 def test_only_a_volume_has_a_limit_of_its_unit(name, unit):
     """Free energies have logarithms, and rates have a unit of their own."""
@@ -64,7 +66,28 @@ def test_only_a_volume_has_a_limit_of_its_unit(name, unit):
         assert td.rate(other, event) * unit == pytest.approx(td.rate(scene, event), rel=1e-12)
 
 
-@pytest.mark.parametrize("name", [n for n in EXACT if n not in ("balls", "masses", "channel")])
+@pytest.mark.parametrize("name", ["torus", "three on a torus"])
+def test_without_walls_the_pressure_is_the_derivative_by_the_area(name):
+    """At a fixed shape. Of two discs of any masses it is that of the co-volume, πσ²/(S − πσ²)."""
+    scene, step = EXACT[name], 1e-5
+    kt, area = 1 / scene.velocity_components, scene.width * scene.height
+    low, high = (
+        td.free_energy(replace(scene, width=scene.width * scale, height=scene.height * scale))
+        for scale in (1 - step, 1 + step)
+    )
+    due = kt / area * (scene.discs - (high - low) / (4 * step))
+    found = td.pressure(scene)
+    assert found["virial_pressure"] == pytest.approx(due, rel=1e-8)
+    assert found["compressibility_factor"] == pytest.approx(due * area / scene.discs / kt)
+    if name == "torus":
+        excluded = math.pi * scene.contact_distance**2
+        assert due * area / kt == pytest.approx(2 + excluded / (area - excluded), rel=1e-8)
+
+
+WALLED = [n for n in EXACT if n not in ("balls", "masses", "channel", "torus", "three on a torus")]
+
+
+@pytest.mark.parametrize("name", WALLED)
 def test_walls_and_collisions_tell_one_pressure(name):
     found = td.pressure(EXACT[name])
     assert found["wall_pressure"] == pytest.approx(found["virial_pressure"], rel=1e-10)
@@ -74,7 +97,9 @@ def test_walls_and_collisions_tell_one_pressure(name):
     assert found["compressibility_factor"] == pytest.approx(ratio, rel=1e-14)
 
 
-@pytest.mark.parametrize("name", ["plain", "blocked", slow("rough"), "three"])
+@pytest.mark.parametrize(
+    "name", ["plain", "blocked", slow("rough"), "three", "torus", "three on a torus"]
+)
 def test_measured_pressures_are_the_exact_ones(name):
     """20 scores at 5 sigma: one false alarm in 87,000."""
     scene = EXACT[name]
@@ -83,8 +108,9 @@ def test_measured_pressures_are_the_exact_ones(name):
     times = td.simulate(scene, duration=duration, seed=4)
     found = td.pressure(times)
     assert list(found) == list(td.pressure(scene))
-    fewest = min(times[f"{wall}_time"].count for wall in ("right_wall", "top_wall"))
-    assert found["wall_pressure"].count == fewest
+    events = ("right_wall", "top_wall") if scene.walled else ("disc_collision",)
+    pressure = found["wall_pressure" if scene.walled else "virial_pressure"]
+    assert pressure.count == min(times[f"{event}_time"].count for event in events)
     for quantity, exact in td.pressure(scene).items():
         one = found[quantity]
         assert one.exact == exact

@@ -11,6 +11,7 @@ import pytest
 from mpmath import mp, mpf
 
 from twodiscs.model.many_geometry import largest_known_radius as largest_radius
+from twodiscs.model.scene import Scene
 from twodiscs.theory import three
 
 BOUND = 1e-12
@@ -44,6 +45,35 @@ def test_the_box_on_its_side_has_the_same_numbers():
         assert turned[:4] == pytest.approx((volume, by_b, by_a, contact), rel=BOUND)
         euler = a * by_a + b * by_b - sigma * contact
         assert euler == pytest.approx(6 * volume, abs=BOUND * (volume + sigma * contact))
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "radius"),
+    [(1.5, 1.0, 0.16), (1.5, 1.0, 0.249), (1.0, 1.02, 0.2499), (0.5, 2.0, 0.12), (9.0, 1.0, 0.2)],
+)
+def test_three_discs_on_a_torus(width, height, radius):
+    """Points at random: the third side of a triangle may go around the torus. Five errors.
+
+    V scales as a length to the sixth power, and its slope is that of differences.
+    """
+    found = three.torus_derivatives(Scene(width, height, radius, discs=3, periodic="xy"))
+    sides = np.array([width, height])
+    at = np.random.default_rng(5).random((3, 2_000_000, 2)) * sides
+    apart = np.array([at[0] - at[1], at[1] - at[2], at[2] - at[0]])
+    apart -= sides * np.round(apart / sides)
+    share = np.mean(np.all(np.sum(apart**2, axis=2) >= 4 * radius**2, axis=0))
+    due = math.exp(found.log_volume) / (width * height) ** 3
+    assert abs(share - due) < 5 * math.sqrt(due * (1 - due) / at.shape[1])
+    if max(radius / width, radius / height) < 1 / 6:
+        beta = math.pi * 4 * radius**2 / (width * height)
+        square = (1 - 3 * math.sqrt(3) / 4 / math.pi) * beta**2
+        assert due == pytest.approx(1 - 3 * beta + 3 * beta**2 - square, rel=1e-14)
+    step, logs = 1e-5 * radius, []
+    for size in (radius - step, radius - 2 * step):
+        scene = Scene(width, height, size, discs=3, periodic="xy")
+        logs.append(three.torus_derivatives(scene).log_volume)
+    slope = (4 * logs[0] - logs[1] - 3 * found.log_volume) / (-4 * step)
+    assert -slope == pytest.approx(found.per_contact, rel=1e-6)
 
 
 @pytest.mark.parametrize("radius", [0.05, 0.15, 0.2, 0.24, 0.28, 0.3])

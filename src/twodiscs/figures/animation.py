@@ -222,13 +222,13 @@ def draw_positions(strip, motion, colours):
 # time.
 
 
-def draw_circle(axes, motion, disc, face, edge, axis=None):
-    """Draw a disc, or its image at the other end of a periodic ``axis``."""
+def draw_circle(axes, motion, disc, face, edge, across=""):
+    """Draw a disc, or its image at the other ends of the periodic axes that it is ``across``."""
     circle = axes.add_patch(Circle((0, 0), motion.scene.radii[disc - 1], fc=face, ec=edge, lw=1.2))
 
     def move(time):
         place = motion.folded_place(disc, time)
-        if axis is not None:
+        for axis in across:
             column = "xy".index(axis)
             place[column] -= np.copysign(motion.sides[axis], place[column])
         circle.center = place
@@ -373,8 +373,9 @@ def draw(motion):
         draw_separation(strip, motion)
     circles, others = {}, {}
     for disc, look in enumerate(looks, 1):
-        ends = (None, *motion.periodic)
-        circles[disc] = [draw_circle(axes, motion, disc, *look, axis) for axis in ends]
+        # On a torus, a disc at a corner has an image at each of the others.
+        images = dict.fromkeys(["", *motion.periodic, "".join(motion.periodic)])
+        circles[disc] = [draw_circle(axes, motion, disc, *look, across) for across in images]
     for disc, (_, colour) in enumerate(looks, 1):
         others[f"trace {disc}"] = draw_trace(axes, motion, disc, colour)
         if f"s{disc}" in motion.columns:

@@ -470,10 +470,10 @@ class Scene(Box):
     """Hard discs in a box, two of them by default, in which disc 1 has mass 1.
 
     The total energy is 1/2. Each effect is absent by default. More than two discs are equal, in the
-    plane. They can have ``friction``, ``moment_of_inertia`` and ``periodic`` "x": the box is then a
-    ring along x, and smooth discs have a total momentum of 0 along it. A collision or a hop is then
-    of any pair. A hit of the right or the top wall is of one disc, averaged over all initial
-    conditions.
+    plane. They can have ``friction``, ``moment_of_inertia`` and ``periodic``: the box is then a
+    ring along x or y, or a torus, and smooth discs have a total momentum of 0 along periodic axes.
+    A collision or a hop is then of any pair. A hit of the right or the top wall is of one disc,
+    averaged over all initial conditions.
 
     Parameters
     ----------
@@ -736,8 +736,9 @@ def why_absent(scene, name):
         return ""
     if event not in HOPS:
         return f": the periodic axis {axis} has no walls"
-    if scene.discs == 2:
-        return f": along the periodic axis {axis} two discs have no order that a hop could change"
+    if scene.discs == 2 or scene.periodic == "xy":
+        discs = "two discs" if scene.discs == 2 else "discs on a torus"
+        return f": along the periodic axis {axis} {discs} have no order that a hop could change"
     return f": hops along the periodic axis {axis} are those of neighbours, see transmission"
 
 

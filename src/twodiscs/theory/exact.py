@@ -127,7 +127,7 @@ def rate(scene: Scene, event: str) -> float:
 def event_rate(scene):
     """Return the wall hits and disc collisions per time, without hops; None if not known."""
     walls, collisions = rate(scene, "any_wall"), rate(scene, "disc_collision")
-    return None if walls is None else walls + collisions
+    return None if None in (walls, collisions) else walls + collisions
 
 
 def work_per_event(scene):
