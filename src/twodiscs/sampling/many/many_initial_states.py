@@ -47,8 +47,8 @@ CHAIN_SWEEPS, LEAST_SCALES = 4000, 8
 
 #: The sweeps to a new state over those to the next state of a chain of roomy discs. More crowded
 #: discs forget slowly where they were, so each state has a new chain. Few discs have longer moves,
-#: and twice this limit.
-APART, CROWDED = 8, 2.5
+#: and twice this limit. Density relaxes slowly along a box of more discs than ``LONG``.
+APART, CROWDED, LONG = 8, 2.5, 32
 
 #: The most discs for rejection of heights in a channel: with more, too few would be accepted.
 MOST_REJECTED = 64
@@ -145,7 +145,9 @@ def _chain(scene, chained=False):
 def _between(scene, sweeps):
     """Return the part of the ``sweeps`` to the next state of a chain; 0 if discs are crowded."""
     crowding, most = chains.crowding(scene), CROWDED if scene.discs >= LARGE else 2 * CROWDED
-    return math.ceil(crowding / APART * sweeps) if crowding <= most else 0
+    along = max(scene.width, scene.height) * math.sqrt(scene.discs / (scene.width * scene.height))
+    share = crowding / APART * max(1.0, along / LONG) ** 2
+    return math.ceil(share * sweeps) if crowding <= most and share < 1 else 0
 
 
 def large_grid(scene):
