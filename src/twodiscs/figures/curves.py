@@ -75,46 +75,58 @@ CLOSEST, FARTHER = 1e-9, 1e-5
 
 #: The number of radii in each regime. They are Chebyshev nodes, which are dense at both ends, where
 #: curves bend, and go on in geometric progression to the limits. Effects have fewer, because their
-#: theory takes longer, and four or more discs have the fewest: one radius takes up to a minute.
-NODES, FEWER, FEWEST, GEOMETRIC = 96, 32, 24, 8
+#: theory takes longer.
+NODES, FEWER, GEOMETRIC = 96, 32, 8
+
+#: From this number of discs on one radius may take minutes. Figures then have no curves, but exact
+#: values at the radii of the rows.
+WITHOUT_CURVES = 4
 
 
-def branches(box, others=()):
+def branches(box, others=(), rows=()):
     """Return one ascending array of radii for each regime of a ``Box``, none on its limits.
 
     The first one starts at 1e-4 of its length, where the law for small radii holds. ``others`` are
-    more limits, such as the limits of another box in the same figure.
+    more limits, such as the limits of another box in the same figure. ``WITHOUT_CURVES`` each
+    radius of the ``rows`` is a branch.
     """
+    if box.discs >= WITHOUT_CURVES:
+        return [np.array([radius]) for radius in sorted({row["radius"] for row in rows})]
     own = [radius for radius, _ in limits(box)]
     ends = sorted({0, *own, *(radius for radius in others if radius < own[-1])})
-    nodes = NODES if box.is_plain else FEWER if box.discs < 4 else FEWEST
+    nodes = NODES if box.is_plain else FEWER
     inner = (1 - np.cos(np.pi * np.arange(1, nodes) / nodes)) / 2
     near = np.geomspace(CLOSEST if box.is_plain else FARTHER, inner[0], GEOMETRIC)
     regimes = []
     for low, high in pairwise(ends):
         start = np.geomspace(1e-4, inner[0], GEOMETRIC) if low == 0 else near
-        end = 1 - near if box.discs < 4 else []
-        fractions = np.unique(np.concatenate([start, inner, end]))
+        fractions = np.unique(np.concatenate([start, inner, 1 - near]))
         radii = low + fractions * (high - low)
         regimes.append(np.unique(radii[(radii > low) & (radii < high)]))
     return regimes
 
 
-@cache
-def exact_curves(box, others=()):
+def exact_curves(box, others=(), rows=()):
     """Return (radii, {quantity: values}) along the exact curves of a ``Box``.
 
     Quantities are named as in theory.csv. A NaN between two regimes breaks a line through the
     values at a limit, where some of them jump. NaN also means that an event is impossible, or that
-    no exact value is known. ``others`` are more limits, as in ``branches``.
+    no exact value is known. ``others`` are more limits, ``rows`` are of a result, as in
+    ``branches``.
     """
-    radii, rows = [], []
-    for branch in branches(box, others):
-        for radius in map(float, branch):
+    return _values_along(box, tuple(map(tuple, branches(box, others, rows))))
+
+
+@cache
+def _values_along(box, regimes):
+    radii, values = [], []
+    for regime in regimes:
+        for radius in map(float, regime):
             radii.append(radius)
-            rows.append({row["quantity"]: row["exact"] for row in TheoryTable.rows(box, [radius])})
+            exact = TheoryTable.rows(box, [radius])
+            values.append({row["quantity"]: row["exact"] for row in exact})
         radii.append(np.nan)
-        rows.append({})
+        values.append({})
     names = ["volume", *(f"{event}_{kind}" for kind in ("area", "time") for event in EVENTS)]
-    columns = {name: np.array([row.get(name) for row in rows], float) for name in names}
+    columns = {name: np.array([row.get(name) for row in values], float) for name in names}
     return np.array(radii), columns

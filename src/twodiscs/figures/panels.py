@@ -216,13 +216,19 @@ def assign_looks(series):
     return [(part.look or look, part) for look, part in zip(cycle(SERIES), series, strict=False)]
 
 
+def draw_exact(axes, radii, exact, colour):
+    """Draw exact values as a curve, or as bars if each radius is alone."""
+    alone = np.all(np.isnan(radii[1::2]))
+    axes.plot(radii, exact, color=colour, marker="_" if alone else None, zorder=5)
+
+
 def draw_series(main, lower, radii, series, single=False):
     """Draw the ``series`` in both panels; a ``single`` one has its curve in black.
 
     ``lower`` is None if there are no residuals.
     """
     for (colour, marker), part in assign_looks(series):
-        main.plot(radii, part.exact, color=BLACK if single else colour, zorder=5)
+        draw_exact(main, radii, part.exact, BLACK if single else colour)
         draw_estimates(main, part.rows, colour, marker)
         if lower:
             draw_residuals(lower, part.rows, colour, marker)

@@ -143,7 +143,7 @@ def select_series(box, rows, names, looks):
 
     Rows of exact values alone have a curve, but no symbol.
     """
-    radii, exact = curves.exact_curves(box)
+    radii, exact = curves.exact_curves(box, rows=rows)
     by_quantity = {}
     for quantity, name in names.items():
         own = [row for row in rows if row_quantity(row) == quantity]
@@ -228,7 +228,9 @@ LAST_PRESSURE = 0.12
 
 def draw_pressure(box, rows):
     """Draw the pressures from the rows of mean_times.csv, and the terms of the virial."""
-    radii = np.concatenate([np.append(branch, np.nan) for branch in curves.branches(box)])
+    radii = np.concatenate(
+        [np.append(branch, np.nan) for branch in curves.branches(box, rows=rows)]
+    )
     summed = virial.has_theorem(box)
     events = [event for event in WALLS if any(row["event"] == event for row in rows)]
     series = [
@@ -296,7 +298,7 @@ def _virials(axes, box, rows, radii):
         for event, name in names.items()
     ]
     for (colour, marker), part in zip(SERIES, series, strict=False):
-        axes.plot(radii, part.exact, color=colour, zorder=5)
+        panels.draw_exact(axes, radii, part.exact, colour)
         panels.draw_estimates(axes, part.rows, colour, marker)
     axes.set(xlim=(0, 1.02 * box.last_radius), xlabel="radius $r$")
     axes.set_ylabel(r"virial$\,/\,2\langle E_{\mathrm{k}}\rangle$")
