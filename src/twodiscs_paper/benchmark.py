@@ -7,6 +7,7 @@ slows down, all variants slow down. All numbers are processor times of one core.
 paper's box at r = 0.2.
 """
 
+import math
 from dataclasses import replace
 from functools import partial
 
@@ -34,17 +35,19 @@ from twodiscs_paper.studies.effects.price import (
 from twodiscs_paper.studies.effects.price import rows as cost_rows
 
 
-def count_in_long_box(discs, hops, events=1_000_000):
-    """Count about ``events`` of N discs in a box of 0.75 N × 1, without initial states."""
-    scene = Scene(0.75 * discs, 1.0, SCENE.radius / 2, discs=discs)
-    each = many_rates.block_replicas(scene)
-    duration = many_rates.expected_duration(scene, max(256, events / each))
+def count_in_square(discs, packing, with_states):
+    """Count the events of a block of N discs in a square, with the time for their states or not."""
+    side = math.sqrt(discs * math.pi / packing) * SCENE.radius
+    scene = Scene(side, side, SCENE.radius, discs=discs)
+    duration = many_rates.replica_duration(scene)
 
     def counted(time):
-        return timed(lambda: class_counts.run_classes(scene, 1, 0, 1, time, hops=hops))
+        return timed(lambda: class_counts.run_classes(scene, 1, 0, 1, time))
 
     (sums, _), seconds = counted(duration)
-    return class_counts.simulated_events(sums), seconds - counted(duration / 2**20)[1]
+    if not with_states:
+        seconds -= counted(duration / 2**20)[1]
+    return class_counts.simulated_events(sums), seconds
 
 
 def lockstep_intervals(intervals=5_000_000):
@@ -106,14 +109,15 @@ def numpy_sampler(chunks=1000, chunk=16384):
     return chunks * chunk, seconds
 
 
-#: Numbers of discs in a box of 0.75 × 1 for each, at half the radius: few in lock step, and many in
-#: cells. Variants with hops have one of these names, variants without hops the other one.
-NUMBERS, WITH_HOPS, WITHOUT_HOPS = (3, 8, 16, 64, 256, 1024), "discs_{}", "discs_{}_without_hops"
+#: Numbers of discs in a square, 8 in lock step and more in cells, and their packing fractions. All
+#: hops are counted, with initial states as in a call of ``simulate``, and without.
+NUMBERS, PACKINGS = (8, 64, 256, 1024, 4096), (0.3, 0.6)
 TWO = replace(SCENE, radius=SCENE.radius / 2)
 BY_NUMBER = {"lockstep": partial(lockstep, BLOCKS // 8, TWO)} | {
-    name.format(discs): partial(count_in_long_box, discs, name == WITH_HOPS)
-    for name in (WITH_HOPS, WITHOUT_HOPS)
+    f"discs_{discs}_packing_{packing}_{name}": partial(count_in_square, discs, packing, with_states)
     for discs in NUMBERS
+    for packing in PACKINGS
+    for name, with_states in (("called", True), ("kernel", False))
 }
 
 
@@ -130,5 +134,5 @@ def benchmarks(scenes):
         *cost_rows(scenes),
         *compared("md_events_per_second", interleaved(of_engines), "scalar"),
         *compared("mc_samples_per_second", interleaved(of_samplers), "numpy"),
-        *compared("md_events_per_second_by_number", interleaved(BY_NUMBER), "lockstep"),
+        *compared("md_events_per_second_by_number", interleaved(BY_NUMBER, 3), "lockstep"),
     ]

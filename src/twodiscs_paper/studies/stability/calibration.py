@@ -39,6 +39,13 @@ BOX, HOP = Box(1.5, 1.0), "horizontal_hop"
 PAPER = BOX.parameters()
 ROUGH = {"moment_of_inertia": 0.5}
 
+
+def packed(discs, packing, periodic):
+    """Return the parameters of discs of the radius 1/2 at a ``packing`` fraction, in a square."""
+    side = math.sqrt(discs * math.pi / 4 / packing)
+    return {"width": side, "height": side, "radius": 0.5, "discs": discs, "periodic": periodic}
+
+
 #: {name: parameters of a scene}: plain radii and thresholds, each effect at two values, all effects
 #: together, necks, more discs, rings, and a long box.
 SCENES = {
@@ -76,14 +83,26 @@ SCENES = {
     "twenty discs": {"width": 5.0, "height": 3.0, "radius": 0.2, "discs": 20},
     "twenty on a ring": {"width": 15.0, "height": 1.0, "radius": 0.2, "discs": 20, "periodic": "x"},
     "100 × 1": {"width": 100.0, "height": 1.0, "radius": 0.1},
+    **{
+        f"{discs} discs{where}, packing {packing}": packed(discs, packing, periodic)
+        for discs, where, periodic, packings in (
+            (64, "", "", (0.1, 0.3, 0.6, 0.7)), (256, "", "", (0.3, 0.6)),
+            (64, " on a ring", "x", (0.3, 0.6)), (64, " on a torus", "xy", (0.3, 0.6, 0.7)),
+        )
+        for packing in packings
+    },
 }  # fmt: skip
 
-#: Scenes of more discs have calls of the least size, and half of the seeds.
-MANY = 8
+#: Scenes of more discs have calls of the least size, and half of the seeds. Scenes of still more
+#: have one call, with the budget that help(simulate) names for them, or that its warning names.
+MANY, MORE = 8, 20
 
 #: The least size that the face accepts, the default one, a long one, and one that an error ends.
 SIZES = {
-    "simulate": {"least": {"budget": 1}, "usual": {"error": 1e-2}, "long": {"error": 3e-3}},
+    "simulate": {
+        "least": {"budget": 1}, "usual": {"error": 1e-2}, "long": {"error": 3e-3},
+        "small": {"error": 0.5, "budget": 1e6}, "dense": {"error": 0.5, "budget": 2e7},
+    },
     "sample": {
         "least": {"samples": 1}, "usual": {"samples": 3e6}, "error": {"error": 0.03, "budget": 1e7},
     },
@@ -363,14 +382,23 @@ def kind(case):
     return "more discs" if "discs" in names else "effects" if names else "plain discs"
 
 
+def _sizes(scene):
+    """Return the names of the sizes of calls of a ``Scene``."""
+    if scene.discs > MORE:
+        packing = scene.discs * math.pi * scene.radius**2 / (scene.width * scene.height)
+        return ("dense",) if packing > 0.65 else ("small",)
+    return ("least",) if scene.discs > MANY else ("least", "usual", "long", "error")
+
+
 def runs(seeds):
     """Yield (case, call, size, number of seeds, function of a ``seed`` that yields values)."""
     for case, parameters in SCENES.items():
         scene = td.Scene(**parameters)
         for call, sizes in SIZES.items():
             for size, settings in sizes.items():
-                if size == "least" or scene.discs <= MANY:
-                    number = seeds // (4 if size == "long" else 2 if scene.discs > MANY else 1)
+                if size in _sizes(scene):
+                    half = MANY < scene.discs <= MORE
+                    number = seeds // (4 if size == "long" else 2 if half else 1)
                     yield case, call, size, number, partial(CALLS[call], scene, **settings)
     for (study, case), make in STUDIES.items():
         yield case, study, "study", seeds, partial(table_values, make)

@@ -72,7 +72,10 @@ class CalibrationTable(Table):
         "case": TEXT("the scene, by its name in ``calibration.SCENES``; of a study the kind"),
         "kind": TEXT("plain discs; effects; more discs: more than two"),
         "call": TEXT("the function of the face, or the study"),
-        "size": TEXT("least: the smallest that the call accepts; usual; long; error; study"),
+        "size": TEXT(
+            "least: the smallest that the call accepts; usual; long; small and dense: of a budget; "
+            "error; study"
+        ),
         "quantity": TEXT(
             "the quantity with an error; of a study the cells that tell its rows apart, the first "
             "of ``calibration.NAMES`` first"
