@@ -84,7 +84,8 @@ class Log(NamedTuple):
 
     An entry has its time after ``origin[0]``'s zero, its class, and its two discs, the same one
     twice at a wall. Its ``states`` (n, 2, 4 or 5) are x, y, u, v and maybe s of both right after an
-    event; hops have none. Along periodic axes positions go on beyond the cell.
+    event; hops have none. Along periodic axes positions go on beyond the cell. ``pending`` is the
+    number of pairs in a band, each of which may have a hop that is not yet entered.
     """
 
     times: np.ndarray
@@ -93,25 +94,31 @@ class Log(NamedTuple):
     states: np.ndarray
     size: np.ndarray
     origin: np.ndarray
+    pending: np.ndarray
 
 
-def new_log(discs, entries, components=4):
-    """Return an empty ``Log`` for about a number of ``entries``, with ``components`` of a disc.
-
-    When it is full, each pair of discs may still have a hop of each kind to enter, and each disc a
-    kick.
-    """
-    entries += discs * discs
+def new_log(entries, components=4):
+    """Return an empty ``Log`` for a number of ``entries``, with ``components`` of a disc."""
     return Log(
         np.empty(entries), np.empty(entries, np.int64), np.empty((entries, 2), np.int64),
         np.empty((entries, 2, components)), np.zeros(1, np.int64), np.zeros(1),
+        np.zeros(1, np.int64),
     )  # fmt: skip
 
 
 @optional(lambda discs, log: False)
 def is_full(discs, log):
-    """Return whether the log lacks room for one more event, with a kick and all hops before it."""
-    return log.size[0] + discs * discs >= log.times.size
+    """Return whether the log lacks room for one more event, with a kick and all hops before it.
+
+    The event may have a hop of each pair before it, and the end of the stretch has as many.
+    """
+    return log.size[0] + 2 * log.pending[0] + 2 * discs >= log.times.size
+
+
+@optional(lambda change, log: None)
+def note_pairs(change, log):
+    """Change the number of pairs that may have a hop to enter."""
+    log.pending[0] += change
 
 
 @optional(lambda time, kind, i, k, log: None)
@@ -325,6 +332,9 @@ def leave_band(i, now, band, target, ahead, borders, kind, log, bands):
     count = count_hops(i, borders[band + ahead], now, band, kind, log, bands)
     while band != target:
         up = 1 if target > band else 0
+        others = bands.first[band + 1] - bands.first[band] - 1
+        beyond = band + 2 * up - 1
+        note_pairs(bands.first[beyond + 1] - bands.first[beyond] - others, log)
         # The disc comes to the end of a band, which then ends before it or begins behind it.
         end = bands.first[band + up] - up
         exchange_entries(bands.entry[i], end, bands)

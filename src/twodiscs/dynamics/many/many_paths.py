@@ -42,8 +42,7 @@ class Followed:
         self.scene, self.law, self.grid = scene, many_disc_law(scene), make_grid(scene)
         self.epoch, self.laps = usual_epoch(scene), np.zeros((2, scene.discs))
         self.motion = cell_list.new_motion(scene.discs, self.grid, self.law.rough)
-        rows = 4 if self.law.rough is None else 5
-        self.log = cell_list.new_log(scene.discs, LOG_ENTRIES, rows)
+        self.log = self._new_log(LOG_ENTRIES)
         self.counts = np.zeros(N_CLASSES, np.int64)
         axes = ("vertical_hop", self.grid.y), ("horizontal_hop", self.grid.x)
         self.bands = [
@@ -51,16 +50,25 @@ class Followed:
             for hop, borders in axes
         ]
 
+    def _new_log(self, entries):
+        return cell_list.new_log(entries, 4 if self.law.rough is None else 5)
+
     def start(self, state, seed, replica=0):
         """Begin a path with a ``state``, a column of numbers, and the kicks of its stream."""
         self.kicks = ensemble.open_block_kicks(new_kicks(self.scene, 1), seed, replica)
         self.log.origin[0] = self.laps[:] = 0.0
         cell_list.start_from(state, 0, self.motion, self.grid, self.law, *self.bands)
+        sizes = [np.diff(bands.first) for bands in self.bands if bands is not None]
+        self.log.pending[0] = sum(int((n * (n - 1) // 2).sum()) for n in sizes)
 
     def go_on(self, duration):
         """Yield the log of one stretch after the other, with the order of its entries in time."""
         while duration > 0.0:
             self.log.size[0] = 0
+            entries = LOG_ENTRIES + 2 * (int(self.log.pending[0]) + self.scene.discs)
+            if entries > self.log.times.size:
+                old = self.log
+                self.log = self._new_log(entries)._replace(origin=old.origin, pending=old.pending)
             duration = cell_list.follow_discs(
                 duration, self.epoch, self.motion, self.laps, self.grid, self.law, self.counts,
                 0, self.kicks, self.log, *self.bands,

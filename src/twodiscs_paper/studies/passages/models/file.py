@@ -197,7 +197,7 @@ def recorded(scene, step, number, replicas, seed, friction=None):
     moving = scene if friction is None else replace(scene, friction=friction)
     states, laps = (
         many_initial_states.states(scene, replicas, seed),
-        np.zeros((scene.discs, replicas)),
+        np.zeros((2 * scene.discs, replicas)),
     )
     hops = np.zeros(replicas)
     places = np.empty((number + 1, scene.discs, replicas))
@@ -205,7 +205,7 @@ def recorded(scene, step, number, replicas, seed, friction=None):
     kicks = open_block_kicks(new_kicks(moving, replicas), seed)
     for k in range(1, number + 1):
         many_paths.advance_all(moving, states, laps, step, kicks, hops)
-        places[k] = states[: scene.discs] + scene.width * laps
+        places[k] = states[: scene.discs] + scene.width * laps[: scene.discs]
     return places, 2 * hops / scene.discs
 
 
@@ -225,7 +225,7 @@ def logged(scene, step, number, replicas, seed, friction=None):
                 hops = order[log.classes[order] == HORIZONTAL_HOPS]
                 times.append(log.times[hops])
                 pairs.append(log.discs[hops].min(axis=1) * n + log.discs[hops].max(axis=1))
-            places.append(path.motion.x + scene.width * path.laps)
+            places.append(path.motion.x + scene.width * path.laps[0])
         yield np.array(places)[:, :, None], np.concatenate(times), np.concatenate(pairs)
 
 
