@@ -34,9 +34,9 @@ def test_virials_of_all_forces_add_up_to_twice_the_kinetic_energy(scene):
         here = replace(scene, **dict(zip(("width", "height", "depth"), sides, strict=False)))
         for one in (here, exchanged(here)[0]):
             # A momentum times a rate is an energy over a length, in any unit of mass.
-            force = virial.momentum_per_hit(one, "right_wall") * exact.rate(one, "right_wall")
+            force = virial.momentum_per_hit(one) * exact.rate(one, "right_wall")
             virials.append((one.width - 2 * one.radius) * force)
-    momentum = virial.momentum_per_hit(scene, "disc_collision")
+    momentum = virial.momentum_per_hit(scene) / scene.fastest
     virials.append(-scene.contact_distance * momentum * exact.rate(scene, "disc_collision"))
     kinetic = 2 * len(scene.axes) / scene.velocity_components
     assert math.fsum(virials) == pytest.approx(kinetic, rel=1e-13, abs=1e-13 * max(virials))

@@ -517,9 +517,6 @@ class TrajectoryTable(Table):
 # Checks and cost ----------------------------------------------------------------------------------
 
 
-#: A unit that depends on the row.
-
-
 class CheckTable(Table):
     """One row per comparison with the exact theory."""
 

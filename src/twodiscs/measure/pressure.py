@@ -67,8 +67,8 @@ def terms(scene):
     volume = math.prod(scene.side(axis) for axis in scene.axes)
     ideal = n * kt / volume
     if not scene.walled:
-        push = virial.momentum_per_hit(scene, "disc_collision") / (len(scene.axes) * volume)
-        collisions = scene.contact_distance * push
+        momentum = virial.momentum_per_hit(scene) / scene.fastest
+        collisions = scene.contact_distance * momentum / (len(scene.axes) * volume)
         return {
             "virial_pressure": (ideal, {"disc_collision": collisions}),
             "ideal_pressure": (ideal, {}),
@@ -78,10 +78,11 @@ def terms(scene):
     for wall in WALLS:
         axis = AXIS[wall]
         if axis in scene.walled:
-            force, reach = n * virial.momentum_per_hit(scene, wall), float(scene.reach(axis))
+            force, reach = n * virial.momentum_per_hit(scene), float(scene.reach(axis))
             area = volume / scene.side(axis)
             pressures[f"{wall}_pressure"] = 0.0, {wall: force / area}
-            weighted[wall], norm = force * reach, norm + area * reach
+            if axis not in map(AXIS.get, weighted):  # one wall of an axis is enough
+                weighted[wall], norm = force * reach, norm + area * reach
     mean = {wall: weight / norm for wall, weight in weighted.items()}
     pressures["wall_pressure"] = 0.0, mean
     if (weights := virial.weights(scene)) is not None:

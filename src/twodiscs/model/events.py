@@ -23,11 +23,6 @@ class Event:
     axis: str | None = None
     side: int = 0
 
-    @property
-    def ways(self):
-        """The number of ways in which the surface is crossed: 2 for a hop, both ways, else 1."""
-        return 2 if self.kind == "hop" else 1
-
 
 DECLARED = {
     event.name: event
@@ -43,17 +38,6 @@ DECLARED = {
 
 #: Their names, in the order of every table.
 EVENTS = tuple(DECLARED)
-
-
-def _select(*kinds):
-    return tuple(event.name for event in DECLARED.values() if event.kind in kinds)
-
-
-#: The events at which the discs exchange sides, and the events of disc 1 at one wall.
-HOPS, WALLS = _select("hop"), _select("wall")
-
-#: The events whose surface has a simple shell; the surface of all walls together has corners.
-SHELLS = _select("hop", "collision", "wall")
 
 #: The events with an axis, {name: axis}.
 AXIS = {event.name: event.axis for event in DECLARED.values() if event.axis}
@@ -73,3 +57,24 @@ def by_kind(where, makers, events=EVENTS):
             raise TypeError(f"{where} knows events of kind {known}, not {event.kind} as {name} is")
         places[name] = makers[event.kind](event)
     return places
+
+
+def facts(where, **values):
+    """Return {event: value of its kind}, with an error as of ``by_kind`` if a kind has none."""
+    return by_kind(where, {kind: lambda event, v=value: v for kind, value in values.items()})
+
+
+def _select(**kinds):
+    return tuple(event for event, chosen in facts("model/events.py", **kinds).items() if chosen)
+
+
+#: {event: the number of ways in which the surface is crossed}; a hop happens in both.
+WAYS = facts("model/events.py", hop=2, collision=1, wall=1, walls=1)
+
+#: The events at which the discs exchange sides, those of disc 1 at one wall, and all at walls.
+HOPS = _select(hop=True, collision=False, wall=False, walls=False)
+WALLS = _select(hop=False, collision=False, wall=True, walls=False)
+WALL_HITS = _select(hop=False, collision=False, wall=True, walls=True)
+
+#: The events whose surface has a simple shell; the surface of all walls together has corners.
+SHELLS = _select(hop=True, collision=True, wall=True, walls=False)

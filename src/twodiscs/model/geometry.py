@@ -15,7 +15,7 @@ class Geometry(NamedTuple):
     open_axes: Callable  # the axes of open hops
     ergodic_components: Callable  # their number, None if it is not known
     confined: Callable  # for x and y, whether disc 1 reaches a wall only from one side of disc 2
-    multiplicity: Callable  # (an ``Event``): the number of events with its rate
+    multiplicity: Callable  # (an event): the number of events with its rate
 
 
 TWO_DISCS = Geometry(

@@ -5,6 +5,7 @@ from fractions import Fraction
 from functools import cache
 
 from twodiscs.model.checks import MOST_WITH_VOLUME, InputError
+from twodiscs.model.events import WALLS
 
 #: The effects of more than two discs.
 MANY_DISC_EFFECTS = ("periodic", "moment_of_inertia", "friction")
@@ -72,8 +73,8 @@ def open_axes(scene):
 
 
 def multiplicity(scene, event):
-    """Return the number of events with the rate of ``event``, an ``Event``, see ``Scene``."""
-    return 2 * scene.discs if event.kind == "wall" else 1
+    """Return the number of events with the rate of ``event``, see ``Scene``."""
+    return 2 * scene.discs if event in WALLS else 1
 
 
 def is_ordered(scene):

@@ -31,7 +31,7 @@ from twodiscs.model.checks import (
     check_number,
 )
 from twodiscs.model.effects import ABSENT, EFFECTS
-from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS
+from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, WALL_HITS, WALLS
 from twodiscs.model.formats import quote
 from twodiscs.model.geometry import MANY_DISCS, TWO_DISCS
 from twodiscs.model.many_geometry import check_box
@@ -324,12 +324,12 @@ class Box:
 
         They include events that are impossible at some radii.
         """
-        return tuple(event.name for event in DECLARED.values() if self._has_place(event))
+        return tuple(filter(self._has_place, EVENTS))
 
     def _has_place(self, event):
-        if event.axis:
-            return event.axis in self.walled
-        return event.kind == "collision" or bool(self.walled)
+        if event in AXIS:
+            return AXIS[event] in self.walled
+        return event not in WALL_HITS or bool(self.walled)
 
     # Radii -------------------------------------------------------------------------------------
 
@@ -623,7 +623,7 @@ class Scene(Box):
         For equal discs in the plane it is B − σ for the horizontal hop and A − σ for the vertical
         one. It is negative if the hop is blocked.
         """
-        spread, sigma = self.squared_reaches(DECLARED[hop].axis), self.exact_contact
+        spread, sigma = self.squared_reaches(AXIS[hop]), self.exact_contact
         return float(spread - sigma**2) / (math.sqrt(spread) + float(sigma))
 
     @cached_property
@@ -673,8 +673,7 @@ class Scene(Box):
 
         It is 1/2 for a wall that disc 1 reaches only from one side of disc 2, else 1.
         """
-        declared = DECLARED[event]
-        return 0.5 if declared.kind == "wall" and self.confined["xy".index(declared.axis)] else 1.0
+        return 0.5 if event in WALLS and self.confined["xy".index(AXIS[event])] else 1.0
 
     def multiplicity(self, event):
         """Return how many events are equal to ``event`` by symmetry; their hits are counted as one.
@@ -683,7 +682,7 @@ class Scene(Box):
         are four events with one rate. If the discs keep their sides, a trajectory can reach two of
         them. In a field the bottom is no mirror image of the top. For N > 2 discs it is 2N.
         """
-        return self._geometry.multiplicity(self, DECLARED[event])
+        return self._geometry.multiplicity(self, event)
 
     def is_possible(self, event: str) -> bool:
         """Return whether an event ever happens; hops can be blocked, and a field keeps discs down.
@@ -710,10 +709,9 @@ class Scene(Box):
         """
         if check_choice("event", event, EVENTS) not in self.events:
             return False
-        declared = DECLARED[event]
-        if declared.kind == "hop":
-            return declared.axis in self.open_axes
-        if self.field and (declared.axis, declared.side) == ("y", +1):
+        if event in HOPS:
+            return AXIS[event] in self.open_axes
+        if self.field and AXIS.get(event) == "y" and DECLARED[event].side > 0:
             return self.field * (self.height - 2 * self.radius) < ENERGY
         return True
 

@@ -4,6 +4,7 @@ import math
 from fractions import Fraction
 
 from twodiscs.model.checks import InputError
+from twodiscs.model.events import AXIS, WALLS
 
 #: The total energy, kinetic and potential.
 ENERGY = 0.5
@@ -102,11 +103,11 @@ def _confined(scene, axis):
 
 
 def multiplicity(scene, event):
-    """Return the number of events with the rate of ``event``, an ``Event``, see ``Scene``."""
-    if event.kind != "wall":
+    """Return the number of events with the rate of ``event``, see ``Scene``."""
+    if event not in WALLS:
         return 1
-    mirrored = event.axis == "x" or not scene.field
-    return round((1 + mirrored) * (1 + scene.identical) * scene.accessible_fraction(event.name))
+    mirrored = AXIS[event] == "x" or not scene.field
+    return round((1 + mirrored) * (1 + scene.identical) * scene.accessible_fraction(event))
 
 
 def largest_radius(scene):

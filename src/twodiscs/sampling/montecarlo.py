@@ -28,7 +28,7 @@ from functools import cached_property
 import numpy as np
 
 from twodiscs.model.checks import check_choice
-from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
+from twodiscs.model.events import DECLARED, EVENTS, SHELLS, WALLS, by_kind, facts
 from twodiscs.model.scene import Scene
 from twodiscs.model.seeds import job_seed
 from twodiscs.points.monte_carlo_point import MonteCarloPoint
@@ -204,34 +204,50 @@ def shell_thickness(scene, event, fraction):
     and stays inside the box. The room is the distance to the largest radius or, for a hop, the
     largest gap between the discs when they pass each other.
     """
-    thickness = _plain_thickness if scene.is_plain else _weighted_thickness
-    return fraction * thickness(scene, event)
+    room, smallest = ROOM[event](scene), min(scene.radii)
+    lightest = scene.masses[0] if event in WALLS else min(scene.masses)
+    length = min(smallest, room) if room > 0 else smallest
+    return fraction * (math.sqrt(lightest) * length)
 
 
-def _plain_thickness(scene, event):
-    """Return the length that ``shell_thickness`` takes a fraction of, in a plain scene."""
-    hop = DECLARED[event].kind == "hop"
-    vanishing = scene.blocking_radius(event) if hop else scene.largest_radius
-    room = abs(vanishing - scene.radius)
-    sides = {"x": scene.width, "y": scene.height}
-    long, short = max(sides.values()), min(sides.values())
-    ahead = long if event == "disc_collision" else sides[AXIS[event]]
-    if long > 2 * short and ahead == long and not hop:
-        room = long - 4 * scene.radius
-    return min(scene.radius, room) if room > 0 else scene.radius
+def _hop_room(event):
+    def room(scene):
+        if scene.is_plain:
+            return abs(scene.blocking_radius(event.name) - scene.radius)
+        across = sum(scene.reach(axis) ** 2 for axis in scene.axes if axis != event.axis)
+        return abs(math.sqrt(across) - scene.contact_distance)
+
+    return room
 
 
-def _weighted_thickness(scene, event):
-    """Return the length that ``shell_thickness`` takes a fraction of, with effects."""
-    kind = DECLARED[event].kind
-    if kind == "hop":
-        across = sum(scene.reach(axis) ** 2 for axis in scene.axes if axis != AXIS[event])
-        room = abs(math.sqrt(across) - scene.contact_distance)
-    else:
-        room = scene.largest_radius - scene.radius
-    smallest = min(scene.radii)
-    lightest = 1.0 if kind == "wall" else min(scene.masses)
-    return math.sqrt(lightest) * (min(smallest, room) if room > 0 else smallest)
+def _room_along(scene, side):
+    """Return the room of discs at the ends of a ``side``, or None for any side."""
+    long, short = max(scene.sides), min(scene.sides)
+    if scene.is_plain and side == long > 2 * short:
+        return long - 4 * scene.radius
+    return abs(scene.largest_radius - scene.radius)
+
+
+#: {event: room of ``shell_thickness``}, functions of a ``Scene``
+ROOM = by_kind(
+    "sampling/montecarlo.py",
+    {
+        "hop": _hop_room,
+        "collision": lambda event: lambda scene: _room_along(scene, max(scene.sides)),
+        "wall": lambda event: lambda scene: _room_along(scene, scene.side(event.axis)),
+        "walls": lambda event: lambda scene: _room_along(scene, None),
+    },
+)
+
+#: {event: measure of the prism over that of a sample}, functions of a ``Scene``: a hop's shell has
+#: two sides, and for all walls a sample looks at one disc and one of its walls.
+FACTOR = facts(
+    "sampling/montecarlo.py",
+    hop=lambda scene: 1 / 2,
+    collision=lambda scene: 1,
+    wall=lambda scene: 1,
+    walls=lambda scene: 4 * len(scene.walled),
+)
 
 
 def prism_sampler(scene, quantities, shell, seed):
@@ -279,11 +295,9 @@ def _sampler(
     seed, sampled = np.uint64(seed), {}
     if "volume" in wanted:
         sampled["volume"] = {"place": 0, "measure": measure, "epsilon": None}
-    # A hop's shell has two sides. For all walls, a sample looks at one disc and one of its walls.
-    multiplicity = {"hop": 1 / 2, "walls": 4 * len(scene.walled)}
     for place, (event, thickness) in enumerate(zip(_shelled(scene), epsilon, strict=True), 1):
         if event in wanted:
-            factor = multiplicity.get(DECLARED[event].kind, 1)
+            factor = FACTOR[event](scene)
             sampled[f"{event}_area"] = {
                 "place": place, "measure": factor * measure / thickness, "epsilon": thickness,
             }  # fmt: skip

@@ -32,7 +32,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS
+from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, WALL_HITS, WALLS
 from twodiscs.theory import weighted
 from twodiscs.theory.quadrature import gauss_legendre
 
@@ -144,15 +144,16 @@ def corner_variance(scene, event, duration):
     counts are those of all events that are equal by symmetry, in a ``duration``. In a field, and
     for more than two discs, their positions are taken as independent.
     """
-    declared, inertia = DECLARED[event], scene.moment_of_inertia
-    if inertia is None or len(scene.walled) < 2 or declared.kind not in ("wall", "walls"):
+    inertia = scene.moment_of_inertia
+    if inertia is None or len(scene.walled) < 2 or event not in WALL_HITS:
         return 0.0
-    one = declared.kind == "wall" and not scene.identical
+    one = event in WALLS and not scene.identical
     corners = [_corners(scene, i, duration) for i in range(1 if one else scene.discs)]
     bottom, top = (math.fsum(part) for part in zip(*corners, strict=True))
     found = bottom + top
-    if declared.kind == "wall":  # half of the hits, of a quarter of the variance
-        found = (found if declared.axis == "x" or not scene.field else top) / 4
+    if event in WALLS:  # half of the hits, of a quarter of the variance
+        own = top if DECLARED[event].side > 0 else bottom
+        found = (found if AXIS[event] == "x" or not scene.field else own) / 4
     return UNSEEN * corner_hits(inertia) * found
 
 

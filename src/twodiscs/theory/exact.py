@@ -15,7 +15,7 @@ from dataclasses import replace
 from typing import TypedDict
 
 from twodiscs.model.checks import check_choice
-from twodiscs.model.events import DECLARED, EVENTS
+from twodiscs.model.events import EVENTS, WALL_HITS
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.theory import clusters, n_discs, plain, weighted
 
@@ -182,7 +182,7 @@ def replicas_needed(scene, event, error):
     if scene.moment_of_inertia is None:
         return 0.0
     pairs, others = math.comb(scene.discs, 2), scene.discs - 1
-    if DECLARED[event].kind in ("wall", "walls"):
+    if event in WALL_HITS:
         error /= others
     return clusters.replicas_needed(replace(scene, discs=2), event, error) / pairs
 

@@ -2,10 +2,45 @@
 
 import math
 
-from twodiscs.model.events import DECLARED
+from twodiscs.model.events import AXIS, by_kind
 from twodiscs.model.scene import Scene
 from twodiscs.theory.exact import volume
 from twodiscs.theory.plain import Arc
+
+#: The mean time between hits of a wall by a point, per length of the side along its axis.
+ONE_SIDED = 1.5 * math.pi
+
+
+def _hops(event):
+    def time(sides, r):
+        along, across = sides[event.axis], sides["xy".replace(event.axis, "")]
+        return ONE_SIDED / math.sqrt(8) * (along + (4 * along / across - 2) * r)
+
+    return time
+
+
+def _collisions(sides, r):
+    if r == 0:
+        return math.inf
+    w, h = sides.values()
+    return 3 / (8 * math.sqrt(2)) * (w * h / r - (2 - 4 / math.pi) * (w + h))
+
+
+def _all_walls(sides, r):
+    w, h = sides.values()
+    return ONE_SIDED / 4 * (w * h - 2 * r * (w * w + h * h) / (w + h)) / (w + h)
+
+
+#: {event: mean time to first order in the radius}, functions of {axis: side} and of the radius
+SMALL_RADIUS = by_kind(
+    "theory/laws.py",
+    {
+        "hop": _hops,
+        "collision": lambda event: _collisions,
+        "wall": lambda event: lambda sides, r: ONE_SIDED * (sides[event.axis] - 2 * r),
+        "walls": lambda event: _all_walls,
+    },
+)
 
 
 def small_radius_time(box, event, radius=0.0):
@@ -14,19 +49,7 @@ def small_radius_time(box, event, radius=0.0):
     With the default radius it is the limit r → 0: 3πh/(4√2) for vertical hops, 3πw/2 for the right
     wall, and infinite for disc collisions, which go like 3wh/(8√2 r).
     """
-    w, h, r, declared = box.width, box.height, radius, DECLARED[event]
-    # The side along the axis of the event, and the other one.
-    along, across = (w, h) if declared.axis == "x" else (h, w)
-    one_sided = 1.5 * math.pi
-    if declared.kind == "collision":
-        if r == 0:
-            return math.inf
-        return 3 / (8 * math.sqrt(2)) * (w * h / r - (2 - 4 / math.pi) * (w + h))
-    if declared.kind == "hop":
-        return one_sided / math.sqrt(8) * (along + (4 * along / across - 2) * r)
-    if declared.kind == "wall":
-        return one_sided * (along - 2 * r)
-    return one_sided / 4 * (w * h - 2 * r * (w * w + h * h) / (w + h)) / (w + h)
+    return SMALL_RADIUS[event]({"x": box.width, "y": box.height}, radius)
 
 
 def threshold_time(scene, event):
@@ -37,17 +60,25 @@ def threshold_time(scene, event):
     distance from the largest radius r_max: they vanish like r_max − r. If one side is more than
     twice the other, the times of disc collisions and of the walls at the far ends stay finite.
     """
-    w, h, r, declared = scene.width, scene.height, scene.radius, DECLARED[event]
-    if not scene.is_possible(event):
-        return None
-    one_sided = 1.5 * math.pi
-    if declared.kind == "hop":
-        along, across = (w, h) if declared.axis == "y" else (h, w)
-        arc = Arc.of(Scene(along, across, r))
+    return THRESHOLD[event](scene) if scene.is_possible(event) else None
+
+
+def _last_hops(event):
+    def time(scene):
+        w, h = scene.sides
+        along, across = (w, h) if event.axis == "y" else (h, w)
+        arc = Arc.of(Scene(along, across, scene.radius))
         if along >= 2 * across:  # open to the end
-            return one_sided / math.sqrt(8) * arc.range_y
+            return ONE_SIDED / math.sqrt(8) * arc.range_y
         critical = volume(Scene(along, across, along / 4))
-        return one_sided / math.sqrt(8) * critical / ((across - along / 2) * arc.beyond_x**2)
+        return ONE_SIDED / math.sqrt(8) * critical / ((across - along / 2) * arc.beyond_x**2)
+
+    return time
+
+
+def _times_at_jam(scene):
+    """Return {"collision", "x" and "y" of walls, "walls": leading law of the time}."""
+    w, h, r = *scene.sides, scene.radius
     # The axes along and across the box; in a box higher than wide they are exchanged.
     long, short = "xy" if w >= h else "yx"
     w, h = max(w, h), min(w, h)
@@ -67,8 +98,20 @@ def threshold_time(scene, event):
         collision = root * left / (math.sqrt(8) * (w + h - root))
         walls = {long: root * left / (2 * last_x), short: root * left / (2 * last_y)}
         any_wall = root * left / (4 * (last_x + last_y))
-    times = {"collision": collision, "wall": walls.get(declared.axis), "walls": any_wall}
-    return one_sided * times[declared.kind]
+    times = {"collision": collision, "walls": any_wall, **walls}
+    return {name: ONE_SIDED * time for name, time in times.items()}
+
+
+#: {event: leading law of its time}, functions of a ``Scene``
+THRESHOLD = by_kind(
+    "theory/laws.py",
+    {
+        "hop": _last_hops,
+        "collision": lambda event: lambda scene: _times_at_jam(scene)["collision"],
+        "wall": lambda event: lambda scene: _times_at_jam(scene)[event.axis],
+        "walls": lambda event: lambda scene: _times_at_jam(scene)["walls"],
+    },
+)
 
 
 # Intervals ----------------------------------------------------------------------------------------
@@ -93,5 +136,5 @@ def density_at_zero(scene, hop):
     """
     if not scene.is_possible(hop):
         return None
-    side = scene.range_y if hop == "vertical_hop" else scene.range_x
+    side = {"x": scene.range_x, "y": scene.range_y}[AXIS[hop]]
     return 3 * math.sqrt(2) / (16 * side)

@@ -19,7 +19,7 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple
 
-from twodiscs.model.events import DECLARED, by_kind
+from twodiscs.model.events import SHELLS, WAYS, by_kind
 from twodiscs.theory.quadrature import gauss_legendre
 
 #: The integrands are trigonometric polynomials of degree 4 at most over a quarter turn, or equally
@@ -182,13 +182,26 @@ def _collision_shell(arc, epsilon):
     return 4 * total / epsilon
 
 
+def _along(axis, shell):
+    """Return the function of an ``Event``s arc for a ``shell`` that is that of ``axis``."""
+    return lambda event: lambda arc, e: shell(arc if event.axis == axis else arc.turned(), e)
+
+
+#: {event: expectation of its shell}, functions of an ``Arc`` and of a thickness
+SHELL_OF = by_kind(
+    "theory/plain.py",
+    {
+        "hop": _along("y", _hop_shell),
+        "collision": lambda event: _collision_shell,
+        "wall": _along("x", _wall_shell),
+    },
+    SHELLS,
+)
+
+
 def shell_expectation(scene, event, epsilon):
     """Return the exact expectation of a shell in a plain ``Scene``, see ``exact``."""
-    arc, declared = Arc.of(scene), DECLARED[event]
-    if declared.kind == "collision":
-        return _collision_shell(arc, epsilon)
-    shell, along = (_hop_shell, "y") if declared.kind == "hop" else (_wall_shell, "x")
-    return shell(arc if declared.axis == along else arc.turned(), epsilon)
+    return SHELL_OF[event](Arc.of(scene), epsilon)
 
 
 def volume_near(scene, hop, distance):
@@ -210,4 +223,4 @@ def areas(scene):
 def rate(scene, event):
     """Return the rate of ``event``."""
     volume, areas = volume_and_areas(scene)
-    return DECLARED[event].ways * areas[event] / (1.5 * math.pi * volume)
+    return WAYS[event] * areas[event] / (1.5 * math.pi * volume)

@@ -30,15 +30,13 @@ from twodiscs.model.scene import check_scene
 from twodiscs.theory.flux import flux_constant
 
 
-def momentum_per_hit(scene, event):
-    """Return the mean momentum transfer in an ``event``, in the mass of disc 1 × the unit of speed.
+def momentum_per_hit(scene):
+    """Return the mean momentum of a hit of disc 1 at a wall, in its mass × the unit of speed.
 
-    It is for disc 1 at a wall and for the collisions of the discs, without a field, in which it
-    depends on the height.
+    It is that without a field, in which it depends on the height.
     """
     components = scene.velocity_components
-    normal = 1 / (components * flux_constant(components))
-    return 2 * normal / (scene.fastest if event == "disc_collision" else 1.0)
+    return 2 / (components * flux_constant(components))
 
 
 def pressure_factor(scene, event):
@@ -49,7 +47,7 @@ def pressure_factor(scene, event):
     ``WALLS``.
     """
     side = scene.side(DECLARED[event].axis)
-    return side * scene.velocity_components * momentum_per_hit(scene, event)
+    return side * scene.velocity_components * momentum_per_hit(scene)
 
 
 def has_theorem(box):

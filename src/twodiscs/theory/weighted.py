@@ -24,6 +24,7 @@ and passed on from axis to axis. The sums are therefore accurate up to the large
 
 import math
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, lru_cache
@@ -32,7 +33,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.events import AXIS, DECLARED, EVENTS
+from twodiscs.model.events import AXIS, WAYS, by_kind
 from twodiscs.model.two_geometry import ENERGY
 from twodiscs.theory.flux import flux_constant
 from twodiscs.theory.quadrature import double_exponential, gauss_legendre
@@ -383,27 +384,59 @@ class _Space:
         return self.beyond(**{axis: _walled(*both, self.power, self.level.get(axis))})
 
 
-def _walls(scene, event):
-    """Return (axis, disc, whether the far wall) of all hits that count for the wall ``event``."""
-    declared = DECLARED[event]
-    if declared.kind == "walls":
-        return list(product(scene.walled, (0, 1), (False, True)))
-    return [(declared.axis, 0, declared.side > 0)]
+class _Surface(NamedTuple):
+    """The ``area`` A of an event in a ``_Space``; the expectation of its ``shell`` for an ε."""
+
+    area: Callable
+    shell: Callable
 
 
-def _area(space, event):
-    """Return A of one event."""
-    scene, kind = space.scene, DECLARED[event].kind
-    if not scene.is_possible(event):
-        return 0.0
-    if kind == "hop":
-        return scene.fastest * space.passing(AXIS[event])
-    if kind == "collision":
-        return scene.fastest * space.contact()
-    return math.fsum(
-        space.wall(axis, disc, high) / math.sqrt(scene.masses[disc])
-        for axis, disc, high in _walls(scene, event)
-    )
+def _hop(event):
+    def shell(space, epsilon):
+        thickness = Fraction(epsilon) * Fraction(space.scene.fastest)
+        return space.within(event.axis, thickness) / (2 * epsilon)
+
+    return _Surface(lambda space: space.scene.fastest * space.passing(event.axis), shell)
+
+
+def _contact(space, epsilon=0):
+    """Return the expectation of a shell of collisions, or A."""
+    fastest = space.scene.fastest
+    return fastest * space.contact(Fraction(epsilon) * Fraction(fastest))
+
+
+def _walls(hits):
+    """Return the ``_Surface`` of ``hits`` of a scene: (axis, disc, whether at the far wall)."""
+
+    def area(space):
+        masses = space.scene.masses
+        of_walls = (space.wall(*hit) / math.sqrt(masses[hit[1]]) for hit in hits(space.scene))
+        return math.fsum(of_walls)
+
+    def shell(space, epsilon):
+        ends = [Fraction(epsilon / math.sqrt(mass)) for mass in space.scene.masses]
+        return math.fsum(space.wall(*hit, ends[hit[1]]) for hit in hits(space.scene)) / epsilon
+
+    return _Surface(area, shell)
+
+
+#: {event: its surface}
+SURFACES = by_kind(
+    "theory/weighted.py",
+    {
+        "hop": _hop,
+        "collision": lambda event: _Surface(_contact, _contact),
+        "wall": lambda event: _walls(lambda scene: [(event.axis, 0, event.side > 0)]),
+        "walls": lambda event: _walls(lambda scene: product(scene.walled, (0, 1), (False, True))),
+    },
+)
+
+
+def _areas(space):
+    """Return {event: A}, 0.0 for events that are impossible."""
+    return {
+        e: one.area(space) if space.scene.is_possible(e) else 0.0 for e, one in SURFACES.items()
+    }
 
 
 # Exact values -------------------------------------------------------------------------------------
@@ -420,8 +453,8 @@ def volume(scene):
 
 def areas_near(scene, axis, distance):
     """Return ``areas`` of the part with a separation of at most ``distance`` along ``axis``."""
-    space = _Space(scene, (scene.velocity_components - 1) / 2, {axis: Fraction(distance)})
-    return {event: _area(space, event) for event in EVENTS}
+    level = {axis: Fraction(distance)}
+    return _areas(_Space(scene, (scene.velocity_components - 1) / 2, level))
 
 
 @lru_cache(maxsize=1024)
@@ -432,8 +465,7 @@ def areas(scene):
     event is impossible or does not exist in the scene. ``any_wall`` is the sum over both discs and
     all walls.
     """
-    space = _Space(scene, (scene.velocity_components - 1) / 2)
-    return {event: _area(space, event) for event in EVENTS}
+    return _areas(_Space(scene, (scene.velocity_components - 1) / 2))
 
 
 def volume_near(scene, hop, distance):
@@ -457,20 +489,7 @@ def shell_expectation(scene, event, epsilon):
         top wall         likewise
         any wall         the sum of the shells of both discs at all walls, ε/√m each
     """
-    space = _Space(scene, (scene.velocity_components - 1) / 2)
-    thickness = Fraction(epsilon) * Fraction(scene.fastest)
-    kind = DECLARED[event].kind
-    if kind == "hop":
-        return space.within(AXIS[event], thickness) / (2 * epsilon)
-    if kind == "collision":
-        return scene.fastest * space.contact(thickness)
-    return (
-        math.fsum(
-            space.wall(axis, disc, high, Fraction(epsilon / math.sqrt(scene.masses[disc])))
-            for axis, disc, high in _walls(scene, event)
-        )
-        / epsilon
-    )
+    return SURFACES[event].shell(_Space(scene, (scene.velocity_components - 1) / 2), epsilon)
 
 
 # Rates. Friction changes none of them: a kick draws velocities from the law that they have in the
@@ -480,7 +499,7 @@ def shell_expectation(scene, event, epsilon):
 
 def rate(scene, event):
     """Return the rate of ``event``."""
-    flux = DECLARED[event].ways / 2 * flux_constant(scene.velocity_components) * areas(scene)[event]
+    flux = WAYS[event] / 2 * flux_constant(scene.velocity_components) * areas(scene)[event]
     return flux / volume(scene)
 
 

@@ -20,7 +20,7 @@ from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.pipeline.points import read_point, read_seconds, shard_ranges
 
 #: Events and samples per second of a core, and the largest factor by which effects slow it down.
-EVENTS_PER_SECOND, SAMPLES_PER_SECOND, SLOWER = 1e8, 1e8, 5.0
+WORK_PER_SECOND, SLOWER = 1e8, 5.0
 
 #: The largest cost of an event of a budget, in events of the plain ensemble: an event from a strip,
 #: with its draws.
@@ -54,13 +54,12 @@ def _work(run):
 
 def seconds(scene, stage, radius):
     """Return roughly the processor time of a point with its shards, without the start of jobs."""
-    return _seconds(scene, stage, _work(run_at(scene, stage, radius)))
+    return _seconds(scene, _work(run_at(scene, stage, radius)))
 
 
-def _seconds(scene, stage, work):
+def _seconds(scene, work):
     """Return the seconds that ``work`` takes."""
-    speed = SAMPLES_PER_SECOND if stage == "monte_carlo" else EVENTS_PER_SECOND
-    return work / speed * (SLOWER if scene.box.effects else 1.0)
+    return work / WORK_PER_SECOND * (SLOWER if scene.box.effects else 1.0)
 
 
 def _most(scene, stage, radius=None):
@@ -76,7 +75,7 @@ def _most(scene, stage, radius=None):
         interval = event
     each, most, needed = {
         "monte_carlo": (sample, scene.monte_carlo["samples"], None),
-        "dynamics": (event, scene.event_budget or DAY * EVENTS_PER_SECOND, _events),
+        "dynamics": (event, scene.event_budget or DAY * WORK_PER_SECOND, _events),
         "intervals": (interval, scene.histogram["event_budget"], _interval_events),
     }[stage]
     return each * (min(most, needed(scene, radius)) if radius and needed else most)
@@ -111,7 +110,7 @@ def minutes(scene, stage):
     It follows from the budgets, without theory.
     """
     most = min(_most(scene, stage), scene.shard_events)
-    return math.ceil(MINUTES + PATIENCE * _seconds(scene, stage, most) / 60)
+    return math.ceil(MINUTES + PATIENCE * _seconds(scene, most) / 60)
 
 
 def study_seconds(study, configuration):
@@ -133,7 +132,7 @@ def days(scenes):
     for scene in scenes:
         for stage, keys in scene.keys.items():
             most = (_most(scene, stage, radius) for radius in keys.values())
-            total += sum(_seconds(scene, stage, work) for work in most) / DAY
+            total += sum(_seconds(scene, work) for work in most) / DAY
             if total > 1:
                 return sum(_days(scene) for scene in scenes)
     return total

@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from twodiscs.dynamics.many import class_counts, many_rates
-from twodiscs.model.events import DECLARED, SHELLS
+from twodiscs.dynamics.many.all_pairs import CLASSES
 from twodiscs.model.many_geometry import multiplicity
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import insertions, many_initial_states
@@ -47,9 +47,7 @@ def known_derivatives(scene, hops=True):
 
 def virial_weights(scene):
     """Return ``virial.weights`` of the rates of all events of a class, as in ``flux.rates``."""
-    return {
-        e: weight / multiplicity(scene, DECLARED[e]) for e, weight in virial.weights(scene).items()
-    }
+    return {e: weight / multiplicity(scene, e) for e, weight in virial.weights(scene).items()}
 
 
 def virial_sum(scene, rates):
@@ -76,9 +74,9 @@ def dynamics_rates(scene, events, seed):
     sums, products, replicas, duration = counted(scene, events, seed)
     second = np.triu(products) + np.triu(products, 1).T
     covariance = (second / replicas - np.outer(sums, sums) / replicas**2) / replicas / duration**2
-    weights = np.array([virial_weights(scene).get(event, 0.0) for event in SHELLS])
-    rates = dict(zip(SHELLS, (sums / replicas / duration).tolist(), strict=True))
-    errors = dict(zip(SHELLS, np.sqrt(np.diag(covariance)).tolist(), strict=True))
+    weights = np.array([virial_weights(scene).get(event, 0.0) for event in CLASSES])
+    rates = dict(zip(CLASSES, (sums / replicas / duration).tolist(), strict=True))
+    errors = dict(zip(CLASSES, np.sqrt(np.diag(covariance)).tolist(), strict=True))
     return rates, errors, math.sqrt(weights @ covariance @ weights)
 
 
@@ -87,7 +85,7 @@ def _time(scene, event, rate, error=0.0):
     if not rate:
         return None, None
     # The mean is over all initial states, for two discs too, so that all numbers of discs compare.
-    time = multiplicity(scene, DECLARED[event]) / rate / math.sqrt(scene.discs / 2)
+    time = multiplicity(scene, event) / rate / math.sqrt(scene.discs / 2)
     return time, time * error / rate
 
 
@@ -122,7 +120,7 @@ def _of_scene(scene, events, samples, seed):
         "discs": scene.discs, "width": scene.width, "height": scene.height, "radius": scene.radius,
         "theory": theory, "states": many_initial_states.method(scene),
     }  # fmt: skip
-    for event in SHELLS:
+    for event in CLASSES:
         time, _ = _time(scene, event, true.get(event))
         sampled_time, spread = _time(scene, event, sampled.get(event), errors_of_samples.get(event))
         counted_time, error = _time(scene, event, found[event], errors[event])
