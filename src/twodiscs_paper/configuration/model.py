@@ -267,11 +267,11 @@ class SceneBlock(Block):
     """The rectangle that holds the discs, or with a depth the box that holds two balls."""
 
     discs: integer(2, MOST_DISCS) = 2
-    """The number of discs. More than two discs are equal. Their effects may be periodic x,
+    """The number of discs. More than two discs are equal. Their effects may be periodic,
     moment_of_inertia and friction. Collisions and hops then count for any pair of discs, hits of a
-    wall for one disc. Exact values are known for three discs in any box, and for any number in a
-    channel in which only neighbours touch, h ≤ (2 + √3) r. In other boxes Monte Carlo and dynamics
-    are compared with each other."""
+    wall for one disc. Exact values are known for three discs in any box or on a torus, and for any
+    number in a channel in which only neighbours touch, h ≤ (2 + √3) r. In other boxes Monte Carlo
+    and dynamics are compared with each other."""
 
     effects: Effects = Field(default_factory=Effects)
     """All that differs from equal, smooth discs that move freely between walls. An effect that is
