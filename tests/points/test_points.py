@@ -164,6 +164,8 @@ def test_what_is_written_is_read_unless_it_was_edited(tmp_path):
     write_json(path, CONTENT)
     assert read_json(path) == CONTENT
     first = path.read_bytes()
+    lines = first.decode().splitlines()[1:-1]  # one for each key, in order
+    assert [line.split('"')[1] for line in lines] == sorted({*CONTENT, "sha256"})
     write_json(path, dict(reversed(CONTENT.items())))
     assert path.read_bytes() == first
     edited = [json.dumps(json.loads(first) | {key: -1}) for key in CONTENT]

@@ -64,14 +64,17 @@ def require_logged(path):
 def write_json(path, content, seconds=None):
     """Write the dict ``content`` with its digest, keys sorted; floats keep all their digits.
 
-    ``seconds`` is the processor time that it took, if known.
+    Each key has a line, so that a difference of two files names it. ``seconds`` is the processor
+    time that it took, if known.
     """
     content = content | {KEY: _content_digest(content)}
     if seconds is not None:
         content[SECONDS] = seconds
-    text = json.dumps(content, sort_keys=True, indent=1, allow_nan=False)
+    compact = {"sort_keys": True, "separators": (",", ":"), "allow_nan": False}
+    lines = (f'"{key}": {json.dumps(content[key], **compact)}' for key in sorted(content))
     with writing_to(path) as new:
-        Path(new).write_text(f"{text}\n", encoding="utf-8", newline="\n")
+        text = ",\n".join(lines)
+        Path(new).write_text(f"{{\n{text}\n}}\n", encoding="utf-8", newline="\n")
 
 
 def read_json(path):
