@@ -6,6 +6,7 @@ no build makes.
 
 from twodiscs_paper.studies.passages.parts.displacements import displacements
 from twodiscs_paper.studies.passages.parts.in_long_file import in_long_file
+from twodiscs_paper.studies.passages.parts.in_pore import in_pore
 from twodiscs_paper.studies.passages.parts.in_the_limit import in_the_limit
 from twodiscs_paper.studies.passages.parts.long_files import long_files
 from twodiscs_paper.studies.passages.parts.long_run import long_run
@@ -17,7 +18,7 @@ from twodiscs_paper.studies.passages.parts.with_friction import with_friction
 PARTS = {
     part.__name__: part
     for part in (
-        near_threshold, on_ring, with_friction, in_long_file, in_the_limit, long_run, displacements,
-        long_files,
+        near_threshold, on_ring, with_friction, in_long_file, in_the_limit, in_pore, long_run,
+        displacements, long_files,
     )
 }  # fmt: skip

@@ -24,7 +24,11 @@ class PassagesTable(Table):
     """
 
     columns = {
-        "scene": TEXT("the scene; empty for the limit of any hop"),
+        "scene": TEXT(
+            "the scene; empty for the limit of any hop; pore: two spheres in a cylindrical pore of "
+            "the length width and the diameter height, with hits of an end (right_wall) and of the "
+            "side (top_wall) by one sphere"
+        ),
         "width": WIDTH,
         "height": HEIGHT,
         "periodic": TEXT("axes without walls; empty if both have walls"),
@@ -52,7 +56,8 @@ class PassagesTable(Table):
             "as powers of the distance, from this distance and the one before; last_exponent: the "
             "same, fitted to the last five distances; local_exponent: of the time between passages "
             "with friction, from this distance and the one before, without the regular factor of "
-            "τ: −2 + |d ln κ/d ln x|/2; scaled_coefficient: κ x, x = γ√(εσ); scaling_constant: b "
+            "τ: −2 + |d ln κ/d ln x|/2, or −5/2 in place of −2 in a pore; scaled_coefficient: κ x, "
+            "x = γ√(εσ); scaling_constant: b "
             "of 1/κ = x/c + 1/(1 + b x), with the limit c of κ x, fitted to κ with friction; "
             "scaling_chi2: its χ²; scaling_deviation: the largest κ over it, less one; rate: hops "
             "per time, of both of two discs, or of each of more discs; diffusion: D/(ν ℓ²) with "
@@ -199,7 +204,7 @@ def _parts(configuration):
         if first and all(scene.box.fits(radius) for radius in blocked):
             alone = {"name": scene.name, "box": scene.box.parameters(), "blocked": blocked} | seed
             parts["in_long_file"] = {"part": "in_long_file"} | alone
-    return parts | {"in_the_limit": {"part": "in_the_limit"} | seed}
+    return parts | {part: {"part": part} | seed for part in ("in_the_limit", "in_pore")}
 
 
 STUDY = Study(
@@ -207,7 +212,7 @@ STUDY = Study(
     builds="which hops are passages, and diffusion by them",
     tables=(PassagesTable,),
     long_runs=(BrownianTable,),
-    seconds=50.0,
+    seconds=70.0,
     order=6,
     figures={
         "passages": Figure(
