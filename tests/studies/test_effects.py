@@ -29,7 +29,6 @@ from twodiscs_paper.studies.effects import measure as effects
 from twodiscs_paper.studies.effects.study import (
     SCENES,
     EffectsCostTable,
-    EffectsCurvesTable,
     EffectsTable,
 )
 from twodiscs_paper.studies.single import tail_constant
@@ -171,10 +170,11 @@ def costs():
 def test_curves_go_through_the_exact_ratios(rows, monkeypatch):
     monkeypatch.setattr(curves, "FEWER", 28)
     names = "rough", "torus"  # whose exact values take less time
-    table = [*EffectsCurvesTable.rows({name: BOXES[name] for name in names})]
+    boxes = {name: Box(**BOXES[name]) for name in names}
+    plain = Box(boxes["rough"].width, boxes["rough"].height)
     for event in figure.SHOWN_EVENTS:
         for name in names:
-            x, y = figure._curve(table, name, event)
+            x, y = figure._curve(boxes[name], plain, event)
             own = of(rows, scene=name, quantity=f"{event}_time")
             inside = np.isfinite(y)
             assert inside.any() == bool(own)

@@ -47,7 +47,6 @@ rule mine:
 #: The studies whose rows a build takes from the expected tables, because their tests measure.
 #: Rows of seconds are fabricated, and a part of a table is empty.
 MEASURING = ["errata", "distributions", "more_discs", "passages", "stability", "tails"]
-MEASURING += ["effects_curves"]
 KEPT = f"""
 from pathlib import Path
 

@@ -207,5 +207,5 @@ def test_effects_are_a_target_that_counts_every_scene_as_any_other(unbuilt):
     for rule in rules:
         scenes = {words[0] for name, words in jobs if name == rule}
         assert scenes == {f"scene=effects/{name}" for name in SCENES}
-    tables = (("study_table", f"table=effects{end}") for end in ("", "_cost", "_curves"))
+    tables = (("study_table", f"table=effects{end}") for end in ("", "_cost"))
     assert expected(*tables, ("shared_figure", "figure=effects")) <= {*jobs}

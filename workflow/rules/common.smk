@@ -100,15 +100,12 @@ CODE = {
     "documents": modules("twodiscs/figures/scene_figures.py", "twodiscs_paper/pipeline/**/*.py"),
     "benchmark": modules("twodiscs_paper/benchmark.py"),
 }
-# Tables of studies have exact curves, too, which figures draw.
-CURVES = "twodiscs/figures/curves.py"
 for name, study in STUDIES.items():
     shared = (
         "twodiscs_paper/study.py",
         "twodiscs_paper/studies/estimates.py",
         "twodiscs_paper/studies/single.py",
         "twodiscs_paper/reference.py",
-        CURVES,
     )
     own = modules(*shared, f"{study_folder(study)}/**/*.py")
     CODE[name] = [path for path in own if path not in study_figures(study)]

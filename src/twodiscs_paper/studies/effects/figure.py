@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.ticker import FixedLocator
 
 from twodiscs.figures import drawing, panels
-from twodiscs.figures.curves import limits
+from twodiscs.figures.curves import exact_curves, limits
 from twodiscs.figures.style import (
     BLACK,
     BLUE,
@@ -19,13 +19,16 @@ from twodiscs.figures.style import (
     new_figure,
 )
 from twodiscs.model.scene import Box
-from twodiscs_paper.studies.effects.measure import SHOWN_EVENTS
+from twodiscs_paper.studies.effects.measure import plain_time
 
 #: Inches: the width of the figure, and the heights of the panels of curves and of residuals.
 WIDTH, HEIGHTS = 7.0, (2.6, 1.1)
 
 #: The relative widths of the panels of times and of the panel of costs.
 WIDTHS = (1.5, 1.5, 1.5, 1.2)
+
+#: The events that are shown, a panel each.
+SHOWN_EVENTS = ("vertical_hop", "disc_collision", "any_wall")
 
 #: Names of events in this figure, if they differ from those in other figures.
 EVENT_NAMES = {"any_wall": "wall hits"}
@@ -45,7 +48,7 @@ COST_FROM, COST_ROOM, COLUMN = 0.6, 8.0, 26
 
 
 def draw(box, tables):
-    """Draw the rows of effects.csv and the curves; ``box`` is not used: the rows name theirs."""
+    """Draw the rows of effects.csv and exact curves; ``box`` is not used: the rows name theirs."""
     rows = [row for row in tables["effects"] if row["quantity"] != SHARE]
     looks = {name: _look(i) for i, name in enumerate(dict.fromkeys(r["scene"] for r in rows))}
     boxes = {row["scene"]: _box(row) for row in rows}
@@ -59,7 +62,7 @@ def draw(box, tables):
         main, lower = axes[letter], axes[f"z of {letter}"]
         for name, look in looks.items():
             own = [r for r in rows if r["scene"] == name and r["quantity"] == f"{event}_time"]
-            main.plot(*_curve(tables["effects_curves"], name, event), color=look[0], zorder=5)
+            main.plot(*_curve(boxes[name], plain, event), color=look[0], zorder=5)
             panels.draw_estimates(main, list(map(_relative, own)), *look)
             panels.draw_residuals(lower, own, *look)
         main.axhline(1, color=GREY, lw=0.5, zorder=0)
@@ -90,10 +93,11 @@ def _box(row):
     return Box(row["width"], row["height"], **json.loads(row["effects"]))
 
 
-def _curve(rows, scene, event):
+def _curve(box, plain, event):
     """Return the radii and ratios of the curve of an event, with NaN at its gaps."""
-    own = [row for row in rows if (row["scene"], row["event"]) == (scene, event)]
-    return np.array([[row["radius"], row["ratio"]] for row in own], float).reshape(-1, 2).T
+    radii, times = exact_curves(box, tuple(radius for radius, _ in limits(plain)))
+    units = [plain_time(box, float(r), event) if r > 0 else None for r in radii]
+    return radii, times[f"{event}_time"] / np.array(units, float)
 
 
 def _relative(row):

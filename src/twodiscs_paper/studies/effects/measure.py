@@ -5,7 +5,6 @@ compared with the exact mean times of plain discs in the same box.
 """
 
 import json
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -13,8 +12,6 @@ import numpy as np
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import two_disc_law
 from twodiscs.dynamics.two.follow import new_rows, put_state, state_at
-from twodiscs.figures import curves
-from twodiscs.figures.curves import limits
 from twodiscs.model.scene import Box
 from twodiscs.model.seeds import key, stream_seed
 from twodiscs.points import estimates
@@ -29,9 +26,6 @@ from twodiscs_paper.study import row
 #: the starts without a meeting are counted.
 BLOCKS = 256
 TIMES = (1e2, 1e3, 1e4)
-
-#: The events whose exact curves are shown, a panel each.
-SHOWN_EVENTS = ("vertical_hop", "disc_collision", "any_wall")
 
 #: Discs with chaotic motion meet within this many mean times, except for a fraction e^−20.
 MEAN_TIMES = 20
@@ -144,25 +138,3 @@ def share_law(plain, time):
     """Return the share of starts of plain discs without a meeting by a long ``time``."""
     mean = exact.mean_times(plain)["disc_collision"]
     return tail_constant(plain, "disc_collision") / (2 * mean * time**2)
-
-
-# The curves ---------------------------------------------------------------------------------------
-
-
-def curve_rows(scenes):
-    """Yield the rows of effects_curves.csv, for ``scenes`` in boxes with the same sides."""
-    boxes = {name: Box(**parameters) for name, parameters in scenes.items()}
-    first = next(iter(boxes.values()))
-    others = tuple(radius for radius, _ in limits(Box(first.width, first.height)))
-    for name, box in boxes.items():
-        radii, times = curves.exact_curves(box, others)
-        for i, radius in enumerate(map(float, radii)):
-            for event in SHOWN_EVENTS:
-                plain = plain_time(box, radius, event) if radius > 0 else None
-                ratio = float(times[f"{event}_time"][i]) / (plain or math.nan)
-                yield {
-                    "scene": name,
-                    "radius": None if math.isnan(radius) else radius,
-                    "event": event,
-                    "ratio": None if math.isnan(ratio) else ratio,
-                }

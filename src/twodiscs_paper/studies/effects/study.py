@@ -61,30 +61,6 @@ class EffectsTable(Table):
         return measure.rows(tables, scenes, seed)
 
 
-class EffectsCurvesTable(Table):
-    """One row per scene with effects, radius and event: the exact curves that the figure shows.
-
-    A row without a radius stands between two regimes, where a curve has a gap.
-    """
-
-    columns = {
-        "scene": TEXT("its name, which is the name of its file in config/scenes"),
-        "radius": LENGTH("radius of disc 1"),
-        "event": TEXT("the event"),
-        "ratio": NUMBER(
-            "exact mean time over the exact mean time of plain discs of this radius in the same "
-            "box; empty if one of them does not exist"
-        ),
-    }
-
-    @staticmethod
-    def rows(scenes):
-        """Return the rows of ``scenes``, {name: parameters of a box}."""
-        from twodiscs_paper.studies.effects import measure
-
-        return measure.curve_rows(scenes)
-
-
 class EffectsCostTable(Table):
     """The rows of benchmark.csv on effects, from a short run."""
 
@@ -136,7 +112,7 @@ def _reads(configuration):
 STUDY = Study(
     "effects",
     builds="how each effect changes the mean times, and its cost",
-    tables=(EffectsTable, EffectsCostTable, EffectsCurvesTable),
+    tables=(EffectsTable, EffectsCostTable),
     seconds=40.0,
     order=7,
     figures={
@@ -159,7 +135,7 @@ STUDY = Study(
                 cell, or a kick of friction, takes time but is not counted.
                 """
             ),
-            tables=("effects", "effects_cost", "effects_curves"),
+            tables=("effects", "effects_cost"),
         ),
     },
     parameters=_parameters,
