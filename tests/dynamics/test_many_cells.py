@@ -78,6 +78,19 @@ def test_a_few_events_are_the_same_ones(scene):
         assert np.array_equal(some, same)
 
 
+@pytest.mark.slow
+def test_a_log_has_room_for_pairs_of_a_row_or_a_column():
+    """Not for all pairs; their number is kept where discs go on to the next row."""
+    side = math.sqrt(1024 * math.pi / 0.3) / 10
+    scene = Scene(side, side, 0.1, discs=1024)
+    path = many_paths.Followed(scene, scene.events)
+    path.start(many_initial_states.states(scene, 1, 1), 1)
+    for log, _ in path.go_on(4 * many_rates.usual_epoch(scene) / 64):
+        sizes = np.array([np.diff(bands.first) for bands in path.bands])
+        assert log.pending[0] == (sizes * (sizes - 1) // 2).sum() < 64 * scene.discs
+        assert log.times.size < 200 * scene.discs
+
+
 def test_which_kernel_runs():
     """By the number of discs."""
     small, large = (

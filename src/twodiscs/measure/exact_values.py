@@ -116,6 +116,11 @@ def exact(scene: Scene) -> Exact:
     InputError
         For anything that is not a ``Scene``.
 
+    Notes
+    -----
+    It takes milliseconds for two discs, and less than a second for three and for most channels of
+    more. If a channel is shorter than the row of its discs, it may take some minutes.
+
     Examples
     --------
     >>> td.exact(scene)["regime"]
