@@ -343,7 +343,7 @@ def logarithmic(axes, radii, series):
     """Make the ordinate logarithmic, with a range for all estimates and most of the curves."""
     estimates = [row["estimate"] or row.get("bound") for part in series for row in part.rows]
     ends = radii[np.flatnonzero(np.isnan(radii)) - 1]
-    largest = ends[-1]
+    largest = max(ends, default=0.0)
     clear = (np.abs(radii[:, None] - ends) > 0.05 * largest).all(axis=1) & (radii > 0.1 * largest)
     values = [value for part in series for value in part.exact[clear] if value > 0]
     values += [value for value in estimates if value]
