@@ -59,6 +59,18 @@ def test_one_more_radius_runs_one_job_of_each_kind(built):
 #: Sources that no result depends on, or only through the parameters of jobs.
 NO_CODE = {"__init__", "__main__", "catalogue", "cli", "configuration"}
 
+#: What a job runs in another process.
+SPAWNED = {"src/twodiscs_paper/studies/effects/engine_without_effects.py"}
+
+#: The sources that no job with a group of code imports; ``needless`` and ``lacking`` are the proof.
+NO_JOB = {
+    *(f"twodiscs/measure/{n}.py" for n in ("intervals", "load", "observe", "pressure", "scan")),
+    "twodiscs/figures/plot.py",
+    "twodiscs_paper/pipeline/build.py",
+    "twodiscs_paper/pipeline/results/verify.py",
+    "twodiscs_paper/studies/more_discs/tori.py",
+}
+
 #: Modules that are imported without an effect on a table: the start of a job, titles and captions.
 NO_NUMBER = {"src/twodiscs_paper/pipeline/job.py", "src/twodiscs/figures/scene_figures.py"}
 
@@ -94,22 +106,25 @@ def test_the_checksums_are_those_of_all_sources(unbuilt, groups):
     counted = {path.as_posix() for path in paths if path.with_suffix("").parts[1] not in NO_CODE}
     # Those that draw a figure of a study are inputs of its jobs; the folder of studies has no code.
     drawing = {path for path in counted if re.search("twodiscs_paper/studies/.*/figure", path)}
-    counted -= drawing | {"twodiscs_paper/studies/__init__.py"}
+    counted -= drawing | NO_JOB | {"twodiscs_paper/studies/__init__.py"}
     assert set().union(*groups.values()) == {f"src/{path}" for path in counted}
 
 
 def test_a_job_has_the_code_that_its_script_imports(planned_files, groups):
-    """An import in a function counts, too, and so do the imports of the module that it names."""
+    """An import in a function counts, too, and so do the imports of the module that it names.
+
+    A file of a group that no job with the group imports would rerun them all without a reason.
+    """
     names = {path.relative_to(REPOSITORY).as_posix(): module for module, path in FILES.items()}
     paths = {module: path for path, module in names.items()}
-    lacking = set()
+    lacking, needless = set(), {group: {*files} for group, files in groups.items()}
     for rule, inputs, output in planned_files:
         sums = inputs & groups.keys()
         if "workflow/scripts/study.py" in inputs:  # a part is in the folder of its study
             study = STUDY_OF.get(Path(output).stem, Path(output).parent.name)
             assert study in {Path(one).stem for one in sums}, output
         own = inputs.union(*(groups[one] for one in sums if Path(one).stem in STUDIES))
-        todo = {names[path] for path in own & names.keys()}
+        todo = {names[path] for path in own & names.keys() if path.endswith("/study.py")}
         scripts = [path for path in inputs if path.startswith("workflow/scripts/")]
         todo = todo.union(*(imported_modules(REPOSITORY / script) for script in scripts))
         reached = set()
@@ -118,9 +133,13 @@ def test_a_job_has_the_code_that_its_script_imports(planned_files, groups):
             if module not in REGISTRIES and module[1] not in NO_CODE:
                 todo |= imports_of(module) - reached
         code = {paths[module] for module in reached if module[1] not in NO_CODE}
+        for group in sums:
+            needless[group] -= code
         code = {path for path in code - NO_NUMBER if not path.endswith("__init__.py")}
         lacking |= {(rule, path) for path in code - inputs.union(*(groups[one] for one in sums))}
     assert lacking == set()
+    unused = set().union(*needless.values()) - SPAWNED
+    assert [path for path in unused if path.endswith(".py") and "__init__" not in path] == []
 
 
 def test_the_manuscript_is_made_again_after_an_edit_of_a_file_that_its_texts_read(planned_files):

@@ -100,15 +100,37 @@ CODE = {
     "documents": modules("twodiscs/figures/scene_figures.py", "twodiscs_paper/pipeline/**/*.py"),
     "benchmark": modules("twodiscs_paper/benchmark.py"),
 }
+# What several studies import.
+SHARED = modules(
+    "twodiscs_paper/study.py", "twodiscs_paper/studies/*.py", "twodiscs_paper/reference.py"
+)
+
+
+def with_shared(paths):
+    """Return some sources with those of ``SHARED`` that they import, and that these import."""
+    text = "".join(Path(path).read_text(encoding="utf-8") for path in paths)
+    rest = [path for path in SHARED if path not in paths]
+    more = [path for path in rest if re.search(rf"twodiscs_paper.*\b{Path(path).stem}\b", text)]
+    return with_shared([*paths, *more]) if more else sorted(paths)
+
+
 for name, study in STUDIES.items():
-    shared = (
-        "twodiscs_paper/study.py",
-        "twodiscs_paper/studies/estimates.py",
-        "twodiscs_paper/studies/single.py",
-        "twodiscs_paper/reference.py",
-    )
-    own = modules(*shared, f"{study_folder(study)}/**/*.py")
-    CODE[name] = [path for path in own if path not in study_figures(study)]
+    own = modules(f"{study_folder(study)}/**/*.py")
+    CODE[name] = with_shared([path for path in own if path not in study_figures(study)])
+
+# Calls of the face, the build, the comparison with expected results, and a long run: no job with one
+# of these groups imports them, so their edit must not rerun it.
+FACE = modules(
+    *(
+        f"twodiscs/measure/{name}.py"
+        for name in ("intervals", "load", "observe", "pressure", "scan")
+    ),
+    "twodiscs/figures/plot.py",
+    "twodiscs_paper/pipeline/build.py",
+    "twodiscs_paper/pipeline/results/verify.py",
+    "twodiscs_paper/studies/more_discs/tori.py",
+)
+CODE = {group: [path for path in paths if path not in FACE] for group, paths in CODE.items()}
 
 
 def sums(*groups):
