@@ -6,21 +6,16 @@ A dozen scores are held to five standard errors: a false alarm in fewer than 1e-
 """
 
 import math
-from functools import partial
 from pathlib import Path
 
 import pytest
 import yaml
 from factory import empty, of
 
-from twodiscs.dynamics.many.many_hop_clusters import cluster_sizes
 from twodiscs.dynamics.two.hop_clusters import HOPS_OF_BLOCK
-from twodiscs.measure.transmission import cluster_coefficient, odd_clusters_per_passage, plateau
-from twodiscs.model.scene import Box
 from twodiscs.points.base import read_json
 from twodiscs_paper.studies.passages import brownian, measure
-from twodiscs_paper.studies.passages.near import radius_at
-from twodiscs_paper.studies.passages.parts import in_long_file, long_files, long_run
+from twodiscs_paper.studies.passages.parts import long_files, long_run
 from twodiscs_paper.studies.passages.study import BrownianTable, PassagesTable
 from twodiscs_paper.studies.tails import measure as tails
 from twodiscs_paper.studies.tails.study import TailsTable
@@ -52,7 +47,7 @@ def rows_of_clusters(configuration, counts):
 
 def rows_of_files(configuration, counts):
     for one, count in zip(configuration["files"], counts["files"], strict=True):
-        assert len(count) == one["replicas"]
+        assert len(count) == len(configuration["seeds"]) * one["replicas"]
         yield from long_files.file_rows(one, configuration, count)
 
 
@@ -97,30 +92,20 @@ def test_the_parameters_of_a_long_run_are_those_of_a_part(name, table, monkeypat
     assert [*table.part(**configuration)] == due
 
 
-def test_files_diffuse_by_passages_if_hops_are_rare():
-    """D = κ ν ℓ² at δ = 1/32 and D < ν ℓ², smooth and with friction, as the paper has it.
-
-    κ of 128 discs is that of the same motion. κ of short files is that of hops that are drawn on
-    their surface, from other states and by another kernel.
-    """
-    rows = of(kept("files", PassagesTable)[1], distance=1 / 32)
-    files = {(row["discs"], row["friction"]) for row in rows}
-    assert len(files) == 4
-    for discs, friction in files:
-        own = of(rows, discs=discs, friction=friction)
-        (moves,), (hops,) = (of(own, quantity=name) for name in ("diffusion", "rate"))
-        kappa = of(own, quantity="coefficient")[-1]
-        value, error = kappa["estimate"], kappa["stderr"]
-        if discs < 10:
-            radius = radius_at(1 / 4, 5)
-            scene, unit = in_long_file.file_scene(Box(1.5, 1.0), discs, radius)
-            gap = 8 * unit
-            sizes, _ = cluster_sizes(scene, "horizontal_hop", gap, 48, 5)
-            law = partial(odd_clusters_per_passage, others=2)
-            drawn = plateau(cluster_coefficient(sizes), gap, 2 / hops["estimate"], law)
-            value, error = drawn.value, drawn.stderr
-        both = math.hypot(error, moves["stderr"])
-        assert abs(value - moves["estimate"]) < 5 * both < 1 - value
+def test_hops_of_a_disc_within_any_time_have_the_diffusion_of_its_order():
+    """The sum is D/(ν ℓ²) from the first time on, with half of the error, by either seed."""
+    configuration, rows, counts = kept("files", PassagesTable)
+    summed = of(rows, discs=128, method="all_hops")
+    assert len(summed) == 12
+    for row in summed:
+        own = {key: row[key] for key in ("discs", "radius", "friction")}
+        (moves,) = of(rows, quantity="diffusion", **own)
+        assert abs(row["z"]) < 5
+        assert row["stderr"] < 0.75 * moves["stderr"]
+    for one, count in zip(configuration["files"], counts["files"], strict=True):
+        halves = count[: one["replicas"]], count[one["replicas"] :]
+        made = [[*long_files.file_rows(one, configuration, half)] for half in halves]
+        assert all(deviation(*pair) < 5 for pair in zip(*made, strict=True))
 
 
 @pytest.mark.parametrize(

@@ -208,14 +208,14 @@ def test_long_files_have_the_law_of_their_density(inertia, small, monkeypatch):
     assert law["reference_stderr"] == pytest.approx(relative * law["reference"], rel=1e-12)
 
 
-def test_a_cluster_of_odd_size_is_one_passage():
-    """Pair 7 has a cluster of three hops and one of two, pair 8 one hop; one begins too early."""
-    times = np.array([1.0, 5.0, 5.5, 5.9, 7.0, 7.4, 5.2, 9.0])
-    pairs = np.array([7, 7, 7, 7, 7, 7, 8, 8])
-    mixed = np.random.default_rng(1).permutation(8)
-    assert file.passages(times[mixed], pairs[mixed], (4.0, 8.0), 1.0) == (6, 2)
-    assert file.passages(times[mixed], pairs[mixed], (4.0, 8.0), 0.3) == (6, 6)
-    assert file.passages(times[mixed], pairs[mixed], (0.0, 10.0), 2.0) == (8, 4)
+def test_hops_of_a_disc_are_correlated_with_the_same_disc_and_with_others():
+    """On a ring of four 0 passes 1, comes back, passes 1 and 2; then 3 passes 1 over the seam."""
+    times, pairs = np.array([1.0, 1.5, 3.0, 4.0, 6.0]), np.array([1, 1, 1, 2, 4 + 3])
+    found = file.hop_correlations(
+        np.array([0.1, 1.0, 2.0, 3.9]), times, pairs, [0.6, 2.2, 9.0], 5.0
+    )
+    # 0: + − + and + with 2; 1: − + − and − with 3; 2: −; 3: +, too late to count.
+    assert found == [8, [-2, -2, -2], [0, 1, 2]]
 
 
 def test_the_measured_density_is_exact_in_an_ordered_channel():

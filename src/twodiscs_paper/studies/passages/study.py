@@ -54,7 +54,9 @@ class PassagesTable(Table):
             "hops that are passages, by clusters of hops without a pause; plateau: the same from "
             "κ(t); passage_time: τ/κ; exponent: of 1 − κ for smooth discs, of κ for rough ones, "
             "as powers of the distance, from this distance and the one before; last_exponent: the "
-            "same, fitted to the last five distances; local_exponent: of the time between passages "
+            "same, fitted to the last five distances; law_exponent: the same of c + a δ^(1/6) + "
+            "b δ^(1/3), with the limit c and a and b fitted to (1 − κ)A/∛(εσ²) from 2⁻¹³ on, "
+            "law_chi2: its χ²; local_exponent: of the time between passages "
             "with friction, from this distance and the one before, without the regular factor of "
             "τ: −2 + |d ln κ/d ln x|/2, or −5/2 in place of −2 in a pore; scaled_coefficient: κ x, "
             "x = γ√(εσ); scaling_constant: b "
@@ -74,7 +76,8 @@ class PassagesTable(Table):
             "clusters: odd clusters over hops; hops: initial states on the surface of the hop; "
             "states: initial states of the invariant measure; order: by the order of the discs in "
             "a single file, with ν of the same motion; fit: to other rows; limit: the motion in "
-            "the limit ε → 0"
+            "the limit ε → 0; all_hops: over all hops of a disc of a file within a time; same_pair "
+            "and other_pairs: its parts, with the same disc and with others"
         ),
         "time": TIME("t; for clusters, the time without a hop that ends a cluster"),
         "estimate": Column(float, "time, 1/time or none", "estimate"),

@@ -245,8 +245,7 @@ EXACT = {"mean", "density_at_zero", "slope", "single_file", "crossing_rate"}
 #: Files of few discs, as in the long run: times are in units of h over the thermal speed.
 FILES = {
     "files": [{"discs": n, "halvings": 3, "replicas": 64} for n in (4, 16)], "name": "files",
-    "width": 1.5, "height": 1.0, "step": 4.0, "records": 128, "lags": [4, 8], "margin": 32.0,
-    "pauses": [2.0, 4.0],
+    "width": 1.5, "height": 1.0, "step": 4.0, "records": 128, "lags": [4, 8], "sums": [2.0, 4.0],
 }  # fmt: skip
 
 #: {(program, s): ε}, as powers of 1/2: necks from 16 steps to 1/32, and those of first passages.
@@ -313,7 +312,7 @@ def passage_rows_of_effects(seed):
 
 def file_rows(seed):
     """Yield rows of passages.csv of files: hops, κ, D, displacements and F."""
-    yield from long_files.long_files(**FILES, seed=seed)
+    yield from long_files.long_files(**FILES, seeds=[seed])
     open_radius, friction = near.radius_at(0.25, 3), in_long_file.FRICTION
     for radius, frictions in ((0.28, [friction]), (open_radius, [None, friction])):
         yield from in_long_file.one_long_file("", BOX, radius, frictions, seed)

@@ -44,7 +44,7 @@ from twodiscs.sampling.initial_states import draw_starts
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.streams import next_bits, open_stream, uniform
 from twodiscs.theory import exact
-from twodiscs_paper.studies.estimates import chi2_p, sample_mean
+from twodiscs_paper.studies.estimates import LinearFit, chi2_p, sample_mean
 from twodiscs_paper.studies.single import advance_to, tail_constant
 from twodiscs_paper.study import row
 
@@ -60,6 +60,9 @@ WINDOW = (3, 9)
 
 #: The most wall and disc events in a mean time: intervals are followed for a thousand mean times.
 RAREST = 100
+
+#: Hops approach their law as (t/τ)^(−1/2) from this time on, in units of the mean.
+LATE = 1000
 
 #: A ratio is well measured if its relative error is below this one.
 WELL_MEASURED = 0.2
@@ -324,7 +327,11 @@ def long_run(weighted, counted):
     seeds = range(counted["seed"], counted["seed"] + counted["runs"])
     of_runs = [counted_survival(scene, event, times, counted["replicas"], s) for s in seeds]
     alone = survival_rows("counted", start, times, map(joined, zip(*of_runs, strict=True)), None)
-    return [*falling, *map(approach, falling), *alone, *starmap(rate_between, pairwise(alone))]
+    late = [one for one in falling if one["time"] > 0.999 * LATE * one["exact_mean"]]
+    follow = []
+    if late:
+        follow = [approach_power(falling, late[0]), *map(approach, late), mean_approach(late)]
+    return [*falling, *follow, *alone, *starmap(rate_between, pairwise(alone))]
 
 
 # Rows that follow from others -------------------------------------------------------------------
@@ -355,6 +362,32 @@ def approach(weighted):
     ratio, error = (weighted[name] / weighted["law"] for name in ("estimate", "stderr"))
     found = {"estimate": (ratio - 1) * root, "stderr": error * root}
     return weighted | {"quantity": "approach", "method": "fit", "law": None} | found
+
+
+def approach_power(weighted, end):
+    """Return the row on the power of t with which the ratio of survival to its law approaches 1.
+
+    It is fitted to ratio − 1 of the ``weighted`` rows up to that of the ``end``.
+    """
+    rows = [one for one in weighted if one["time"] <= end["time"]]
+    times, ratios, errors = np.array([
+        (one["time"], one["estimate"] / one["law"] - 1, one["stderr"] / one["law"]) for one in rows
+    ]).T  # fmt: skip
+    slope = LinearFit(np.log(times), np.log(ratios), errors / ratios).slope
+    cells = {"quantity": "approach_power", "method": "fit", "until": end["time"], "law": None}
+    return rows[0] | cells | {"estimate": slope.value, "stderr": slope.stderr}
+
+
+def mean_approach(weighted):
+    """Return the row on the c of ``approach`` from several ``weighted`` rows, by their errors.
+
+    The times share their starts, so the error is that of the first of them, the smallest one.
+    """
+    rows = [approach(one) for one in weighted]
+    weights = [1 / one["stderr"] ** 2 for one in rows]
+    mean = float(np.average([one["estimate"] for one in rows], weights=weights))
+    found = {"estimate": mean, "quantity": "mean_approach", "until": rows[-1]["time"]}
+    return rows[0] | found
 
 
 def joined(estimates):

@@ -17,8 +17,11 @@ class TailsTable(Table):
         "quantity": TEXT(
             "survival: P(T > t); rate: of the decay of P(T > t); last_ratio: of P(T > t) to its "
             "law, at the last time with an error below a fifth; approach: c of that ratio, if it "
-            "is 1 + c (t/τ)^(−1/2); chi2, degrees, chance: χ² of a constant rate over all times "
-            "of the fit, its degrees of freedom, and the probability of a larger χ²"
+            "is 1 + c (t/τ)^(−1/2); mean_approach: "
+            "the same from all times between two; approach_power: the power of t with which that "
+            "ratio comes down to 1, fitted between two times; chi2, degrees, chance: χ² of a "
+            "constant rate over all times of the fit, its degrees of freedom, and the probability "
+            "of a larger χ²"
         ),
         "method": TEXT(
             "counted: intervals that begin within a window; weighted: intervals around starts "

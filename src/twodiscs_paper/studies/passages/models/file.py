@@ -229,20 +229,32 @@ def logged(scene, step, number, replicas, seed, friction=None):
         yield np.array(places)[:, :, None], np.concatenate(times), np.concatenate(pairs)
 
 
-def passages(times, pairs, window, pause):
-    """Return (hops, passages) in a ``window`` of time, from the ``times`` of hops of ``pairs``.
+def hop_correlations(places, times, pairs, lags, until):
+    """Return [hops, Σ s₀ s_k with the same disc, Σ s₀ s_k with others] over all hops of all discs.
 
-    Hops of a pair with less than a ``pause`` between one and the next are a cluster. A cluster of
-    odd size is one passage. It is in the window if its first hop is.
+    A disc hops in the direction s = ±1 with another one. A hop counts if it comes before the time
+    ``until``, and then its later hops within each of the ascending ``lags``; sums are lists.
+    ``places`` (N,) are those at the time 0; neighbours in the order of the ring exchange places.
     """
-    by_pair = np.lexsort((times, pairs))
-    times, pairs = times[by_pair], pairs[by_pair]
-    first = np.ones(times.size, bool)
-    first[1:] = (np.diff(pairs) != 0) | (np.diff(times) > pause)
-    begins, inside = times[first], (window[0] <= times) & (times < window[1])
-    sizes = np.diff(np.append(np.flatnonzero(first), times.size))
-    odd = (window[0] <= begins) & (begins < window[1]) & (sizes % 2 == 1)
-    return int(inside.sum()), int(odd.sum())
+    n, ranks = places.size, np.argsort(np.argsort(places))
+    discs, others = np.divmod(pairs, n)
+    signs = np.empty(times.size, np.int64)
+    for k, (i, j) in enumerate(zip(discs, others, strict=True)):
+        signs[k] = 1 if (ranks[j] - ranks[i]) % n == 1 else -1
+        ranks[i], ranks[j] = ranks[j], ranks[i]
+    times, signs = np.tile(times, 2), np.append(signs, -signs)
+    discs, others = np.append(discs, others), np.append(others, discs)
+    by_disc = np.lexsort((times, discs))
+    times, signs, discs, others = (x[by_disc] for x in (times, signs, discs, others))
+    sums = np.zeros((2, len(lags) + 1), np.int64)
+    for k in range(1, times.size):
+        apart = times[k:] - times[:-k]
+        near = (discs[k:] == discs[:-k]) & (times[:-k] < until) & (apart <= lags[-1])
+        if not near.any():
+            break
+        places = (others[k:] != others[:-k])[near].astype(int), np.searchsorted(lags, apart[near])
+        np.add.at(sums, places, (signs[k:] * signs[:-k])[near])
+    return [int((times < until).sum()), *sums[:, :-1].cumsum(axis=1).tolist()]
 
 
 def order(places, length):

@@ -1,51 +1,54 @@
-"""A long run of files of several numbers of discs: ν, κ and D of the same motion."""
+"""A long run of files of several numbers of discs: ν and D of the same motion, by two estimators.
 
-from functools import partial
+D/(ν ℓ²) is 1 + 2Σ⟨s₀ s_k⟩ over all hops of a disc, s their directions. Hops with the same disc
+undo each other. A pair that passes takes its gap from its neighbours, which then pass more often:
+hops with others go on in the same direction. Both parts grow with the time, and their sum does
+not once the time is longer than a flight through the neck, from h over the thermal speed on.
+"""
 
 import numpy as np
 
-from twodiscs.measure.transmission import hop_seed, odd_clusters_per_passage, plateau
+from twodiscs.measure.transmission import hop_seed
 from twodiscs.model.scene import Box
 from twodiscs_paper.studies.estimates import sample_mean
 from twodiscs_paper.studies.passages.models import file
-from twodiscs_paper.studies.passages.near import hop_cells, radius_at
+from twodiscs_paper.studies.passages.near import compared, hop_cells, radius_at
 from twodiscs_paper.studies.passages.parts.in_long_file import file_scene
 from twodiscs_paper.study import row
 
 
 def file_counts(one, run):
-    """Return the counts of a file ``one`` of a long ``run``, a list for each replica.
+    """Return the counts of a file ``one`` of a long ``run``, a list for each replica, seed by seed.
 
-    They are the hops of all pairs, and for each pause the passages, both between the margins; then
-    the hops in all the time, and for both lags Σ n² over the discs and all pairs of times, n the
-    places by which a disc has moved in the order.
+    They are those of ``file.hop_correlations``; then the hops in all the time, and for both lags
+    Σ n² over the discs and all pairs of times, n the places by which a disc has moved in the order.
     """
     box, found = Box(run["width"], run["height"]), []
     scene, unit = file_scene(box, one["discs"], radius_at(box.height / 4, one["halvings"]))
     rate = one["friction"] / unit if "friction" in one else None
-    step, number = run["step"] * unit, run["records"]
-    window = run["margin"] * unit, number * step - run["margin"] * unit
+    step, number, sums = run["step"] * unit, run["records"], [lag * unit for lag in run["sums"]]
     kind = f"long run {one['discs']} {one.get('friction')}"
-    seed = hop_seed(scene, "horizontal_hop", run["name"], run["seed"], kind)
-    for places, times, pairs in file.logged(scene, step, number, one["replicas"], seed, rate):
-        counted = [file.passages(times, pairs, window, gap * unit) for gap in run["pauses"]]
-        numbers = file.order(places, scene.width)
-        moved = [int(((numbers[lag:] - numbers[:-lag]) ** 2).sum()) for lag in run["lags"]]
-        found.append([counted[0][0], [each for _, each in counted], times.size, moved])
+    for seed in run["seeds"]:
+        stream = hop_seed(scene, "horizontal_hop", run["name"], seed, kind)
+        for places, times, pairs in file.logged(scene, step, number, one["replicas"], stream, rate):
+            until = number * step - sums[-1]
+            counted = file.hop_correlations(places[0, :, 0], times, pairs, sums, until)
+            numbers = file.order(places, scene.width)
+            moved = [int(((numbers[lag:] - numbers[:-lag]) ** 2).sum()) for lag in run["lags"]]
+            found.append([*counted, times.size, moved])
     return found
 
 
 def file_rows(one, run, counts):
     """Yield the rows of passages.csv on a file ``one`` of a long ``run`` from its ``counts``.
 
-    κ is that of the first pause that is long against a flight, corrected for the passages of the
-    pair and of its neighbours in it. D/(ν ℓ²) over κ is the last row.
+    The sums over hops are compared with D by the order of the discs, of the same motion.
     """
     box = Box(run["width"], run["height"])
     scene, unit = file_scene(box, one["discs"], radius_at(box.height / 4, one["halvings"]))
     start = hop_cells(run["name"], scene, "horizontal_hop", 2.0 ** -one["halvings"])
     start["friction"] = one["friction"] / unit if "friction" in one else None
-    hops, passed, total, moved = (np.array([count[k] for count in counts]) for k in range(4))
+    hops, same, other, total, moved = (np.array([each[k] for each in counts]) for k in range(5))
     discs, duration = one["discs"], run["records"] * run["step"] * unit
     per_time = 2 * total / (discs * duration)
     rate = sample_mean(per_time)
@@ -57,15 +60,15 @@ def file_rows(one, run, counts):
     moves = file.quotient(walked, per_time)
     time = run["lags"][1] * run["step"] * unit
     yield row(start, moves, quantity="diffusion", method="order", time=time, replicas=moves.n)
-    for k, pause in enumerate(run["pauses"]):
-        found = file.quotient(passed[:, k], hops)
-        # Two discs take part in a hop, and each has two neighbours.
-        kappa = plateau(
-            found, pause * unit, 2 / rate.value, partial(odd_clusters_per_passage, others=2)
-        )
-        if kappa:
-            cells = {"method": "clusters", "time": pause * unit, "replicas": kappa.n}
-            yield row(start, kappa, quantity="coefficient", uncorrected=found.value, **cells)
+    for k, lag in enumerate(run["sums"]):
+        cells = {"quantity": "correlation", "time": lag * unit, "replicas": moves.n}
+        found = file.quotient(hops + 2 * (same + other)[:, k], hops)
+        yield row(start | cells, found, method="all_hops", **compared(found, moves))
+        for method, part in (
+            ("same_pair", hops + 2 * same[:, k]),
+            ("other_pairs", 2 * other[:, k]),
+        ):
+            yield row(start | cells, file.quotient(part, hops), method=method)
 
 
 def long_files(files, **run):

@@ -10,7 +10,7 @@ from twodiscs_paper.studies.passages.parts.with_friction import (
     local_exponents,
     scaling_fits,
 )
-from twodiscs_paper.studies.passages.powers import fits
+from twodiscs_paper.studies.passages.powers import fits, law_powers
 
 
 def long_run_thresholds(one):
@@ -56,7 +56,8 @@ def cluster_rows(one, counts):
         return found
     if "friction" in one:
         return [*found, *local_exponents(measured)]
-    return [*found, *fits(found)]
+    law = [] if "inertia" in one else law_powers(found)
+    return [*found, *fits(found), *law]
 
 
 def long_run(thresholds):
