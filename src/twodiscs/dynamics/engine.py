@@ -8,7 +8,6 @@ import numpy as np
 
 from twodiscs.dynamics.ensemble import REPLICAS, RETURNS
 from twodiscs.dynamics.two import event_counts, follow, hop_clusters, path, returns, two_rates
-from twodiscs.sampling.rounds import FIRST_ROUND
 from twodiscs.theory import exact
 
 
@@ -25,7 +24,6 @@ class Engine(NamedTuple):
     expected_rate: Callable  # (event): its rate over all discs and walls, in 1/time, 0 if unknown
     replica_duration: Callable  # (budget of events or None): the time T of a replica, 2ⁿ
     block_replicas: Callable  # the number of replicas of a block
-    first_round: Callable  # the number of blocks of the first round
     run_blocks: Callable  # (events, seed, first, stop, duration): (Σ N_e, Σ N_e N_f), integers
     cost_ratio: Callable  # the work of an event
     work_per_event: Callable  # the work of an event with its kicks and jumps, over ``cost_ratio``
@@ -59,7 +57,6 @@ TWO_DISCS = Engine(
     expected_rate=two_rates.expected_rate,
     replica_duration=lambda scene, budget=None: two_rates.replica_duration(scene),
     block_replicas=lambda scene: REPLICAS,
-    first_round=lambda scene: FIRST_ROUND,
     run_blocks=event_counts.run_blocks,
     cost_ratio=two_rates.cost_ratio,
     work_per_event=two_rates.work_per_event,
@@ -99,7 +96,6 @@ def _many_discs():
         expected_rate=many_rates.expected_rate,
         replica_duration=many_rates.replica_duration,
         block_replicas=many_rates.block_replicas,
-        first_round=many_rates.first_round,
         run_blocks=class_counts.run_blocks,
         cost_ratio=many_rates.cost_ratio,
         work_per_event=many_rates.work_per_event,

@@ -167,7 +167,6 @@ class DynamicsRun(Run):
             budget,
             round_up_blocks(planned),
             engine.cost_ratio(scene),
-            engine.first_round(scene),
         )
 
     def run(self, progress=None, cores=1, resume_from=None):

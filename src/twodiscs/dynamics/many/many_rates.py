@@ -9,7 +9,6 @@ from twodiscs.model.many_geometry import LARGE
 from twodiscs.sampling.many import insertions
 from twodiscs.sampling.many.chains import MOST_CROWDING, crowding
 from twodiscs.sampling.many.many_initial_states import CROWDED, method
-from twodiscs.sampling.rounds import FIRST_ROUND
 from twodiscs.theory import n_discs
 from twodiscs.theory.equation_of_state import bulk_derivatives
 from twodiscs.theory.flux import rates
@@ -27,7 +26,7 @@ BUDGET_REPLICAS = 128
 
 #: The events of a block of ``LARGE`` numbers of discs and its fewest replicas, and the events of
 #: each disc in an epoch.
-BLOCK_EVENTS, FEWEST_REPLICAS, EPOCH_EVENTS = 2**20, 8, 64
+BLOCK_EVENTS, FEWEST_REPLICAS, EPOCH_EVENTS = 2**20, 4, 64
 
 #: The time that a pair of discs adds to an event, over the time of an event of the plain ensemble.
 #: Events of 3, 4 and 8 discs take 3.7, 5.9 and 22 times as long. Pairs of rough discs take longer.
@@ -117,18 +116,11 @@ def replica_duration(scene, budget=None):
 def block_replicas(scene):
     """Return the number of replicas of a block: for ``LARGE`` numbers of discs a power of two.
 
-    A block then has about ``BLOCK_EVENTS``, and at least ``FEWEST_REPLICAS``.
+    A block has about ``BLOCK_EVENTS``, and ``FEWEST_REPLICAS`` or more: 128 in a first round.
     """
     if scene.discs < LARGE:
         return ensemble.REPLICAS
     return max(FEWEST_REPLICAS, 1 << int(BLOCK_EVENTS / _replica_events(scene)).bit_length() - 1)
-
-
-def first_round(scene):
-    """Return the number of blocks of a first round, fewer if blocks have ``LARGE`` numbers."""
-    if scene.discs < LARGE:
-        return FIRST_ROUND
-    return max(FIRST_ROUND // 4, -(-BUDGET_REPLICAS // block_replicas(scene)))
 
 
 def _replica_events(scene):
