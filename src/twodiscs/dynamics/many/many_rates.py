@@ -18,7 +18,7 @@ REPLICA_EVENTS, CHAIN_REPLICA_EVENTS = 256, 8192
 
 #: Events of each roomy disc in a replica of ``LARGE`` numbers of discs, and the most of all discs
 #: together. The motion then takes several times as long as the draw of the state.
-EVENTS_PER_DISC, MOST_REPLICA_EVENTS = 256, 2**18
+EVENTS_PER_DISC, MOST_REPLICA_EVENTS = 256, 2**19
 
 #: Replicas that a budget has room for, if they can be shorter. Those of crowded discs cannot,
 #: because each has a new chain.
