@@ -26,6 +26,7 @@ WHOLE = {
     "cost": "accuracy_cost",
     "price": "accuracy_cost_by_radius",
     "calibration": "calibration",
+    "tori": "tori",
 }
 
 #: {picture: (figure, number of the panel, abscissa if it is written beneath another panel)}

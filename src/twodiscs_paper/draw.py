@@ -5,6 +5,7 @@ from twodiscs_paper.studies.accuracy_cost import figure_by_radius
 from twodiscs_paper.studies.distributions import figure as distributions
 from twodiscs_paper.studies.effects import figure as effects
 from twodiscs_paper.studies.more_discs import figure as more_discs
+from twodiscs_paper.studies.more_discs import figure_tori as tori
 from twodiscs_paper.studies.passages import figure as passages
 from twodiscs_paper.studies.passages import figure_brownian as brownian
 from twodiscs_paper.studies.passages import figure_diffusion as diffusion
@@ -24,6 +25,7 @@ DRAW = {
     "distributions": distributions.draw,
     "effects": effects.draw,
     "more_discs": more_discs.draw,
+    "tori": tori.draw,
     "passages": passages.draw,
     "brownian": brownian.draw,
     "diffusion": diffusion.draw,

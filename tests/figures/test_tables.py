@@ -23,6 +23,7 @@ from twodiscs.theory import exact
 from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES, read_table
 from twodiscs_paper.draw import DRAW
 from twodiscs_paper.studies.effects import figure as effects
+from twodiscs_paper.studies.more_discs import figure_tori as tori
 from twodiscs_paper.studies.passages import figure as passages
 from twodiscs_paper.studies.passages import figure_brownian as brownian
 from twodiscs_paper.studies.passages import figure_diffusion as diffusion
@@ -284,7 +285,7 @@ def test_a_table_without_a_figure_or_alone_is_one_sentence(tmp_path):
 
 def test_every_figure_of_a_study_is_compared():
     """Costs are times, which no table of the repository has: tests of the study compare them."""
-    elsewhere = "accuracy_cost accuracy_cost_by_radius calibration stability stability_of_runs"
+    elsewhere = "accuracy_cost accuracy_cost_by_radius calibration stability stability_of_runs tori"
     assert {name for name, *_ in CASES} | {*elsewhere.split()} >= STUDY_FIGURES.keys()
 
 
@@ -326,6 +327,17 @@ def test_residuals_are_those_of_the_table():
             due = {(r["distance"], r["z"]) for r in rows if r["z"] is not None and r["distance"]}
             axes = drawn(name)["residuals" if "residuals" in drawn(name) else quantity]
             assert points(axes, colour, marker) == due
+
+
+def test_the_symbols_of_tori_are_those_of_the_long_run():
+    rows = read_table(EXPECTED.parent / "long_run" / "tori" / "tori.csv")
+    for (reference, discs), (colour, marker, _) in tori.LOOKS.items():
+        own, axes = select(rows, reference=reference, discs=discs), drawn("tori")
+        due = {(row["packing_fraction"], row["estimate"]) for row in own}
+        assert points(axes["factor"], colour, marker) >= due != set()
+        settled = [row for row in own if abs(row["starts_z"] or 0.0) <= tori.AGREE]
+        due = {(row["packing_fraction"], row["z"]) for row in settled}
+        assert points(axes["residuals"], colour, marker) >= due
 
 
 def test_the_mean_squares_of_calibration_are_those_of_the_long_run():

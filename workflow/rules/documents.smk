@@ -25,6 +25,7 @@ if MAIN:
         "far/mean_times",
         "passages/passages",
         "tails/tails",
+        "tori/tori",
     )
 
     rule paper:

@@ -4,6 +4,12 @@ With σ the contact distance, ν the rate of all collisions and D = 2N − 2, Z 
 The discs begin from two sides: from rows that are moved by event chains, as the initial states of
 all calls, and from a liquid that is compressed and then moved by as many chains. In equilibrium
 both have the same Z.
+
+``pressures.csv`` has published pressures P* = βP(2r)², hence Z = P* π/(4φ): from 2022 by B. Li, Y.
+Nishikawa, P. Höllmer, L. Carillo, A. C. Maggs and W. Krauth, J. Chem. Phys. 157, 234111 (2022),
+from the data beside it; from 1953 by N. Metropolis and others, J. Chem. Phys. 21, 1087 (1953), read
+from its figure 4. ``virial.csv`` has B_k/B_2^(k − 1), from N. Clisby and B. M. McCoy, J. Stat.
+Phys. 122, 15 (2006), table 1.
 """
 
 import csv
@@ -19,6 +25,7 @@ from twodiscs.model.scene import Box
 from twodiscs.sampling.many import chains, many_initial_states
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory.flux import flux_constant
+from twodiscs_paper.study import row
 
 #: Published pressures, and the virial coefficients B_k/B_2^(k − 1).
 PUBLISHED, VIRIAL = (Path(__file__).with_name(f"{name}.csv") for name in ("pressures", "virial"))
@@ -28,6 +35,9 @@ ASPECTS = {
     "1:1": 1.0, "1:sqrt(3)/2": 2 / math.sqrt(3), "9:8sqrt(3)/2": 9 / (4 * math.sqrt(3)),
     "29:30sqrt(3)/2": 29 / (15 * math.sqrt(3)),
 }  # fmt: skip
+
+#: The number of discs that is compared with the virial series.
+OF_SERIES = 256
 
 #: The packing fraction of the liquid that is compressed.
 LIQUID = 0.45
@@ -40,7 +50,7 @@ def torus(discs, packing, aspect):
     return box.scene(0.5)
 
 
-def counted(points, seed, progress=print):
+def counted(seed, points):
     """Return the counts of collisions at the ``points`` as a list of mappings, for a JSON file."""
     found = []
     for point in points:
@@ -57,7 +67,7 @@ def counted(points, seed, progress=print):
             keys = {name: point[name] for name in ("discs", "packing", "aspect", "replicas")}
             names = dict(zip(("sum", "squares"), counts, strict=True))
             found.append(keys | {"start": start, "duration": duration} | names)
-            progress(found[-1], flush=True)
+            print(found[-1], flush=True)
     return found
 
 
@@ -120,6 +130,45 @@ def virial_series(packing, discs):
     slope = terms @ (powers + 1)
     change = terms @ ((powers + 1) * powers) / slope
     return float(terms.sum() + rest - change / (2 * discs)), float(rest)
+
+
+def references(discs, aspect, packing):
+    """Yield (source, Z, its uncertainty) of what is known at a point."""
+    if discs == OF_SERIES:
+        yield "virial", *virial_series(packing, discs)
+    for one in read(PUBLISHED):
+        point = int(one["discs"]), one["aspect"], float(one["packing_fraction"])
+        if point == (discs, aspect, packing):
+            per = math.pi / 4 / packing
+            yield one["source"], float(one["pressure"]) * per, float(one["error"]) * per
+
+
+def rows(counts):
+    """Yield the rows of tori.csv, from what ``counted`` returns: each start, then both."""
+    groups = {}
+    for count in counts:
+        point = count["discs"], count["aspect"], count["packing"]
+        groups.setdefault(point, []).append(count)
+    for point, group in groups.items():
+        named = dict(zip(("discs", "aspect", "packing_fraction"), point, strict=True))
+        found = [compressibility(count) for count in group]
+        apart = None
+        if len(group) > 1:
+            (one, spread), (other, error) = found
+            apart = (one - other) / math.hypot(spread, error)
+            for count, (z, stderr) in zip(group, found, strict=True):
+                parts = {"replicas": count["replicas"], "events": count["sum"]}
+                yield row(named | {"start": count["start"]} | parts, estimate=z, stderr=stderr)
+        mean = math.fsum(z for z, _ in found) / len(found)
+        error = math.hypot(*(stderr for _, stderr in found)) / len(found)
+        parts = {"start": "both" if len(group) > 1 else group[0]["start"]}
+        parts |= {"replicas": sum(one["replicas"] for one in group)}
+        parts |= {"events": sum(one["sum"] for one in group), "estimate": mean, "stderr": error}
+        for source, due, spread in references(*point):
+            yield row(
+                named | parts, reference=source, expected=due, expected_stderr=spread,
+                z=(mean - due) / math.hypot(error, spread), starts_z=apart,
+            )  # fmt: skip
 
 
 def compressibility(count):
