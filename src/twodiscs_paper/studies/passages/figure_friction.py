@@ -19,7 +19,7 @@ LOOKS = dict(zip(KICKED, SERIES, strict=True))
 #: The scaled friction that is shown.
 SHOWN = (0.015, 45)
 
-#: The law that is fitted to the long run.
+#: The law with the exact slope at 0.
 FORMULA = r"$1/\kappa=4x/3+1/(1+bx)$"
 
 #: κ x for large x and smooth discs between walls, see docs/passages.md.
@@ -51,9 +51,8 @@ def draw(box, tables):
                 points(
                     lower, np.sqrt(scaled(steps) * scaled(before)), value, error, look, None, filled
                 )
-    for row in select(kept, quantity="scaling_constant"):
-        x = np.geomspace(*SHOWN, 60)
-        upper.plot(x, scaling_law(x, row["estimate"]), color=BLACK, lw=0.8, label=FORMULA, zorder=5)
+    x = np.geomspace(*SHOWN, 60)
+    upper.plot(x, scaling_law(x), color=BLACK, lw=0.8, label=FORMULA, zorder=5)
     style = {"color": BLACK, "lw": 0.8, "ls": (0, (4, 2)), "zorder": 5}
     upper.plot(SHOWN, np.ones(2), **style)
     large = np.array([DIFFUSIVE, SHOWN[1]])

@@ -60,7 +60,7 @@ class PassagesTable(Table):
             "with friction, from this distance and the one before, without the regular factor of "
             "τ: −2 + |d ln κ/d ln x|/2, or −5/2 in place of −2 in a pore; scaled_coefficient: κ x, "
             "x = γ√(εσ); scaling_constant: b "
-            "of 1/κ = x/c + 1/(1 + b x), with the limit c of κ x, fitted to κ with friction; "
+            "of 1/κ = x/c + 1/(1 + b x), with the limit c of κ x, derived; "
             "scaling_chi2: its χ²; scaling_deviation: the largest κ over it, less one; rate: hops "
             "per time, of both of two discs, or of each of more discs; diffusion: D/(ν ℓ²) with "
             "ν hops of a disc per time in either direction, each by ℓ; "
@@ -88,7 +88,7 @@ class PassagesTable(Table):
         ),
         "reference": AS_ESTIMATE(
             "expected value: exact, or by the other method; for more than two discs by Monte "
-            "Carlo; of κ x the limit for large x, 3/4 less the factor A − |u| of the density of u"
+            "Carlo; of κ x the limit for large x, of discs that diffuse along the channel"
         ),
         "reference_stderr": AS_ESTIMATE(
             "standard error of the reference; empty if the reference is exact"
@@ -269,7 +269,7 @@ STUDY = Study(
                 hops become blocked. The abscissa is x = γ√(εσ), with the room ε = h − 4r that the
                 discs leave in the neck and σ = 2r. Dashed: the limits of ballistic discs, 1, and of
                 discs that diffuse through the neck, 3/(4x). Line: 1/κ = 4x/3 + 1/(1 + bx), with b
-                fitted to the long run. (b) The local power of the distance r_c − r with which the
+                = 4/3 − √2π/5. (b) The local power of the distance r_c − r with which the
                 time τ/κ between passages grows, from one distance to the next. Dashed: the powers
                 of a pair that diffuses through the neck, and of one that crosses it in one flight.
                 Full symbols are a long run. Error bars are one standard error.

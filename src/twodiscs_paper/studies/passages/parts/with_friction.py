@@ -5,10 +5,8 @@ is large.
 """
 
 import math
-from functools import partial
 
 import numpy as np
-from scipy.optimize import curve_fit
 
 from twodiscs.dynamics.two.hop_clusters import HOPS_OF_BLOCK, cluster_sizes
 from twodiscs.measure.transmission import quiet_time
@@ -16,6 +14,7 @@ from twodiscs.model.events import AXIS
 from twodiscs.model.scene import Box
 from twodiscs.points.estimates import Estimate
 from twodiscs.theory import exact
+from twodiscs_paper.studies.passages.models import plane
 from twodiscs_paper.studies.passages.near import MOST_HOPS, NearThreshold, scene_at
 from twodiscs_paper.study import row
 
@@ -32,6 +31,11 @@ PAUSE, WORK, KICK, FEWEST_KICKED, STRIPS = 12, 4, 4, 2**9, 16
 
 #: Necks are long from this x on: a pair forgets its velocity several times within it.
 LONG_NECK = 5
+
+#: b of ``scaling_law``. For small x one kick decides. With λ = L/ε = 1 + u²/2εσ it sends the pair
+#: over u = 0 with the probability P = (1 − √(1 − λ⁻²))/2, from where the pair came with the same
+#: probability. So 1 − κ = 4γ∫₀^∞ λ² P² du/⟨|u̇|⟩ = √2π x/5.
+B = 4 / 3 - math.sqrt(2) * math.pi / 5
 
 
 def one_friction(name, box, friction, halvings, events, seed):
@@ -63,13 +67,9 @@ def scaled_friction(scene, hop):
 
 
 def diffusive_limit(scene, hop):
-    """Return κ x of two smooth discs between walls whose separation diffuses through the neck.
-
-    It is 3/4 for a short neck. The density of the separation u has the factor A − |u|, which adds
-    the share 2√(2εσ)/(πA) to the resistance of the neck.
-    """
-    length = math.sqrt(2 * scene.clearance(hop) * scene.contact_distance)
-    return 3 / 4 / (1 + 2 * length / (math.pi * float(scene.reach(AXIS[hop]))))
+    """Return κ x of two smooth discs between walls that diffuse: 3/4 if the neck is short."""
+    reach = float(scene.reach(AXIS[hop]))
+    return plane.scaled_coefficient(reach, scene.clearance(hop), scene.contact_distance)
 
 
 def local_exponents(measured):
@@ -97,29 +97,25 @@ def local_exponents(measured):
         before = kappa, x
 
 
-def scaling_law(x, b, limit=3 / 4):
-    """Return κ of a scaled friction x: 1/κ = x/``limit`` + 1/(1 + b x), with a number ``b``.
+def scaling_law(x, limit=3 / 4):
+    """Return κ of a scaled friction x: 1/κ = x/``limit`` + 1/(1 + b x), with b of ``B``.
 
-    It is 1 for small x, and ``limit``/x for large x, which is what diffusion has.
+    It is 1 for small x with the exact slope, and ``limit``/x for large x, which diffusion has.
     """
-    return 1 / (x / limit + 1 / (1 + b * x))
+    return 1 / (x / limit + 1 / (1 + B * x))
 
 
 def scaling_fits(rows):
-    """Yield b of ``scaling_law``, fitted to κ with friction, χ², and the largest deviation of κ."""
+    """Yield b of ``scaling_law``, χ² of κ with friction from it, and the largest deviation."""
     own = [row for row in rows if row["quantity"] == "coefficient" and row["friction"]]
     if not own:
         return
     hops = [(row_scene(row), row["event"]) for row in own]
     x, limit = np.array([(scaled_friction(*hop), diffusive_limit(*hop)) for hop in hops]).T
     kappa, error = np.array([(row["estimate"], row["stderr"]) for row in own]).T
-    fitted, covariance = curve_fit(
-        partial(scaling_law, limit=limit), x, kappa, 0.5, error, absolute_sigma=True
-    )
-    law = scaling_law(x, *fitted, limit)
+    law = scaling_law(x, limit)
     off, start = kappa / law - 1, {"event": own[0]["event"], "discs": 2, "method": "fit"}
-    constant = Estimate(float(fitted[0]), math.sqrt(covariance[0, 0]), len(own))
-    yield row(start, constant, quantity="scaling_constant", replicas=len(own))
+    yield row(start, quantity="scaling_constant", estimate=B, replicas=len(own))
     chi2 = float((((kappa - law) / error) ** 2).sum())
     yield row(start, quantity="scaling_chi2", estimate=chi2, replicas=len(own))
     worst = np.abs(off).argmax()
