@@ -234,15 +234,15 @@ def sort(values):
         values[j] = value
 
 
-@optional(lambda values, ring: None)
-def subtract_mean(values, ring):
-    """Subtract their mean from ``values`` (N,), velocities along a periodic axis."""
-    mean = 0.0
-    for value in values:
-        mean += value
-    mean /= values.size
-    for i in range(values.size):
-        values[i] -= mean
+@optional(lambda velocities, row, ring: None)
+def subtract_mean(velocities, row, ring):
+    """Subtract their mean from a ``row`` of ``velocities`` (2, N), along a periodic axis."""
+    n, mean = velocities.shape[1], 0.0
+    for i in range(n):
+        mean += velocities[row, i]
+    mean /= n
+    for i in range(n):
+        velocities[row, i] -= mean
 
 
 @optional(lambda ring_x, ring_y: ring_x)
@@ -266,8 +266,8 @@ def scale_energy(velocities, ring):
 @inlined
 def keep_still(velocities, ring_x, ring_y):
     """Make the momenta along periodic axes 0, at the energy 1/2."""
-    subtract_mean(velocities[0], ring_x)
-    subtract_mean(velocities[1], ring_y)
+    subtract_mean(velocities, 0, ring_x)
+    subtract_mean(velocities, 1, ring_y)
     scale_energy(velocities, either(ring_x, ring_y))
 
 
