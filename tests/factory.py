@@ -12,7 +12,7 @@ import numpy as np
 
 from twodiscs.analysis import tables
 from twodiscs.dynamics.stages import STAGES
-from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
+from twodiscs.model.events import EVENT_AXES, EVENTS, HOPS, SHELL_EVENTS, WALLS
 from twodiscs.model.scene import Box
 from twodiscs.points.base import file_content, restore_arrays, write_json
 from twodiscs.points.dynamics_point import DynamicsPoint
@@ -156,7 +156,7 @@ class Laws:
         scene, epsilon = self.scene, self.shell * self.scene.radius
         prism = (scene.range_x * scene.range_y) ** 2
         parts = {"volume": (exact.volume(scene) / prism, prism, None)}
-        for event in SHELLS:
+        for event in SHELL_EVENTS:
             measure = prism / (epsilon * (2 if event in HOPS else 1))
             expectation = exact.shell_expectation(scene, event, epsilon)
             parts[f"{event}_area"] = (expectation / measure, measure, epsilon)
@@ -187,7 +187,7 @@ class Laws:
         if not self.scene.has_effects:  # as symmetry has it
             first = {}
             for wall in (event for event in events if event in WALLS):
-                counts[wall] = counts[first.setdefault(AXIS[wall], wall)]
+                counts[wall] = counts[first.setdefault(EVENT_AXES[wall], wall)]
             if "any_wall" in events and len(first) == 2:
                 counts["any_wall"] = sum(counts[wall] for wall in first.values())
         events = [event for event in EVENTS if event in events]

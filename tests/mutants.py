@@ -172,7 +172,7 @@ MUTANTS = [
     ("energy in the measure of proposals", " else measure * neck.most ** (prism.components / 2 - 1)", " else measure"),
     ("both orders of a draw count", "return q1, q1 - q2, sign * (q1 - q2) > 0.0", "return q1, q1 - q2, True"),
     ("flux weight cut off", "math.sqrt(2.0) * uniform(state) < abs(", "uniform(state) < abs("),
-    ("the same kicks in all blocks", "block * HOPS_OF_BLOCK + l, kicks)", "l, kicks)"),
+    ("the same kicks in all blocks", "block * HOPS_PER_BLOCK + l, kicks)", "l, kicks)"),
     ("one stream for kicks and initial states", "open_stream(seed ^ SEED, replica)", "open_stream(seed, replica)"),
     ("the same kicks of all blocks of states", "open_kicks(i, seed, first + i, kicks)", "open_kicks(i, seed, i, kicks)"),
     ("each call repeats the first blocks", 'seeds["clusters"], first)', 'seeds["clusters"], 0)'),

@@ -13,7 +13,7 @@ from commands import python
 from test_examples import NAMES, REPOSITORY, blocks, page
 
 import twodiscs
-from twodiscs.model.events import DECLARED, SHELLS
+from twodiscs.model.events import DECLARED_EVENTS, SHELL_EVENTS
 
 #: Scenes whose walls have different multiplicities, and more discs with and without exact values.
 EVENT = """
@@ -23,7 +23,7 @@ import pytest
 import twodiscs as td
 from twodiscs.analysis.tables import CheckTable
 from twodiscs.dynamics import runs
-from twodiscs.model.events import DECLARED, WALLS
+from twodiscs.model.events import DECLARED_EVENTS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import clusters
@@ -39,7 +39,7 @@ for scene in (
     Scene(1.5, 1.0, 0.15, discs=3),
     Scene(1.5, 1.0, 0.12, discs=5),
 ):
-    assert (own in scene.events) == (DECLARED[own].axis in scene.walled)
+    assert (own in scene.events) == (DECLARED_EVENTS[own].axis in scene.walled)
     quantities = ["volume", *(f"{event}_area" for event in scene.events)]
     points = {
         "dynamics": [runs.DynamicsRun(scene, dict.fromkeys(scene.events, 5e-3), 10**7, 3).run()],
@@ -51,18 +51,14 @@ for scene in (
     if own in scene.events:
         assert scene.discs == 5 or {f"{own}_time", f"{own}_area"} <= compared
 
-scene, opposite = Scene(1.5, 1.0, 0.2), {"x": "right_wall", "y": "top_wall"}[DECLARED[own].axis]
-known = td.pressure(scene)
-assert known["wall_pressure"] == pytest.approx(known["virial_pressure"], rel=1e-12)
-assert known["virial_pressure"] == pytest.approx(0.648, abs=1e-4)
-assert known[f"{own}_pressure"] == known[f"{opposite}_pressure"]
-assert td.areas(scene)[f"{own}_area"] == td.areas(scene)[f"{opposite}_area"]
-md = td.simulate(scene, duration=1e4, seed=3)
-assert md[f"{own}_time"].u.std_dev == pytest.approx(md[f"{own}_time"].stderr)
+scene, opposite = Scene(1.5, 1.0, 0.2), {"x": "right_wall", "y":
+"top_wall"}[DECLARED_EVENTS[own].axis] known = td.pressure(scene) assert known["wall_pressure"] ==
+pytest.approx(known["virial_pressure"], rel=1e-12) assert known["virial_pressure"] ==
+pytest.approx(0.648, abs=1e-4) assert known[f"{own}_pressure"] == known[f"{opposite}_pressure"]
+assert td.areas(scene)[f"{own}_area"] == td.areas(scene)[f"{opposite}_area"] md = td.simulate(scene,
+duration=1e4, seed=3) assert md[f"{own}_time"].u.std_dev == pytest.approx(md[f"{own}_time"].stderr)
 assert abs(td.pressure(md)["virial_pressure"].z) < 5 and abs(td.pressure(md)["wall_pressure"].z) < 5
-td.plot(md, "md.png")
-td.plot(td.sample(scene, 1e5, seed=2), "mc.png")
-if own == "bottom_wall":
+td.plot(md, "md.png") td.plot(td.sample(scene, 1e5, seed=2), "mc.png") if own == "bottom_wall":
     for field in (0.2, 0.5, 0.8):
         falling = Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5, field=field)
         low, high = (clusters.corner_variance(falling, wall, 4.0) for wall in (own, "top_wall"))
@@ -127,7 +123,7 @@ def shown(change):
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(len(SHELLS) > 5, reason="there is no room for one more")
+@pytest.mark.skipif(len(SHELL_EVENTS) > 5, reason="there is no room for one more")
 @pytest.mark.parametrize("turned", [False, True])
 def test_an_event_needs_nothing_but_its_declaration(turned, tmp_path):
     """It has its exact area and rate in every scene, and all other events keep theirs.
@@ -137,7 +133,7 @@ def test_an_event_needs_nothing_but_its_declaration(turned, tmp_path):
     (line,) = re.findall(r"^Event\(.*?\)", block("Event("), re.MULTILINE)
     line = line.replace("bottom", "left").replace('"y"', '"x"') if turned else line
     name, axis = re.findall(r'"(\w+)"', line)[::2]
-    assert (axis, -1) not in {(event.axis, event.side) for event in DECLARED.values()}
+    assert (axis, -1) not in {(event.axis, event.side) for event in DECLARED_EVENTS.values()}
     copy = Copy(tmp_path)
     copy.declare(line)
     done = copy.run(EVENT, name)
@@ -147,7 +143,7 @@ def test_an_event_needs_nothing_but_its_declaration(turned, tmp_path):
 
 def test_a_seventh_shell_is_refused_with_a_sentence(tmp_path):
     copy = Copy(tmp_path)
-    copy.declare(*(f'Event("own_{i}", "wall", "x", -1)' for i in range(7 - len(SHELLS))))
+    copy.declare(*(f'Event("own_{i}", "wall", "x", -1)' for i in range(7 - len(SHELL_EVENTS))))
     done = copy.run("import twodiscs.sampling.montecarlo")
     assert done.stderr.endswith("sampling/montecarlo.py has room for 6 shells, not for 7\n")
 

@@ -25,7 +25,7 @@ from numba.core.compiler_lock import global_compiler_lock
 import twodiscs as td
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.measure import result as progress_module
-from twodiscs.model.checks import PRESETS
+from twodiscs.model.checks import NAMED_ERRORS
 from twodiscs.model.formats import texts_with_error
 from twodiscs.points.base import file_content, write_json
 from twodiscs.sampling import rounds
@@ -243,7 +243,7 @@ def test_errors_that_are_not_given_and_presets_are_those_of_the_pages():
     assert td.scan(1.5, 1.0, [0.2], budget=1).settings["error"] == 1e-2
     assert td.simulate(SCENE, budget=1).settings["error"] == 1e-3
     found = td.simulate(SCENE, "draft", events=["any_wall"])
-    assert found.settings["error"] == PRESETS["draft"]
+    assert found.settings["error"] == NAMED_ERRORS["draft"]
     assert td.simulate(SCENE, 1, budget=1)["any_wall_time"].status == "reached"
 
 

@@ -14,7 +14,7 @@ from argcomplete.completers import ChoicesCompleter
 
 import twodiscs
 from twodiscs.measure.load import plugin
-from twodiscs.model.checks import PRESETS, InputError, parse_number
+from twodiscs.model.checks import NAMED_ERRORS, InputError, parse_number
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS
 from twodiscs.model.formats import did_you_mean, format_number
@@ -221,8 +221,8 @@ def _parser():
     of_scene("exact", _exact, "exact volume, areas and mean times of one scene")
     text = "mean times by molecular dynamics, beside the exact ones"
     add = of_scene("simulate", _simulate, text)
-    text = f"relative, or {', '.join(PRESETS)} (1e-3)"
-    add("--error", type=value, help=text, completer=ChoicesCompleter(PRESETS))
+    text = f"relative, or {', '.join(NAMED_ERRORS)} (1e-3)"
+    add("--error", type=value, help=text, completer=ChoicesCompleter(NAMED_ERRORS))
     add("--duration", type=value, help="the time to simulate, instead of an error")
     add("--budget", type=value, help="events at most (those of a day)")
     text = f"of {', '.join(EVENTS)} (all)"
@@ -231,8 +231,8 @@ def _parser():
     text = "volume and areas by Monte Carlo, beside the exact ones"
     add = of_scene("sample", _sample, text)
     add("--samples", type=value, help="to draw, rounded up to whole blocks (1e7)")
-    text = f"relative, or {', '.join(PRESETS)}, instead of samples"
-    add("--error", type=value, help=text, completer=ChoicesCompleter(PRESETS))
+    text = f"relative, or {', '.join(NAMED_ERRORS)}, instead of samples"
+    add("--error", type=value, help=text, completer=ChoicesCompleter(NAMED_ERRORS))
     add("--budget", type=value, help="samples at most, for an error (those of a day)")
     known = ChoicesCompleter(("volume", *(f"{event}_area" for event in EVENTS)))
     text = "volume, <event>_area"

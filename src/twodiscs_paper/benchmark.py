@@ -17,7 +17,7 @@ from twodiscs.dynamics import runs
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import class_counts, many_rates
-from twodiscs.model.events import EVENTS, SHELLS
+from twodiscs.model.events import EVENTS, SHELL_EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.conditioned import conditioned_sampler
@@ -80,7 +80,7 @@ def sampling_engine(blocks=100):
     """Sample the volume and all shells with the compiled kernel."""
     sampler = montecarlo.prism_sampler(SCENE, QUANTITIES, 0.02, 1)
     _, seconds = timed(lambda: sampler.count(0, blocks))
-    return blocks * montecarlo.BLOCK, seconds
+    return blocks * montecarlo.SAMPLES_PER_BLOCK, seconds
 
 
 def numpy_sampler(chunks=1000, chunk=16384):
@@ -88,12 +88,12 @@ def numpy_sampler(chunks=1000, chunk=16384):
     range_x, range_y, sigma = SCENE.range_x, SCENE.range_y, SCENE.contact_distance
     ranges = {"x": range_x, "y": range_y}
     ends = montecarlo.shell_ends(
-        [montecarlo.shell_thickness(SCENE, event, 0.02) for event in SHELLS],
+        [montecarlo.shell_thickness(SCENE, event, 0.02) for event in SHELL_EVENTS],
         lambda thick: (sigma + thick) ** 2,
         lambda axis, side, thick: 1 - thick / ranges[axis] if side > 0 else thick / ranges[axis],
     )
     generator = np.random.Generator(np.random.SFC64(1))
-    hits = np.zeros(1 + len(SHELLS), np.int64)
+    hits = np.zeros(1 + len(SHELL_EVENTS), np.int64)
 
     def sample():
         for _ in range(chunks):
@@ -102,7 +102,7 @@ def numpy_sampler(chunks=1000, chunk=16384):
             square = uu + vv
             free = square >= sigma**2
             sample_in = (uu, vv), square, (x1, y1), ends
-            shells = [free & montecarlo.IN_SHELL[event](*sample_in) for event in SHELLS]
+            shells = [free & montecarlo.IN_SHELL[event](*sample_in) for event in SHELL_EVENTS]
             hits[:] += [np.count_nonzero(members) for members in (free, *shells)]
 
     _, seconds = timed(sample)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from mpmath import mp, mpf
 
-from twodiscs.model.events import AXIS, EVENTS, WALLS, WAYS, by_kind
+from twodiscs.model.events import EVENT_AXES, EVENTS, WALLS, WAYS, by_kind
 
 #: Working digits.
 DIGITS = 60
@@ -257,7 +257,7 @@ def mean_time(event, q):
 
     If a hop is blocked, disc 1 reaches a given wall in one of two parts that mirror each other.
     """
-    blocked = horizontal_hop_area if AXIS.get(event) == "x" else vertical_hop_area
+    blocked = horizontal_hop_area if EVENT_AXES.get(event) == "x" else vertical_hop_area
     parts = 2 if event in WALLS and blocked(q) == 0 else 1
     return volume(q) / (parts * WAYS[event] * AREAS[event](q) * normal_speed())
 

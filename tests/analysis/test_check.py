@@ -16,7 +16,7 @@ from factory import LAWS, RADII, Laws, as_theory, counts_point, empty, exact_val
 
 from twodiscs.analysis import check, scores
 from twodiscs.analysis.tables import AreasTable, HopHistogramTable, MeanTimesTable, VolumeTable
-from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
+from twodiscs.model.events import EVENT_AXES, EVENTS, HOPS, SHELL_EVENTS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import Estimate
 from twodiscs.theory import exact
@@ -25,14 +25,16 @@ SAMPLES = 10**12  # at 0.36 a sample in 300 000 is a hit of a shell
 
 #: Walls that are hit as often as another one of their axis, in every replica.
 MIRRORED = [
-    wall for i, wall in enumerate(WALLS) if any(AXIS[wall] == AXIS[other] for other in WALLS[:i])
+    wall
+    for i, wall in enumerate(WALLS)
+    if any(EVENT_AXES[wall] == EVENT_AXES[other] for other in WALLS[:i])
 ]
 
 #: How many quantities have scores at several radii: volume, areas, times, intervals, the sum rule.
 SCORED = 3 + 2 * len(EVENTS)
 
 BLOCKED = sum(not scene.is_possible(hop) for scene in scenes() for hop in HOPS)
-TESTED = len(RADII) * (1 + 2 * len(SHELLS) - len(MIRRORED)) + 4 - 2 * BLOCKED
+TESTED = len(RADII) * (1 + 2 * len(SHELL_EVENTS) - len(MIRRORED)) + 4 - 2 * BLOCKED
 
 
 @pytest.fixture(scope="module")
@@ -106,7 +108,7 @@ ALSO |= {f"{wall}_area": "any_wall_area" for wall in WALLS}
 
 
 @pytest.mark.parametrize(
-    "name", ["volume", *(f"{e}_time" for e in EVENTS), *(f"{e}_area" for e in SHELLS)]
+    "name", ["volume", *(f"{e}_time" for e in EVENTS), *(f"{e}_area" for e in SHELL_EVENTS)]
 )
 def test_a_number_off_by_one_percent_is_named(points, theory, name, monkeypatch):
     true = exact.shell_expectation
@@ -147,10 +149,10 @@ def test_a_flux_has_a_score_if_neither_of_its_errors_is_coarse(dynamics, samples
     assert flux["status"] == ("counted" if fine else "too-few")
 
 
-@pytest.mark.parametrize("rare", check.SUM_RULE)
+@pytest.mark.parametrize("rare", check.SUM_RULE_EVENTS)
 @pytest.mark.parametrize(("number", "status"), [(999, "too-few"), (1000, "counted")])
 def test_the_sum_rule_needs_a_thousand_of_each_of_its_events(rare, number, status):
-    counts = dict.fromkeys(check.SUM_RULE, 50 * 2048) | {rare: number}
+    counts = dict.fromkeys(check.SUM_RULE_EVENTS, 50 * 2048) | {rare: number}
     pairs = combinations_with_replacement(counts, 2)  # of independent events
     products = {f"{a}*{b}": counts[a] * counts[b] // 2048 + counts[a] * (a == b) for a, b in pairs}
     target = dict.fromkeys(counts, 1.0)
@@ -260,7 +262,7 @@ def test_what_cannot_be_compared_is_there_and_not_passed(theory):
 def test_the_sum_rule_is_for_equal_discs_between_walls():
     cases = (LAWS[2].scene, ["sum_rule"]), (SCENES["rough"], ["sum_rule"]), (SCENES["unequal"], [])
     for scene, expected in cases:
-        point = Laws(scene).dynamics(np.random.default_rng(3), events=check.SUM_RULE)
+        point = Laws(scene).dynamics(np.random.default_rng(3), events=check.SUM_RULE_EVENTS)
         found = check.comparisons([], [], [], [], [point])
         assert [row["comparison"] for row in found] == expected
 

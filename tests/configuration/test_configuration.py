@@ -15,7 +15,7 @@ from snakemake.utils import update_config
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.effects import EFFECTS
-from twodiscs.model.events import AXIS, EVENTS, HOPS
+from twodiscs.model.events import EVENT_AXES, EVENTS, HOPS
 from twodiscs.model.scene import Box, Scene
 from twodiscs.model.seeds import job_seed, stream_seed
 from twodiscs_paper.configuration import scene_block, schema, yaml_files
@@ -215,7 +215,7 @@ def test_seeds_differ_between_scenes_methods_and_radii_and_follow_the_root():
 # Effects
 
 #: The events that have a place with walls along x or y only.
-ALONG = {axis: tuple(e for e in EVENTS if AXIS.get(e, axis) == axis) for axis in "xy"}
+ALONG = {axis: tuple(e for e in EVENTS if EVENT_AXES.get(e, axis) == axis) for axis in "xy"}
 
 #: Quantities of a scene, the events that exist in it, and the radii of its hop histograms.
 CALLS = [
@@ -299,7 +299,7 @@ def test_what_is_about_a_plain_scene_needs_one():
 
 
 def test_the_fewest_intervals_are_a_block():
-    assert scene_block.LEAST_INTERVALS == runs.CHAINS * runs.RETURNS
+    assert scene_block.LEAST_INTERVALS == runs.CHAINS_PER_BLOCK * runs.RETURNS
 
 
 def test_radii_too_close_to_the_largest_are_refused_for_dynamics_alone():

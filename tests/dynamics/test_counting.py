@@ -19,7 +19,7 @@ from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import WALL_X1, WALL_X2, WALL_Y1, WALL_Y2
 from twodiscs.dynamics.two import event_counts
-from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, WALLS
+from twodiscs.model.events import DECLARED_EVENTS, EVENT_AXES, EVENTS, HOPS, WALLS
 from twodiscs.model.scene import Box, Scene
 
 PAPER = Scene(1.5, 1.0, 0.2)
@@ -45,7 +45,7 @@ def test_counts_have_the_exact_rates(scene):
 @pytest.mark.parametrize(("identical", "field"), [*product((True, None), (None, 0.4))])
 def test_an_event_is_seen_by_its_disc_its_axis_and_its_side(event, identical, field):
     """Symmetry makes walls equal: of identical discs, and of both sides but for y in a field."""
-    codes, axis = (WALL_X1, WALL_Y1, WALL_X2, WALL_Y2), "xy".index(AXIS[event])
+    codes, axis = (WALL_X1, WALL_Y1, WALL_X2, WALL_Y2), "xy".index(EVENT_AXES[event])
     for (number, code), side in product(enumerate(codes), (-1, 1)):
         before, after = [0.1, 0.1, 0.0, 0.0], [-0.3 * side] * 4
         after[number] = 0.3 * side  # with the other disc on the other side
@@ -54,14 +54,14 @@ def test_an_event_is_seen_by_its_disc_its_axis_and_its_side(event, identical, fi
             due &= after[axis] < after[axis + 2]
         else:
             due &= (number < 2 or identical is True) and (
-                axis == 0 or not field or side == DECLARED[event].side
+                axis == 0 or not field or side == DECLARED_EVENTS[event].side
             )
-        assert event_counts.SEEN[event](code, before, after, identical, field) == due
+        assert event_counts.DETECTORS[event](code, before, after, identical, field) == due
 
 
 def test_packed_counts_do_not_run_over():
     """A lane sees an event once in a pass at most, and a field has eight bits."""
-    assert event_counts.UNPACKED < 2**8
+    assert event_counts.SWEEPS_PER_UNPACKING < 2**8
 
 
 def test_any_duration_is_unbiased():

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from twodiscs.dynamics.many import class_counts, many_rates
-from twodiscs.model.events import SHELLS
+from twodiscs.model.events import SHELL_EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.theory.flux import flux_constant
 
@@ -47,7 +47,7 @@ def force(discs, width, height, events, seed, replicas=64):
     sums, products = class_counts.run_classes(
         scene, seed, 0, 1, duration, replicas=replicas, hops=False
     )
-    wall = [*SHELLS].index("top_wall")
+    wall = [*SHELL_EVENTS].index("top_wall")
     mean = sums[wall] / replicas
     error = math.sqrt((products[wall, wall] / replicas - mean**2) / (replicas - 1))
     unit = duration * flux_constant(scene.velocity_components) * width

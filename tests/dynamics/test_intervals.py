@@ -15,7 +15,7 @@ from twodiscs.dynamics import ensemble, paths, runs
 from twodiscs.dynamics.many import many_intervals, many_paths
 from twodiscs.dynamics.two import returns
 from twodiscs.model.scene import Scene
-from twodiscs.points.intervals_point import BINS, GROWTH, wide_edges
+from twodiscs.points.intervals_point import BIN_GROWTH, N_BINS, wide_edges
 from twodiscs.sampling.many import many_initial_states
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import density_at_zero
@@ -67,8 +67,8 @@ def test_wide_bins_widen():
     edges = wide_edges()
     assert edges[:14] == list(range(14))
     growth = np.diff(edges) / np.maximum(edges[:-1], 1)
-    assert (growth >= GROWTH).all()
-    assert edges[-1] <= BINS < (1 + GROWTH) * edges[-1]
+    assert (growth >= BIN_GROWTH).all()
+    assert edges[-1] <= N_BINS < (1 + BIN_GROWTH) * edges[-1]
 
 
 # More than two discs -----------------------------------------------------------------------------

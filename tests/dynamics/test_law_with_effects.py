@@ -32,9 +32,9 @@ from twodiscs.dynamics.law import (
     two_disc_law,
 )
 from twodiscs.dynamics.two import follow
-from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, WALLS
+from twodiscs.model.events import DECLARED_EVENTS, EVENT_AXES, EVENTS, HOPS, WALLS
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.initial_states import COMPONENTS, components, states
+from twodiscs.sampling.initial_states import STATE_ROWS, components, states
 from twodiscs.sampling.jit import compiled
 
 EPS = 2.0**-52
@@ -89,7 +89,7 @@ def gap(scene, state):
 
 def reversed_state(scene, state):
     """Return the state with velocities and spins reversed, as the loop keeps it."""
-    column, kept = np.zeros((2, COMPONENTS, 1))
+    column, kept = np.zeros((2, STATE_ROWS, 1))
     column[: len(state), 0] = state
     follow.keep_reversed(kept, 0, column, 0, two_disc_law(scene), True)
     return tuple(map(float, kept[: len(state), 0]))
@@ -177,7 +177,7 @@ def test_a_trajectory_tells_the_same_events_as_the_ensemble(scene):
     discs = (1, 2) if scene.identical else (1,)
     for wall in WALLS:
         # Both walls of an axis count, except the walls of y in a field.
-        axis, side = AXIS[wall], DECLARED[wall].side
+        axis, side = EVENT_AXES[wall], DECLARED_EVENTS[wall].side
         seen[wall] = sum(
             row[1] == f"wall_{axis}{disc}"
             and (axis == "x" or not scene.field or row[4][2 * disc - 1] * side > 0)

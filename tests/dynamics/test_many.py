@@ -17,7 +17,7 @@ from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import all_pairs as many
 from twodiscs.dynamics.many import class_counts, many_rates
 from twodiscs.dynamics.runs import relative_errors
-from twodiscs.model.events import AXIS, EVENTS, SHELLS, WALLS
+from twodiscs.model.events import EVENT_AXES, EVENTS, SHELL_EVENTS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import insertions, many_initial_states
 from twodiscs.theory.flux import rates
@@ -30,7 +30,7 @@ def counted(scene, blocks, seed=1, events=None):
     sums, products = class_counts.run_classes(scene, seed, 0, blocks, duration, replicas=REPLICAS)
     found = sums / (blocks * REPLICAS) / duration
     errors = found * np.where(sums > 0, relative_errors(sums, products, blocks * REPLICAS), 0.0)
-    return dict(zip(SHELLS, found, strict=True)), dict(zip(SHELLS, errors, strict=True))
+    return dict(zip(SHELL_EVENTS, found, strict=True)), dict(zip(SHELL_EVENTS, errors, strict=True))
 
 
 def check(found, errors, expected, spread=None):
@@ -87,17 +87,17 @@ def test_monte_carlo_and_another_program_have_the_same_rates(scene):
     check(found, errors, expected, rates(scene, spread))
     if scene.discs > 3:
         other, spread = scalar_many.rates(scene, 1_000_000, 6)
-        named = dict(zip(SHELLS, other, strict=True))
-        check(found, errors, named, dict(zip(SHELLS, spread, strict=True)))
+        named = dict(zip(SHELL_EVENTS, other, strict=True))
+        check(found, errors, named, dict(zip(SHELL_EVENTS, spread, strict=True)))
 
 
 def test_counts_of_events_are_those_of_their_classes():
     """Replica by replica: hits of all walls are those of both classes of them."""
-    by_class = np.random.default_rng(1).integers(0, 50, (100, len(SHELLS)))
-    columns = dict(zip(SHELLS, by_class.T, strict=True))
+    by_class = np.random.default_rng(1).integers(0, 50, (100, len(SHELL_EVENTS)))
+    columns = dict(zip(SHELL_EVENTS, by_class.T, strict=True))
     columns["any_wall"] = columns["right_wall"] + columns["top_wall"]
     of_axis = {"x": columns["right_wall"], "y": columns["top_wall"]}
-    columns |= {wall: of_axis[AXIS[wall]] for wall in WALLS}
+    columns |= {wall: of_axis[EVENT_AXES[wall]] for wall in WALLS}
     by_event = np.array([columns[event] for event in EVENTS]).T
     sums, products = class_counts.combine_classes(
         by_class.sum(axis=0), np.triu(by_class.T @ by_class)

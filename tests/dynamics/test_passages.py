@@ -75,7 +75,7 @@ def test_clusters_to_both_sides_are_those_of_another_program(scene, gap):
     """
     module = hop_clusters if scene.discs == 2 else of_many
     counts, _ = module.cluster_sizes(scene, HOP, gap, 192, 11)
-    assert (counts[0], counts.sum()) == (0, 192 * hop_clusters.HOPS_OF_BLOCK)
+    assert (counts[0], counts.sum()) == (0, 192 * hop_clusters.HOPS_PER_BLOCK)
     same_sizes(counts, sample(scene, 8000, 12, gap=gap)[1])
 
 
@@ -109,7 +109,7 @@ def test_hops_on_a_ring_have_their_exact_rate(effects):
     """In a field the flux has another power of the energy than the volume."""
     scene = Scene(1.5, 1.0, 0.2, periodic="x", **effects)
     sums, _ = hop_clusters.hop_sums(scene, HOP, [20.0], 256, 8, on_surface=False)
-    counts = sums[:, 2, 0] / (20.0 * hop_clusters.HOPS_OF_BLOCK)
+    counts = sums[:, 2, 0] / (20.0 * hop_clusters.HOPS_PER_BLOCK)
     five(counts.mean(), passing_rate(scene, HOP), counts.std(ddof=1) / 16)
 
 
@@ -118,7 +118,7 @@ def test_displacements_grow_as_the_correlations_say():
     scene = Scene(1.5, 1.0, 0.22, periodic="x")
     sums, _ = hop_clusters.hop_sums(scene, HOP, [20.0, 40.0], 512, 9, on_surface=False)
     rate = passing_rate(scene, HOP)
-    grown = (sums[:, 1, 1] - sums[:, 1, 0]) / (20.0 * hop_clusters.HOPS_OF_BLOCK * rate)
+    grown = (sums[:, 1, 1] - sums[:, 1, 0]) / (20.0 * hop_clusters.HOPS_PER_BLOCK * rate)
     (due,) = coefficients_at_times(hop_clusters.hop_sums(scene, HOP, [30.0], 512, 10)[0])
     error = grown.std(ddof=1) / math.sqrt(len(grown))
     five(grown.mean(), due.value, math.hypot(error, due.stderr))
@@ -144,7 +144,7 @@ def test_blocks_of_a_pair_among_others_have_separate_kicks(monkeypatch):
     monkeypatch.setattr(of_many, "follow_pair", lambda *given: 0)
     monkeypatch.setattr(of_many, "follow_blocks", of_many.follow_blocks.py_func)
     of_many.hop_sums(Scene(1.5, 1.0, 0.1, friction=20.0), HOP, [2.0], 2, 1, first=3)
-    assert opened == [*range(3 * hop_clusters.HOPS_OF_BLOCK, 5 * hop_clusters.HOPS_OF_BLOCK)]
+    assert opened == [*range(3 * hop_clusters.HOPS_PER_BLOCK, 5 * hop_clusters.HOPS_PER_BLOCK)]
 
 
 def test_blocks_have_separate_kicks():

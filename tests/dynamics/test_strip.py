@@ -15,10 +15,10 @@ from marks import slow
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.two import strip
-from twodiscs.model.events import AXIS, HOPS
+from twodiscs.model.events import EVENT_AXES, HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import stratified_mean
-from twodiscs.sampling.initial_states import COMPONENTS, draw_states, start_sampler, states
+from twodiscs.sampling.initial_states import STATE_ROWS, draw_states, start_sampler, states
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 from twodiscs_paper.studies.estimates import chi2_p
@@ -106,21 +106,21 @@ def test_starts_fill_the_strata_as_their_exact_shares_say(scene, hop):
 
 def test_strata_in_a_field_compare_a_speed_with_the_energy_that_is_left():
     (scene, hop), lanes = NECKS["field"], np.zeros(1)
-    sampler, shape = start_sampler(scene, hop, 0.1), (3, strip.PARTS, strip.PARTS)
+    sampler, shape = start_sampler(scene, hop, 0.1), (3, strip.MOST_STRATA, strip.MOST_STRATA)
     hops = strip.HopsInStrip(
-        1.0, 1.0, 0.1 / strip.PARTS, scene.fastest / strip.PARTS, sampler.prism, True,
+        1.0, 1.0, 0.1 / strip.MOST_STRATA, scene.fastest / strip.MOST_STRATA, sampler.prism, True,
         lanes, np.zeros((2, 1)), np.zeros(shape), lanes,
     )  # fmt: skip
     for x1, y1, x2, y2, u1, v1, u2, v2 in states(scene, 20, 1)[:8].T:
         hops.begin(0, (x1, y1, x2, y2, u1, v1, u2, v2))
         most = math.sqrt(2 * (u1**2 + v1**2 + u2**2 + v2**2))  # u1 = −u2, and v1 = v2 = 0
-        assert hops.stratum[1, 0] == int(strip.PARTS * abs(u1 - u2) / most)
+        assert hops.stratum[1, 0] == int(strip.MOST_STRATA * abs(u1 - u2) / most)
 
 
 @pytest.mark.parametrize(("scene", "hop"), [(PAPER, "vertical_hop"), *NECKS.values()])
 def test_the_share_is_that_of_draws_from_everywhere(scene, hop):
     """Five sigma of a binomial count."""
-    k, n = "xy".index(AXIS[hop]), 100_000
+    k, n = "xy".index(EVENT_AXES[hop]), 100_000
     found = states(scene, n, 3)
     apart = np.abs(found[k] - found[k + 2])
     for part in (0.3, 0.9):
@@ -133,13 +133,13 @@ def test_the_share_is_that_of_draws_from_everywhere(scene, hop):
 @pytest.mark.parametrize(("scene", "hop"), [(PAPER, "horizontal_hop"), *DRAWN])
 def test_starts_in_a_strip_are_those_from_everywhere_that_are_in_it(scene, hop):
     """First two moments of every coordinate and its square, five sigma of both."""
-    k = "xy".index(AXIS[hop])
+    k = "xy".index(EVENT_AXES[hop])
     distance = math.sqrt(2) * min(scene.radii)
     # Some 35 000 in the strip, or as many as a few seconds allow.
     number = min(35_000 / exact.fraction_near(scene, hop, distance), 800_000)
     everywhere = states(scene, round(number), 5)
     seen = everywhere[:, np.abs(everywhere[k] - everywhere[k + 2]) <= distance]
-    drawn = np.zeros((COMPONENTS, 40_000))
+    drawn = np.zeros((STATE_ROWS, 40_000))
     draw_states(open_stream(np.uint64(6), 0), start_sampler(scene, hop, distance), drawn)
     assert np.max(np.abs(drawn[k] - drawn[k + 2])) <= distance
     both = [

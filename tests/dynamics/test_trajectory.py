@@ -108,16 +108,16 @@ def test_an_image_of_disc_2_moves_as_disc_2_does(scene):
 )
 def test_rows_do_not_depend_on_how_many_are_made_at_a_time(scene, monkeypatch):
     whole = paths.follow_trajectory(scene, 5, None, 200.0)
-    monkeypatch.setattr(rows, "NUMBERS", 1)
+    monkeypatch.setattr(rows, "CHUNK_NUMBERS", 1)
     for one, other in zip(whole, paths.follow_trajectory(scene, 5, None, 200.0), strict=True):
         assert one.tobytes() == other.tobytes()
-    assert whole.times.size > 4 * (64 + rows.PADDING)
+    assert whole.times.size > 4 * (64 + rows.CHUNK_PADDING)
 
 
 @pytest.mark.parametrize("fall", [{"v1": 1e-9}, {"y1": -0.3 + 2**-54}], ids=repr)
 def test_rows_of_a_start_that_is_given_are_counted(fall, monkeypatch):
     """A disc that hardly bounces has more of them than are due, and fills no memory."""
-    monkeypatch.setattr(paths, "MOST_EVENTS", 1e5)
+    monkeypatch.setattr(paths, "MOST_PATH_EVENTS", 1e5)
     names = components(scene := Scene(1.5, 1.0, 0.2, field=0.5))
     start = dict(zip(names, (-0.4, -0.3, 0.4, 0.1, 0.0, 0.0, 0.6**0.5, 0.0), strict=True)) | fall
     with pytest.raises(InputError, match="where 1e5 events have happened and fill") as caught:

@@ -13,7 +13,7 @@ from twodiscs.dynamics import paths, runs
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.two import strip, two_rates
-from twodiscs.model.checks import LONGEST, SHORTEST, InputError
+from twodiscs.model.checks import LONGEST_LENGTH, SHORTEST_LENGTH, InputError
 from twodiscs.model.scene import Box
 from twodiscs.model.two_geometry import LEAST_DISTANCE
 from twodiscs.sampling.initial_states import require_initial_states
@@ -25,7 +25,7 @@ def decades(low, high):
     return st.floats(math.log10(low), math.log10(high)).map(lambda power: 10**power)
 
 
-LENGTHS = decades(SHORTEST**0.5, LONGEST**0.5) | decades(1e-3, 1e3)
+LENGTHS = decades(SHORTEST_LENGTH**0.5, LONGEST_LENGTH**0.5) | decades(1e-3, 1e3)
 SHARES = decades(1e-12, 0.999) | st.floats(0.9, 0.999999)
 EFFECTS = (
     st.sampled_from([{}, *({"periodic": axes} for axes in ("x", "y", "xy"))])
@@ -125,4 +125,4 @@ def test_a_strip_is_no_longer_than_its_events_allow():
         depth=0.3495539972883679, mass_ratio=109.0, radius_ratio=2.417163684327618,
     ).scene(0.041694469802592275)  # fmt: skip
     found = strip.choose_strip(scene, "vertical_hop")
-    assert 2 * found.time * exact.event_rate(scene) <= strip.EVENTS_OF_PATH
+    assert 2 * found.time * exact.event_rate(scene) <= strip.EVENTS_PER_PATH

@@ -18,7 +18,7 @@ from twodiscs.figures import style
 from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.figures.style import LOOKS
 from twodiscs.measure.transmission import box_time
-from twodiscs.model.events import HOPS, SHELLS
+from twodiscs.model.events import HOPS, SHELL_EVENTS
 from twodiscs.theory import exact
 from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES, read_table
 from twodiscs_paper.draw import DRAW
@@ -216,7 +216,7 @@ def unit(row):
 
 
 def threshold_cases():
-    for event in SHELLS:
+    for event in SHELL_EVENTS:
         law, look = leading_law(PAPER, event), LOOKS[event]
         rows = near(PAPER, law, select(table("mean_times"), event=event)) if law else []
         places = [1 - row["radius"] / law.limit for row in rows]
@@ -437,7 +437,7 @@ def test_tails_are_those_of_the_table_with_their_laws():
 def test_curves_of_thresholds_are_exact_and_crosses_are_first_passages():
     hops, ratios = drawn("thresholds").values()
     for event, (colour, _) in LOOKS.items():
-        law = leading_law(PAPER, event) if event in SHELLS else None
+        law = leading_law(PAPER, event) if event in SHELL_EVENTS else None
         if law is None:
             continue
         for axes in (hops, ratios)[event not in HOPS :]:

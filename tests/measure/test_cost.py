@@ -13,12 +13,12 @@ import twodiscs as td
 from twodiscs.analysis.tables import shortfall
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.runs import DAY, DynamicsRun
+from twodiscs.dynamics.runs import DAY_OF_EVENTS, DynamicsRun
 from twodiscs.measure import cost
 from twodiscs.model.formats import format_seconds
 from twodiscs.model.seeds import job_seed
 from twodiscs.sampling.many import insertions
-from twodiscs.sampling.rounds import MARGIN
+from twodiscs.sampling.rounds import ROUND_MARGIN
 from twodiscs.theory import exact
 from twodiscs_paper.pipeline.forecast import forecast_dynamics
 
@@ -115,7 +115,7 @@ def test_ten_times_the_accuracy_takes_a_hundred_times_as_long(blocks):
         p.c for p in found.prices if p.method == "dynamics" and "horizontal" not in p.quantity
     ]
     strips = found["horizontal_hop_time", "strips"].c
-    assert found.seconds(1e-5) == pytest.approx(MARGIN * 1e10 * (max(shared) + strips))
+    assert found.seconds(1e-5) == pytest.approx(ROUND_MARGIN * 1e10 * (max(shared) + strips))
 
 
 def test_without_a_budget_a_run_has_a_day():
@@ -123,8 +123,8 @@ def test_without_a_budget_a_run_has_a_day():
     assert all(one.budget > 100 * one.planned * one.block_events for one in easy.values())
     hard = new_run(NEAR, 1e-9)
     work = sum(component.budget * component.cost_ratio for component in hard.components.values())
-    assert work == pytest.approx(DAY)
-    assert hard.most_events == DAY
+    assert work == pytest.approx(DAY_OF_EVENTS)
+    assert hard.most_events == DAY_OF_EVENTS
     # All components have the same fraction of their events.
     far = new_run(NEAR, 1e-9, 10**18).components
     shares = [component.budget / far[name].budget for name, component in hard.components.items()]
@@ -207,12 +207,12 @@ def test_prices_of_insertions_are_those_of_samples(blocks):
 
 def test_a_run_has_its_first_round_whatever_is_asked_and_the_replicas_of_bursts():
     pilot = cost.Pilot(1e-3, 1e5, 1024, {"disc_collision": 0.1}, 32)
-    for error, blocks in ((1.0, 32), (0.1, 32), (0.02, 32), (0.001, MARGIN * 1e4)):
+    for error, blocks in ((1.0, 32), (0.1, 32), (0.02, 32), (0.001, ROUND_MARGIN * 1e4)):
         found = cost.blocks_wanted(SCENE, {"all": pilot}, {"disc_collision": error})
         assert found == {"all": pytest.approx(blocks)}
     both = pilot._replace(errors={"disc_collision": 0.1, "top_wall": 0.01})
     found = cost.blocks_wanted(SCENE, {"all": both}, {"disc_collision": 0.1, "top_wall": 1e-4})
-    assert found == {"all": pytest.approx(MARGIN * 1e4)}
+    assert found == {"all": pytest.approx(ROUND_MARGIN * 1e4)}
     rough = td.Scene(1.5, 1.0, 0.24999, moment_of_inertia=0.1)
     needed = exact.replicas_needed(rough, "disc_collision", 0.02) / 1024
     assert needed > 8

@@ -32,10 +32,10 @@ def test_clusters_are_weighed_by_their_sizes():
 
 
 def test_errors_of_a_correlation_between_walls_are_binomial():
-    sums = np.zeros((2, hop_clusters.SUMS, 1), np.int64)
+    sums = np.zeros((2, hop_clusters.N_HOP_SUMS, 1), np.int64)
     sums[:, 0, 0], sums[:, 1, 0] = -10, 10  # 20 of the replicas have changed sides
     (found,) = coefficients_at_times(sums)
-    n = 2 * hop_clusters.HOPS_OF_BLOCK
+    n = 2 * hop_clusters.HOPS_PER_BLOCK
     assert found.value == 1 - 2 * 20 / n
     assert found.stderr == pytest.approx(math.sqrt((1 - found.value**2) / n), rel=1e-14)
 
@@ -119,9 +119,9 @@ def test_a_pause_is_long_against_diffusion():
 
 def test_calls_add_up_to_separate_blocks(monkeypatch):
     """One call a block gives what one call gives for all of them."""
-    monkeypatch.setattr(rounds, "CALL", 1.0)
+    monkeypatch.setattr(rounds, "EVENTS_PER_CALL", 1.0)
     given, blocks = (td.Scene(1.5, 1.0, 0.246), "horizontal_hop"), 16
-    hops = blocks * hop_clusters.HOPS_OF_BLOCK
+    hops = blocks * hop_clusters.HOPS_PER_BLOCK
     found = td.transmission(*given, hops, seed=1, name="a")
     seeds = [transmission.hop_seed(*given, "a", 1, part) for part in ("clusters", "times")]
     sizes, _ = hop_clusters.cluster_sizes(*given, found.gap, blocks, seeds[0])

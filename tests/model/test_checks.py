@@ -19,7 +19,7 @@ from twodiscs.model.checks import (
     check_length,
     check_number,
 )
-from twodiscs.model.effects import ABSENT, EFFECTS
+from twodiscs.model.effects import ABSENT_VALUES, EFFECTS
 from twodiscs.model.scene import Box, Scene
 from twodiscs.model.seeds import stream_seed
 
@@ -58,8 +58,8 @@ def test_odd_values_are_named_in_a_short_sentence(value):
         lambda: box.scene(value),
         lambda: Box(value, 1.0),
         lambda: Box(1.5, value),
-        *(lambda name=name: Box(1.5, 1.0, **{name: value}) for name in ABSENT),
-        *(lambda name=name: Scene(1.5, 1.0, 0.2, **{name: value}) for name in ABSENT),
+        *(lambda name=name: Box(1.5, 1.0, **{name: value}) for name in ABSENT_VALUES),
+        *(lambda name=name: Scene(1.5, 1.0, 0.2, **{name: value}) for name in ABSENT_VALUES),
         lambda: box.scene(0.2).is_possible(value),
         lambda: check_fraction("x", value),
         lambda: check_choice("x", value, ["a"]),

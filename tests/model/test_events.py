@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from twodiscs.model.events import DECLARED, Event, by_kind
+from twodiscs.model.events import DECLARED_EVENTS, Event, by_kind
 from twodiscs.model.scene import Scene
 
 #: The names in published tables, in the order of their columns.
@@ -25,10 +25,10 @@ KINDS = ("hop", "collision", "wall", "walls")
 
 def test_what_was_published_stays_and_keeps_its_order():
     names = [event.name for event in PUBLISHED]
-    assert [event for event in DECLARED.values() if event.name in names] == [*PUBLISHED]
+    assert [event for event in DECLARED_EVENTS.values() if event.name in names] == [*PUBLISHED]
 
 
-@pytest.mark.parametrize("event", DECLARED.values(), ids=DECLARED)
+@pytest.mark.parametrize("event", DECLARED_EVENTS.values(), ids=DECLARED_EVENTS)
 def test_an_event_has_its_place_where_its_axis_has_walls(event):
     for periodic in ("", "x", "y", "xy"):
         walls = {"x", "y"} - set(periodic)
@@ -39,7 +39,7 @@ def test_an_event_has_its_place_where_its_axis_has_walls(event):
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_forgotten_kind_is_an_error_with_a_sentence(kind):
     makers = dict.fromkeys([name for name in KINDS if name != kind], lambda event: None)
-    first = next(event.name for event in DECLARED.values() if event.kind == kind)
+    first = next(event.name for event in DECLARED_EVENTS.values() if event.kind == kind)
     sentence = f"here.py knows events of kind {', '.join(makers)}, not {kind} as {first} is"
     with pytest.raises(TypeError, match=f"^{re.escape(sentence)}$"):
         by_kind("here.py", makers)

@@ -22,7 +22,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from twodiscs.model.checks import InputError
-from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, WALLS
+from twodiscs.model.events import DECLARED_EVENTS, EVENT_AXES, EVENTS, HOPS, WALLS
 from twodiscs.model.scene import REGIMES, Box, Scene
 from twodiscs.model.two_geometry import ENERGY
 
@@ -147,7 +147,7 @@ def test_components_hops_and_confined_discs(scene):
     """
     assert components(scene) == scene.ergodic_components
     for hop, confined in zip(("horizontal_hop", "vertical_hop"), scene.confined, strict=True):
-        axis, other = AXIS[hop], "xy".replace(AXIS[hop], "")
+        axis, other = EVENT_AXES[hop], "xy".replace(EVENT_AXES[hop], "")
         if axis in scene.periodic:
             assert (confined, scene.is_possible(hop)) == (False, False)
             continue
@@ -170,8 +170,8 @@ def test_walls_that_are_reached(scene):
         f"{axis}{disc + 1}": grid(scene, axis, disc, 40) for axis, disc in product("xy", (0, 1))
     }
     for event in WALLS:
-        axis = AXIS[event]
-        last = centres[axis + "1"][[-1 if DECLARED[event].side > 0 else 0]]
+        axis = EVENT_AXES[event]
+        last = centres[axis + "1"][[-1 if DECLARED_EVENTS[event].side > 0 else 0]]
         held = centres | {axis + "1": last}
         mesh = np.meshgrid(*held.values(), indexing="ij", sparse=True)
         found = np.any(allowed(scene, **dict(zip(held, mesh, strict=True))))
@@ -231,7 +231,7 @@ def test_walls_of_one_rate_that_a_trajectory_reaches_are_counted_together(effect
     scene = Scene(1.5, 1.0, **{"radius": 0.2} | effects)
     by_axis = {"x": right, "y": top}
     for event in EVENTS:
-        assert scene.multiplicity(event) == (by_axis[AXIS[event]] if event in WALLS else 1)
+        assert scene.multiplicity(event) == (by_axis[EVENT_AXES[event]] if event in WALLS else 1)
 
 
 def test_energy_to_pass_one_above_the_other_is_that_of_the_cheaper_order():

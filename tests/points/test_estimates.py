@@ -199,11 +199,11 @@ def test_shares_of_directions_and_speeds_are_those_of_the_beta_law(components):
         assert estimates.fraction_below(cosine, components) == pytest.approx(expected, rel=1e-13)
     shares = estimates.fractions_of_speeds(components)
     assert math.fsum(shares) == pytest.approx(1, rel=1e-15)
-    assert shares[-1] >= estimates.LEAST_FRACTION
-    parts = [part / estimates.PARTS for part in range(1, len(shares) + 1)]
+    assert shares[-1] >= estimates.LEAST_STRATUM
+    parts = [part / estimates.MOST_STRATA for part in range(1, len(shares) + 1)]
     below = [estimates.fraction_below(part, components) for part in parts]
     assert np.cumsum(shares)[:-1] == pytest.approx(below[:-1], rel=1e-13)
-    assert 1 - below[-1] < estimates.LEAST_FRACTION
+    assert 1 - below[-1] < estimates.LEAST_STRATUM
 
 
 SHARES = np.outer([0.1, 0.2, 0.3, 0.25, 0.15], [0.5, 0.3, 0.2])

@@ -14,7 +14,7 @@ from sampling.uniformity import FALSE_ALARM
 from scipy.special import bdtr
 from theory.antiderivatives import TURNED
 
-from twodiscs.model.events import HOPS, SHELLS, WALLS
+from twodiscs.model.events import HOPS, SHELL_EVENTS, WALLS
 from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
@@ -70,8 +70,8 @@ def test_hits_have_their_exact_probability(scene, thick):
     """
     thin_and_thick, blocks, shells = (0.05, 0.8), 2, scene.events
     if scene.is_plain:
-        thin_and_thick, blocks, shells = (0.02, 0.3), 8, SHELLS
-    number = blocks * montecarlo.BLOCK
+        thin_and_thick, blocks, shells = (0.02, 0.3), 8, SHELL_EVENTS
+    number = blocks * montecarlo.SAMPLES_PER_BLOCK
     names = ["volume", *(f"{event}_area" for event in scene.events)]
     point = sample_point(scene, names, number, thin_and_thick[thick], 21)
     samples, found = point.samples, point.quantities
@@ -89,7 +89,7 @@ def test_hits_have_their_exact_probability(scene, thick):
 
 def test_joint_hits_of_two_walls():
     """Disc 1 in the corner, where the shells of two walls overlap, and disc 2 out of its way."""
-    point = sample_point(PAPER, ["any_wall_area"], 8 * montecarlo.BLOCK, 0.3, 1)
+    point = sample_point(PAPER, ["any_wall_area"], 8 * montecarlo.SAMPLES_PER_BLOCK, 0.3, 1)
     assert point.quantities.keys() == {"right_wall_area", "top_wall_area"}
     epsilon = point.quantities["right_wall_area"].epsilon
     assert epsilon == point.quantities["top_wall_area"].epsilon
@@ -108,7 +108,7 @@ def test_joint_hits_of_two_walls():
 def test_only_what_is_asked_for_is_sampled():
     point = sample_point(PAPER, ["volume"], 1, 0.02, 1)
     assert point.quantities.keys() == {"volume"}
-    assert point.samples == montecarlo.BLOCK
+    assert point.samples == montecarlo.SAMPLES_PER_BLOCK
     assert point.right_and_top is None
     # A hop has a shell at its threshold, too.
     point = sample_point(PAPER.with_radius(0.25), ["horizontal_hop_area"], 1, 0.02, 1)

@@ -174,9 +174,9 @@ def test_a_budget_has_as_many_whole_blocks_as_it_can_pay(budget):
     assert reached(rounds.run_in_rounds(run))[1] == budget // 10
 
 
-@pytest.mark.parametrize(("cores", "call"), [(1, 7000), (3, 7000), (3, rounds.CALL)])
+@pytest.mark.parametrize(("cores", "call"), [(1, 7000), (3, 7000), (3, rounds.EVENTS_PER_CALL)])
 def test_an_error_asked_for_later_has_the_sums_of_one_asked_for_at_once(monkeypatch, cores, call):
-    monkeypatch.setattr(rounds, "CALL", call)
+    monkeypatch.setattr(rounds, "EVENTS_PER_CALL", call)
     kept = {}
     for error in (0.1, 0.03, 0.01, 0.003, 0.02):
         run, _ = fabricated(error, 1e12)
@@ -247,9 +247,9 @@ def test_planned_events_follow_the_errors_asked_for_as_far_as_the_budget_goes(bu
 WHOLE = {
     "intervals": (2**16, lambda n: runs.IntervalsRun(PAPER.scene(0.1), "vertical_hop", n, 5)),
     "time": (2.0**16, lambda t: runs.TimedRun(PAPER.scene(0.2), {"any_wall": 1.0}, None, 1, t)),
-    "samples": (montecarlo.BLOCK, lambda n: sampling(PAPER.scene(0.2), n)),
-    "conditioned": (64 * montecarlo.PROPOSALS, lambda n: sampling(PAPER.scene(0.38), n)),
-    "weighted": (montecarlo.BLOCK, lambda n: sampling(SCENES["field"], n)),
+    "samples": (montecarlo.SAMPLES_PER_BLOCK, lambda n: sampling(PAPER.scene(0.2), n)),
+    "conditioned": (64 * montecarlo.PROPOSALS_PER_BLOCK, lambda n: sampling(PAPER.scene(0.38), n)),
+    "weighted": (montecarlo.SAMPLES_PER_BLOCK, lambda n: sampling(SCENES["field"], n)),
     "insertions": (
         insertions.INSERTIONS_PER_BLOCK,
         lambda n: sampling(td.Scene(1.5, 1.0, 0.1, discs=3), n),

@@ -19,7 +19,7 @@ from twodiscs.dynamics.two import strip
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling.conditioned import conditioned_sampler, draw_separation
-from twodiscs.sampling.initial_states import COMPONENTS, draw_states, start_sampler, states
+from twodiscs.sampling.initial_states import STATE_ROWS, draw_states, start_sampler, states
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.rejection import fraction_if_accepted, propose_anywhere, rejection_sampler
 from twodiscs.sampling.streams import open_stream
@@ -110,7 +110,7 @@ SURFACES = [
 @pytest.mark.parametrize(("name", "hop"), SURFACES)
 def test_starts_on_a_surface_have_the_law_of_the_flux(name, hop):
     scene = SMOOTH.get(name) or STARTS[name]
-    sampler, drawn = start_sampler(scene, surface="xy".index(hop)), np.zeros((COMPONENTS, 50_000))
+    sampler, drawn = start_sampler(scene, surface="xy".index(hop)), np.zeros((STATE_ROWS, 50_000))
     draw_states(open_stream(np.uint64(17), 0), sampler, drawn)
     found, spins = uniformity.parts(scene, drawn)
     places = {axis: both[:2] for axis, both in found.items()}
@@ -130,7 +130,7 @@ def test_starts_on_a_surface_have_the_law_of_the_flux(name, hop):
 def test_states_are_the_first_ones_of_their_stream(scene):
     """A block has the same starts in every process, for any number of them."""
     many = states(scene, 20, 3, 1)
-    assert many.shape == (COMPONENTS, 20)
+    assert many.shape == (STATE_ROWS, 20)
     assert np.array_equal(states(scene, 7, 3, 1), many[:, :7])
     for other in (states(scene, 20, 3, 2), states(scene, 20, 4, 1)):
         assert not np.any(other[:8] == many[:8])

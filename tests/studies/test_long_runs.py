@@ -12,7 +12,7 @@ import pytest
 import yaml
 from factory import empty, of
 
-from twodiscs.dynamics.two.hop_clusters import HOPS_OF_BLOCK
+from twodiscs.dynamics.two.hop_clusters import HOPS_PER_BLOCK
 from twodiscs.points.base import read_json
 from twodiscs_paper.studies.more_discs import tori
 from twodiscs_paper.studies.more_discs.study import ToriTable
@@ -42,8 +42,8 @@ def deviation(one, other):
 def rows_of_clusters(configuration, counts):
     for one in configuration["thresholds"]:
         for count in counts[one["name"]]:
-            blocks = -(-one["hops"] // HOPS_OF_BLOCK)
-            assert sum(hops for _, hops in count["sizes"]) == blocks * HOPS_OF_BLOCK
+            blocks = -(-one["hops"] // HOPS_PER_BLOCK)
+            assert sum(hops for _, hops in count["sizes"]) == blocks * HOPS_PER_BLOCK
     return long_run.long_run_rows(configuration["thresholds"], counts)
 
 
@@ -211,9 +211,9 @@ def test_reflected_discs_have_the_exponents_of_both_theories():
 
 def test_a_small_run_counts_every_hop_once():
     one = {"name": "small", "width": 1.5, "height": 1.0, "hop": "horizontal_hop", "seed": 1}
-    one |= {"first": 7, "last": 7, "hops": 2 * HOPS_OF_BLOCK - 1, "pauses": [1, 2]}
+    one |= {"first": 7, "last": 7, "hops": 2 * HOPS_PER_BLOCK - 1, "pauses": [1, 2]}
     counts = long_run.cluster_counts(one)
-    assert [sum(hops for _, hops in count["sizes"]) for count in counts] == [2 * HOPS_OF_BLOCK] * 2
+    assert [sum(hops for _, hops in count["sizes"]) for count in counts] == [2 * HOPS_PER_BLOCK] * 2
     assert counts[1]["events"] > counts[0]["events"]
     quantities = [row["quantity"] for row in long_run.cluster_rows(one, counts)]
     assert quantities == 2 * ["coefficient", "passage_time"]

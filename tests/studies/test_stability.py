@@ -373,7 +373,7 @@ def test_the_kept_errors_are_what_they_say():
 def test_table_and_figure_of_any_box(tmp_path, monkeypatch):
     """Everything is small, for the form of the table only."""
     for name in ("SHARE_PROPOSALS", "ESTIMATE_PROPOSALS"):
-        monkeypatch.setattr(stability, name, montecarlo.PROPOSALS)
+        monkeypatch.setattr(stability, name, montecarlo.PROPOSALS_PER_BLOCK)
     monkeypatch.setattr(stability, "REVERSED", 200)
     monkeypatch.setattr(stability, "WINDOW", 64)
     one = partial(stability.extreme_rows, scenes={"ordinary": stability.PAPER})

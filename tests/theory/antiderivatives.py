@@ -8,15 +8,15 @@ import math
 
 from mpmath import mp, mpf
 
-from twodiscs.model.events import AXIS, DECLARED, HOPS, WALLS, by_kind
+from twodiscs.model.events import DECLARED_EVENTS, EVENT_AXES, HOPS, WALLS, by_kind
 
 DIGITS = 150
 
 #: {event: that of the box turned by a quarter}, of the events that have one.
 TURNED = {
     one.name: other.name
-    for one in DECLARED.values()
-    for other in DECLARED.values()
+    for one in DECLARED_EVENTS.values()
+    for other in DECLARED_EVENTS.values()
     if (one.kind, one.side) == (other.kind, other.side) and (one is other) == (one.axis is None)
 }
 
@@ -104,7 +104,7 @@ def reference_times(scene):
             times[hop] /= 2
             continue
         for wall in WALLS:
-            times[wall] /= 2 if AXIS[wall] == AXIS[hop] else 1
+            times[wall] /= 2 if EVENT_AXES[wall] == EVENT_AXES[hop] else 1
     return times
 
 
@@ -115,7 +115,7 @@ def reference_shell(scene, event, epsilon):
     if event == "disc_collision":
         outer = s + mp.sqrt(2) * thick
         return (reference_volume(a, b, s) - reference_volume(a, b, outer)) / thick
-    if AXIS[event] != ("y" if event in HOPS else "x"):
+    if EVENT_AXES[event] != ("y" if event in HOPS else "x"):
         a, b = b, a
     if event in HOPS:
         # ∬ over v ≤ √2 ε of 4 (A − u)(B − v), over 2ε: the profile with the axes exchanged.

@@ -149,12 +149,12 @@ def test_bursts_in_corners_are_those_of_disc_1_with_disc_2_where_it_has_room(sid
     # Disc 2 has the mean speed 8/(15 π) · 2/√m₂ towards a surface, from each side half of it.
     rate = flux_constant(6) / 2 / 2 * np.mean(within[0] & within[1]) * math.pi / 2 * sigma / free
     # Corners at the bottom and at the top, ⟨v²⟩ = 3/6, and a quarter for one wall.
-    each = clusters.UNSEEN * clusters.corner_hits(0.5)
+    each = clusters.ADDED_VARIANCE * clusters.corner_hits(0.5)
     each *= 2 * free / exact.volume(scene) * 3 / 6 * 2 / 4
     for time, square in ((1e-3, 1e-6), (1e6, 2e6 / rate)):
         found = clusters.corner_variance(scene, "right_wall", time)
         # The ends of the arc lie between two of its points.
-        assert found == pytest.approx(each * square, rel=0.01 + 1 / clusters.POINTS)
+        assert found == pytest.approx(each * square, rel=0.01 + 1 / clusters.ARC_POINTS)
 
 
 @pytest.mark.parametrize(("inertia", "more"), [(0.1, 1), (0.5, 1), (1.0, 1.1)])
@@ -193,5 +193,5 @@ def test_the_tail_of_hits_in_corners_is_as_counted():
         for k in range(replicas)
     ])  # fmt: skip
     found = largest / replicas * (counts[-largest] - counts.mean()) ** 2
-    due = clusters.corner_variance(ROUGH, "any_wall", 16.0) / clusters.UNSEEN
+    due = clusters.corner_variance(ROUGH, "any_wall", 16.0) / clusters.ADDED_VARIANCE
     assert 0.5 / 1.2 < found / due < 1.5 * 1.2

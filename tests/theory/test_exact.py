@@ -6,7 +6,7 @@ changed.
 
 import pytest
 
-from twodiscs.model.events import AXIS, WALLS
+from twodiscs.model.events import EVENT_AXES, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.theory import exact
 
@@ -27,7 +27,7 @@ PAPER = (1.5, 1.0)
     ids=repr,
 )
 def test_rates_average_over_all_components_and_times_over_those_that_meet(scene, right, top):
-    share = {wall: {"x": right, "y": top}[AXIS[wall]] for wall in WALLS}
+    share = {wall: {"x": right, "y": top}[EVENT_AXES[wall]] for wall in WALLS}
     for event, time in exact.mean_times(scene).items():
         if time is not None:
             assert time * exact.rate(scene, event) == pytest.approx(share.get(event, 1), rel=1e-15)

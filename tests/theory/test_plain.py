@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from mpmath import mp, mpf
 from theory.antiderivatives import reference, reference_shell, reference_times, relative_error
 
-from twodiscs.model.events import EVENTS, HOPS, SHELLS
+from twodiscs.model.events import EVENTS, HOPS, SHELL_EVENTS
 from twodiscs.model.scene import Box, Scene
 from twodiscs.theory import exact
 
@@ -90,7 +90,7 @@ def test_every_number_is_right_to_1e_13(scene):
 def test_shells_and_shares_near_hops_are_right_to_1e_13(scene, exponent, by_room):
     room = abs(scene.largest_radius - scene.radius)
     epsilon = (min(scene.radius, room) if by_room and room > 0 else scene.radius) * 10**exponent
-    for event in SHELLS:
+    for event in SHELL_EVENTS:
         found = exact.shell_expectation(scene, event, epsilon)
         assert relative_error(found, reference_shell(scene, event, epsilon)) < BOUND, event
     volume, half = reference(scene)["volume"], mpf(epsilon) / mp.sqrt(2)

@@ -22,7 +22,7 @@ from marks import slow
 from mpmath import mp, mpf
 from theory.antiderivatives import TURNED, relative_error
 
-from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, SHELLS, WALLS
+from twodiscs.model.events import DECLARED_EVENTS, EVENT_AXES, EVENTS, HOPS, SHELL_EVENTS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.theory import exact, flux, weighted
 from twodiscs_paper.studies.passages.near import passing_rate
@@ -154,10 +154,10 @@ def reference(scene):
         found["any_wall"] += area
         at = (axis, 1 if high else -1)
         for wall in WALLS if disc == 0 else ():
-            if (DECLARED[wall].axis, DECLARED[wall].side) == at:
+            if (DECLARED_EVENTS[wall].axis, DECLARED_EVENTS[wall].side) == at:
                 found[wall] = area
     for hop in set(HOPS) & set(scene.events):
-        level, other = axes(power, AXIS[hop] + {"x": "y", "y": "x"}[AXIS[hop]])
+        level, other = axes(power, EVENT_AXES[hop] + {"x": "y", "y": "x"}[EVENT_AXES[hop]])
         found[hop] = relative * level.density(mpf(0)) * beyond([other], square)
     found["disc_collision"] = relative * ring_separation(axes(power), square)
     return found
@@ -236,7 +236,7 @@ def test_plain_scenes(box):
         scene = Scene(*box, radius)
         expected = {"volume": exact.volume(scene)} | exact.areas(scene)
         assert_close(numbers(scene), expected, 1e-14)
-        for event in SHELLS:
+        for event in SHELL_EVENTS:
             for epsilon in (radius * 1e-5, radius / 2):
                 found = weighted.shell_expectation(scene, event, epsilon)
                 expected = exact.shell_expectation(scene, event, epsilon)
@@ -284,7 +284,7 @@ def test_balls():
         "horizontal_hop": hop(a, b, c),
         "disc_collision": -mp.sqrt(2) * sides[3],
         "any_wall": 2 * sum(sides[:3]),
-        **{wall: sides["xy".index(AXIS[wall])] / 2 for wall in WALLS},
+        **{wall: sides["xy".index(EVENT_AXES[wall])] / 2 for wall in WALLS},
     }  # fmt: skip
     assert_close(numbers(scene), expected)
 
@@ -330,7 +330,7 @@ def test_no_number_depends_on_which_disc_and_which_axis_is_the_first(scene, shar
     """Disc 2 as the first, in units of its mass, then x and y exchanged."""
     other, speed = exchanged(scene)
     shell = share * min(scene.radii)
-    shells = [e for e in scene.events if e in SHELLS or not scene.is_plain]
+    shells = [e for e in scene.events if e in SHELL_EVENTS or not scene.is_plain]
 
     def agree(found, expected, size=0.0):
         assert found == pytest.approx(expected, rel=1e-9, abs=1e-11 * size)

@@ -32,25 +32,25 @@ from itertools import groupby
 
 from twodiscs.analysis import scores
 from twodiscs.model.events import WAYS
-from twodiscs.points.estimates import MIN_EVENTS, Estimate
+from twodiscs.points.estimates import LEAST_EVENTS, Estimate
 from twodiscs.points.monte_carlo_point import wall_weights
 from twodiscs.theory import virial
 from twodiscs.theory.exact import replicas_needed
 from twodiscs.theory.flux import flux_constant
 
-SUM_RULE = ("disc_collision", "right_wall", "top_wall")
+SUM_RULE_EVENTS = ("disc_collision", "right_wall", "top_wall")
 
 #: Columns that are copied from the values of a comparison.
-TAKEN = ("radius", "exact", "estimate", "stderr", "z", "status", "test")
+COPIED_COLUMNS = ("radius", "exact", "estimate", "stderr", "z", "status", "test")
 
 
 def _comparison(name, quantity, method, values, derived=False):
-    """Return a row of check.csv, without a verdict; ``values`` has the columns ``TAKEN``.
+    """Return a row of check.csv, without a verdict; ``values`` has the columns ``COPIED_COLUMNS``.
 
     It is ``derived`` if it follows from other rows.
     """
     z = values["z"]
-    return {taken: values[taken] for taken in TAKEN} | {
+    return {taken: values[taken] for taken in COPIED_COLUMNS} | {
         "comparison": name,
         "quantity": quantity,
         "method": method,
@@ -68,8 +68,8 @@ def _normal_values(radius, exact, estimate, stderr, z):
 
 
 def _values(*values):
-    """Return the ``values`` of a comparison by the names ``TAKEN``."""
-    return dict(zip(TAKEN, values, strict=True))
+    """Return the ``values`` of a comparison by the names ``COPIED_COLUMNS``."""
+    return dict(zip(COPIED_COLUMNS, values, strict=True))
 
 
 def sum_rule(point):
@@ -80,7 +80,8 @@ def sum_rule(point):
     """
     scene = point.scene
     rates = {
-        e: scene.accessible_fraction(e) / scene.multiplicity(e) / point.duration for e in SUM_RULE
+        e: scene.accessible_fraction(e) / scene.multiplicity(e) / point.duration
+        for e in SUM_RULE_EVENTS
     }
     return point.combination({e: w * rates[e] for e, w in virial.weights(scene).items()})
 
@@ -89,11 +90,11 @@ def _sum_rule(point):
     """Return the comparison of the sum rule for one dynamics point."""
     rule, scene, replicas = sum_rule(point), point.scene, point.replicas
     stderr = z = None
-    enough = min(point.counts[event] for event in SUM_RULE) >= scores.NORMAL
-    enough = enough and replicas >= MIN_EVENTS and rule.stderr
+    enough = min(point.counts[event] for event in SUM_RULE_EVENTS) >= scores.NORMAL_EVENTS
+    enough = enough and replicas >= LEAST_EVENTS and rule.stderr
     if enough:
         # A run of rough discs may have missed the initial states with very many events.
-        enough = all(replicas >= replicas_needed(scene, e, rule.stderr) for e in SUM_RULE)
+        enough = all(replicas >= replicas_needed(scene, e, rule.stderr) for e in SUM_RULE_EVENTS)
     if enough:
         stderr = rule.stderr
         z = scores.student_deviate((rule.value - 1) / stderr, replicas - 1)
@@ -129,7 +130,7 @@ def _flux(row, point, derived):
         ratio = row["estimate"] / sampled.value
         relative = row["relative_stderr"], sampled.relative_stderr
         stderr = ratio * math.hypot(*relative)
-        if max(relative) ** 2 * scores.NORMAL <= 1:
+        if max(relative) ** 2 * scores.NORMAL_EVENTS <= 1:
             z = (ratio - 1) / stderr
     values = _normal_values(point.radius, 1.0, ratio, stderr, z)
     return _comparison("flux", f"{row['event']}_time", "dynamics", values, derived)
@@ -166,7 +167,7 @@ def comparisons(volume, areas, times, histogram, points):
             values["status"] = "counted"
         rows.append(_comparison("hop_interval", f"{event}_interval", "intervals", values))
     for point in dynamics:
-        if set(SUM_RULE) <= set(point.counts) and virial.weights(point.scene):
+        if set(SUM_RULE_EVENTS) <= set(point.counts) and virial.weights(point.scene):
             rows.append(_sum_rule(point))
     return sorted(rows, key=lambda row: row["radius"])
 

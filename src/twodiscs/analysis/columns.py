@@ -49,13 +49,13 @@ TEST = TEXT(
 ERGODIC_COMPONENTS = COUNT("disjoint parts of configuration space")
 
 #: The types of pandas that have an empty cell.
-PANDAS = {float: "float64", int: "Int64", bool: "boolean", str: "string"}
+PANDAS_TYPES = {float: "float64", int: "Int64", bool: "boolean", str: "string"}
 
 #: The truth values of a file.
 TRUTHS = {"true": True, "false": False}
 
 #: The values that a cell of each type takes.
-TAKEN = {float: Real, int: Integral, bool: bool, str: str}
+CELL_TYPES = {float: Real, int: Integral, bool: bool, str: str}
 
 
 class Table:
@@ -116,7 +116,7 @@ class Table:
         for name, (column, values) in columns.items():
             # N! parts of configuration space may be more than 64 bits hold.
             wide = column.type is int and any(n and n.bit_length() > 63 for n in values)
-            found[name] = pd.Series(values, dtype=object if wide else PANDAS[column.type])
+            found[name] = pd.Series(values, dtype=object if wide else PANDAS_TYPES[column.type])
         return pd.DataFrame(found)
 
     @classmethod
@@ -160,7 +160,7 @@ def _cell(name, column, value):
     if value is None:
         return None
     wrong = isinstance(value, bool) and column.type is not bool
-    if wrong or not isinstance(value, TAKEN[column.type]) or value != value or value == "":
+    if wrong or not isinstance(value, CELL_TYPES[column.type]) or value != value or value == "":
         raise ValueError(f"{name} must be a {column.type.__name__} or None, not {value!r}")
     return str(value).lower() if column.type is bool else column.type(value)
 

@@ -9,11 +9,11 @@ import math
 
 import scipy  # which imports ``special`` when it is used, because that takes long
 
-from twodiscs.points.estimates import CLUSTER, is_enough
+from twodiscs.points.estimates import CLUSTER_ALLOWANCE, is_enough
 
 #: Fewer expected (or effective) events than this are not tested with a normal law. Rare counts have
 #: skewness 1/√n: at five errors, n = 1000 doubles one tail and n = 100 multiplies it by eight.
-NORMAL = 1000
+NORMAL_EVENTS = 1000
 
 #: Probability that a check of one scene fails although everything is right.
 FALSE_ALARM = 1e-3
@@ -69,7 +69,7 @@ def binomial_z(hits, samples, probability):
     if p in (0.0, 1.0):
         return _signed(0.0 if hits == p * samples else math.inf, 0.5 - p), "certain"
     misses, expected, expected_misses = samples - hits, samples * p, samples * (1 - p)
-    if min(expected, expected_misses) >= NORMAL:
+    if min(expected, expected_misses) >= NORMAL_EVENTS:
         return (hits - expected) / math.sqrt(expected * (1 - p)), "normal"
     low = scipy.special.betainc(misses, hits + 1, 1 - p) if misses else 1.0
     high = scipy.special.betainc(hits, misses + 1, p) if hits else 1.0
@@ -133,11 +133,11 @@ def mean_time_z(total, squares, replicas, duration, exact, mean=None):
     if exact is None:
         return None, None
     expected = duration / exact
-    if is_enough(NORMAL, total, squares, replicas, expected):
+    if is_enough(NORMAL_EVENTS, total, squares, replicas, expected):
         error = math.sqrt((replicas * squares - total**2) / (replicas - 1)) / replicas
         count, error = mean or (total / replicas, error)
         return student_deviate((expected - count) / error, replicas - 1), "normal"
-    cluster = max(CLUSTER, squares / total) if total else CLUSTER
+    cluster = max(CLUSTER_ALLOWANCE, squares / total) if total else CLUSTER_ALLOWANCE
     exponent = _entropy(total / cluster, expected * replicas / cluster)
     size = _deviate(math.log(2) - exponent)
     return _signed(size, expected * replicas - total), "cluster-bound"

@@ -23,11 +23,11 @@ from twodiscs.analysis.columns import (
 )
 from twodiscs.model.events import EVENTS
 from twodiscs.model.formats import format_number, format_seconds, round_up
-from twodiscs.points.estimates import MIN_EVENTS, has_error_bar
+from twodiscs.points.estimates import LEAST_EVENTS, has_error_bar
 from twodiscs.theory import exact as theory
 
 #: A run that reaches an error below this one has the 100 effective events of an error bar.
-COARSE = 0.1
+COARSE_ERROR = 0.1
 
 
 def select_stage(points, stage):
@@ -211,7 +211,7 @@ def _sampled_score(point, quantity, sampled, expectation):
     if expectation == 0:
         z, test = scores.impossible_z(0 if estimate is None else 1)
         return abs(z), test
-    if estimate is None or sampled.enough < scores.NORMAL:
+    if estimate is None or sampled.enough < scores.NORMAL_EVENTS:
         return None, None
     t = (estimate.value - expectation) / estimate.stderr
     return scores.student_deviate(t, estimate.n - 1), "normal"
@@ -227,7 +227,7 @@ def _sampled_row(point, quantity, sampled, exact, expectation, score=None):
     elif estimate is None:
         status = "none-seen"
     else:
-        status = "too-few" if sampled.enough < MIN_EVENTS else "sampled"
+        status = "too-few" if sampled.enough < LEAST_EVENTS else "sampled"
     return {
         "radius": point.radius,
         "quantity": quantity,
@@ -380,7 +380,7 @@ def shortfall(rows, budget, events=None, seconds=None, ends="ended", what="event
         if row["target"]
         and (
             row["status"] == "budget"
-            or (row["status"] in ("too-few", "none-seen") and row["target"] < COARSE)
+            or (row["status"] in ("too-few", "none-seen") and row["target"] < COARSE_ERROR)
         )
     ]
     if not missed:
@@ -390,11 +390,11 @@ def shortfall(rows, budget, events=None, seconds=None, ends="ended", what="event
     more = ((worst["relative_stderr"] or math.inf) / worst["target"]) ** 2
     text = f"{format_number(worst['target'], 'g')} asked for; the {limit} {ends} it "
     if not math.isfinite(more):
-        replicas = worst.get("replicas", MIN_EVENTS)
-        if events and replicas < MIN_EVENTS:
+        replicas = worst.get("replicas", LEAST_EVENTS)
+        if events and replicas < LEAST_EVENTS:
             # Half more, because replicas come in whole blocks.
-            enough = 1.5 * MIN_EVENTS / replicas * events
-            text += f"after {replicas} of the {MIN_EVENTS} replicas that an error needs"
+            enough = 1.5 * LEAST_EVENTS / replicas * events
+            text += f"after {replicas} of the {LEAST_EVENTS} replicas that an error needs"
             return f"{text}; a budget of {round_up(enough)} is enough"
         seen = f"events {worst['event']}" if "event" in worst else f"hits for {worst['quantity']}"
         return f"{text}before there are enough {seen} for an error"
@@ -459,7 +459,7 @@ def _mean_interval(point):
     """Return the columns about the mean of a point; its exact mean may be None."""
 
     z, mean, exact = None, point.estimate("mean"), theory.mean_times(point.scene)[point.event]
-    stderr = mean.stderr or None if mean.n >= MIN_EVENTS else None
+    stderr = mean.stderr or None if mean.n >= LEAST_EVENTS else None
     if stderr and exact is not None:
         z = scores.student_deviate((mean.value - exact) / stderr, mean.n - 1)
     known = {"intervals": point.intervals, "exact_mean": exact}

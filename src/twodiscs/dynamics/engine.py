@@ -52,7 +52,7 @@ class Engine(NamedTuple):
     cluster_sizes: Callable  # (hop, gap, blocks, seed, first): (sizes, events)
 
 
-TWO_DISCS = Engine(
+TWO_DISC_ENGINE = Engine(
     expected_event_rate=exact.event_rate,
     expected_rate=two_rates.expected_rate,
     replica_duration=lambda scene, budget=None: two_rates.replica_duration(scene),
@@ -121,4 +121,4 @@ def _many_discs():
 
 def find_engine(scene):
     """Return the ``Engine`` of a ``Scene``. Kernels of many discs are imported if needed."""
-    return TWO_DISCS if scene.discs == 2 else _many_discs()
+    return TWO_DISC_ENGINE if scene.discs == 2 else _many_discs()

@@ -37,10 +37,10 @@ REPLICAS = 1024
 RETURNS = 256
 
 #: Hops with one random stream, of which each is followed.
-HOPS_OF_BLOCK = 64
+HOPS_PER_BLOCK = 64
 
 #: The bit that makes the seed of kicks of the seed of a job.
-SEED = np.uint64(1 << 63)
+KICK_SEED_BIT = np.uint64(1 << 63)
 
 
 def nearest_power_of_two(value):
@@ -81,7 +81,7 @@ def idle_kicks(lanes, rate, direction, velocity, sampler=None):
 @optional(lambda i, seed, replica, kicks: None)
 def open_kicks(i, seed, replica, kicks):
     """Begin the kicks of a ``replica`` of the streams of ``seed`` (uint64) in lane ``i``."""
-    stream = open_stream(seed ^ SEED, replica)
+    stream = open_stream(seed ^ KICK_SEED_BIT, replica)
     for k in range(stream.size):
         kicks.streams[i, k] = stream[k]
     kicks.waits[i] = exponential(kicks.streams[i]) / kicks.rate

@@ -25,7 +25,7 @@ from twodiscs.sampling.rejection import RejectionSampler, draw_velocities, rejec
 #: other side, or a kick ends the flight.
 END_OF_TIME, WALL_X1, WALL_Y1, WALL_X2, WALL_Y2, DISC = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0
 WALL_Z1, WALL_Z2 = 6.0, 7.0
-WRAP_X, WRAP_Y, WRAP_Z, KICK = -1.0, -2.0, -3.0, -4.0
+WRAP_X, WRAP_Y, WRAP_Z, KICK_DUE = -1.0, -2.0, -3.0, -4.0
 
 #: Normal speeds of approach below this (four roundings of the speed scale, 1) are rest. A collision
 #: at such a speed would be lost in the rounding of the velocities, and happen again and again.
@@ -33,10 +33,10 @@ RESTING_SPEED = 4 * 2.0**-52
 
 #: The centres of discs smaller than the spacing of coordinates may coincide, or almost. Below this
 #: square of their distance there is no line of centres, and their velocities do not change.
-VANISHING = 1e-280
+VANISHING_SQUARE = 1e-280
 
 #: The gap of discs that separate.
-NEVER = math.inf
+INFINITE_GAP = math.inf
 
 
 class KickSampler(NamedTuple):
@@ -244,7 +244,7 @@ def rough_collision(state, before, dx, dy, code, weights, rough):
     s1, s2 = before[8], before[9]
     turn, spin = rough
     square = dx * dx + dy * dy
-    meets = (code == DISC) & (square > VANISHING)
+    meets = (code == DISC) & (square > VANISHING_SQUARE)
     distance = math.sqrt(square)
     slip = (dx * (before[5] - before[7]) - dy * (before[4] - before[6])) / distance - (s1 + s2)
     slip = slip if meets else 0.0
@@ -421,7 +421,7 @@ def meeting(state, law):
     gap, speed, approach = contact_quotient(
         x1 - x2, y1 - y2, difference(z1, z2), u1 - u2, v1 - v2, difference(w1, w2), law.sigma
     )
-    return gap if approach else NEVER, speed
+    return gap if approach else INFINITE_GAP, speed
 
 
 @inlined
@@ -490,7 +490,7 @@ def after_event(state, time, code, law):
     dx, dy, dz = x1 - x2, y1 - y2, difference(moved(z1, time, w1), moved(z2, time, w2))
     square = dot(dx, dy, dz, dx, dy, dz)
     exchange = dot(dx, dy, dz, du, dv, dw) / square
-    exchange = exchange if (code == DISC) & (square > VANISHING) else 0.0
+    exchange = exchange if (code == DISC) & (square > VANISHING_SQUARE) else 0.0
     kick_x, kick_y, kick_z = exchange * dx, exchange * dy, product(exchange, dz)
     before = (x1, y1, x2, y2, u1, v1, u2, v2)
 

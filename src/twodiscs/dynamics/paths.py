@@ -11,12 +11,18 @@ from twodiscs.dynamics.rows import Rows
 from twodiscs.model.checks import InputError, check_length
 from twodiscs.model.formats import format_number
 from twodiscs.model.two_geometry import ENERGY
-from twodiscs.sampling.initial_states import MOST_NUMBERS, ROUNDING, components, given_state, states
+from twodiscs.sampling.initial_states import (
+    MOST_NUMBERS,
+    ROUNDING_OF_STATES,
+    components,
+    given_state,
+    states,
+)
 from twodiscs.sampling.threads import map_in_threads
 
 #: The most events of a trajectory, because all its rows are kept. Those of many discs have at most
 #: ``MOST_NUMBERS``.
-MOST_EVENTS = 1e7
+MOST_PATH_EVENTS = 1e7
 
 
 def path_events(scene, state, duration, seed=0):
@@ -51,7 +57,7 @@ def check_start(scene, start):
             apart -= side * np.round(apart / side)
         distances = np.hypot(distances, apart)
         most = side / 2 - radii
-        for disc in np.flatnonzero(np.abs(centres) > most + ROUNDING * side):
+        for disc in np.flatnonzero(np.abs(centres) > most + ROUNDING_OF_STATES * side):
             if axis in scene.walled:
                 raise InputError(
                     f"start must have disc {disc + 1} inside the box, with {axis}{disc + 1} "
@@ -59,7 +65,7 @@ def check_start(scene, start):
                     f"{float(centres[disc])!r}"
                 )
     distance, contact = distances[np.triu_indices(scene.discs, 1)].min(), scene.contact_distance
-    if distance < contact * (1 - ROUNDING):
+    if distance < contact * (1 - ROUNDING_OF_STATES):
         raise InputError(
             f"start must have the discs apart, with {contact!r} or more between their centres, not "
             f"{float(distance)!r}"
@@ -69,7 +75,7 @@ def check_start(scene, start):
         energy += scene.moment_of_inertia * (masses @ values("s") ** 2) / 2
     if scene.field:
         energy += scene.field * (masses @ (values("y") + scene.height / 2 - radii))
-    if abs(energy - ENERGY) > ROUNDING:
+    if abs(energy - ENERGY) > ROUNDING_OF_STATES:
         zero = "; in a field the potential energy of a disc on the floor is 0"
         raise InputError(
             f"start must have a total energy of {ENERGY}, not {float(energy)!r}"
@@ -142,7 +148,7 @@ def follow_trajectory(scene, seed, start=None, duration=None, progress=None):
 
 def most_rows(scene):
     """Return the most rows of a trajectory of a ``Scene``."""
-    return min(MOST_EVENTS, MOST_NUMBERS / len(components(scene)))
+    return min(MOST_PATH_EVENTS, MOST_NUMBERS / len(components(scene)))
 
 
 def row_bytes(scene):

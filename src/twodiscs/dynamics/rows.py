@@ -12,7 +12,7 @@ START, END, KICK, VERTICAL_HOP, HORIZONTAL_HOP, COLLISION, WALL = range(7)
 #: Numbers in the states of the rows that are made at a time, which stay in the cache. The length
 #: of a column is no power of two: its rows would share a few lines of the cache, which takes seven
 #: times as long.
-NUMBERS, PADDING = 2**16, 8
+CHUNK_NUMBERS, CHUNK_PADDING = 2**16, 8
 
 
 class Rows(NamedTuple):
@@ -52,7 +52,7 @@ def event_names(discs):
 
 def new_rows(components, least=64):
     """Return ``Rows`` to fill, ``least`` or more, of states of a number of ``components``."""
-    number = max(least, NUMBERS // components) + PADDING
+    number = max(least, CHUNK_NUMBERS // components) + CHUNK_PADDING
     times, states = np.empty(number), np.empty((components, number))
     return Rows(times, np.empty(number, np.int64), np.empty((2, number), np.int64), states)
 

@@ -29,16 +29,16 @@ from twodiscs.model.scene import Scene, why_absent
 from twodiscs.model.seeds import job_seed
 from twodiscs.points.dynamics_point import DynamicsPoint, simulated_events
 from twodiscs.points.estimates import relative_variance
-from twodiscs.points.intervals_point import BINS, GRAIN, IntervalsPoint, wide_edges
+from twodiscs.points.intervals_point import N_BINS, TIME_GRAIN, IntervalsPoint, wide_edges
 from twodiscs.sampling.initial_states import require_initial_states
 from twodiscs.sampling.rounds import Ended, Run, SequentialRun, fixed, round_up_blocks
 from twodiscs.theory.exact import corner_variance, replicas_needed
 
 #: Chains of intervals that share a stream, and the usual budget of their wall and disc events.
-CHAINS, BUDGET = 256, 10**11
+CHAINS_PER_BLOCK, INTERVALS_BUDGET = 256, 10**11
 
 #: The work of a day, the most without a budget, in events of the plain ensemble: 1e8 a second.
-DAY = 86400 * 10**8
+DAY_OF_EVENTS = 86400 * 10**8
 
 # Counts -----------------------------------------------------------------------------------------
 
@@ -82,7 +82,7 @@ class DynamicsRun(Run):
     @property
     def most_events(self):
         """The budget, or without one the number of events of a day, roughly."""
-        return self.budget or DAY / find_engine(self.scene).cost_ratio(self.scene)
+        return self.budget or DAY_OF_EVENTS / find_engine(self.scene).cost_ratio(self.scene)
 
     @cached_property
     def replica_duration(self):
@@ -119,7 +119,7 @@ class DynamicsRun(Run):
         total = sum(events.values())
         if self.budget is None:
             work = sum(run.planned * run.block_work for run in runs.values())
-            total = budget * work * each / DAY
+            total = budget * work * each / DAY_OF_EVENTS
         most = min(1.0, budget / total)
         return {
             name: replace(
@@ -251,17 +251,19 @@ class TimedRun(DynamicsRun):
 def record_blocks(scene, event, seed, first, stop, going):
     """Return (times of the chains, sums in bins) of the blocks ``first`` … ``stop`` − 1.
 
-    Each block has ``CHAINS`` chains of ``RETURNS`` intervals, see ``record_intervals``. ``going``
-    is an array to stop it with.
+    Each block has ``CHAINS_PER_BLOCK`` chains of ``RETURNS`` intervals, see ``record_intervals``.
+    ``going`` is an array to stop it with.
     """
     edges = wide_edges()
     # Intervals beyond all bins, or in the last ones that fill no wide bin, have no wide bin.
-    last = BINS + len(edges)
-    wide = np.full(BINS + 1, last)
-    wide[: edges[-1]] = BINS + np.repeat(np.arange(1, len(edges)), np.diff(edges))
+    last = N_BINS + len(edges)
+    wide = np.full(N_BINS + 1, last)
+    wide[: edges[-1]] = N_BINS + np.repeat(np.arange(1, len(edges)), np.diff(edges))
     engine, bins = find_engine(scene), (_width(scene, event), wide)
     sums = np.zeros((engine.interval_sums, last + 1), np.int64)
-    totals = engine.record_intervals(scene, event, seed, first, stop, CHAINS, bins, sums, going)
+    totals = engine.record_intervals(
+        scene, event, seed, first, stop, CHAINS_PER_BLOCK, bins, sums, going
+    )
     return totals, sums
 
 
@@ -284,7 +286,7 @@ class IntervalsRun(Run):
     event: str
     intervals: int
     seed: int
-    budget: int = BUDGET
+    budget: int = INTERVALS_BUDGET
 
     @classmethod
     def of(cls, scene, settings):
@@ -311,7 +313,7 @@ class IntervalsRun(Run):
     @property
     def _each(self):
         """The number of intervals of a block."""
-        return CHAINS * find_engine(self.scene).intervals_of_chain(self.scene, self.event)
+        return CHAINS_PER_BLOCK * find_engine(self.scene).intervals_of_chain(self.scene, self.event)
 
     @property
     def _blocks(self):
@@ -338,7 +340,7 @@ class IntervalsRun(Run):
             )
             totals, *numbers = np.atleast_2d(totals)
             # Integers in the finest unit that doubles have.
-            times = [int(time) for time in totals / (_width(self.scene, self.event) * GRAIN)]
+            times = [int(time) for time in totals / (_width(self.scene, self.event) * TIME_GRAIN)]
             moments = [sum(times), sum(time * time for time in times)]
             for number in numbers:
                 n = [int(each) for each in number]
@@ -354,7 +356,7 @@ class IntervalsRun(Run):
         component = {
             "event": self.event,
             "bin_width": _width(self.scene, self.event),
-            "chains": CHAINS,
+            "chains": CHAINS_PER_BLOCK,
             "returns": RETURNS,
             "sums": ranges["all"],
         }

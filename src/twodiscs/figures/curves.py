@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from twodiscs.analysis.tables import TheoryTable
-from twodiscs.model.events import AXIS, EVENTS, HOPS
+from twodiscs.model.events import EVENT_AXES, EVENTS, HOPS
 
 #: The name of the largest radius, and the names of the radii at which hops become blocked.
 LARGEST, QUARTERS = r"r_{\mathrm{max}}", {"x": "h/4", "y": "w/4"}
@@ -40,8 +40,8 @@ def limits(box):
     """
     names = {}
     if box.is_plain:
-        for hop in sorted(HOPS, key=AXIS.get):
-            radius, name = box.threshold(hop), QUARTERS[AXIS[hop]]
+        for hop in sorted(HOPS, key=EVENT_AXES.get):
+            radius, name = box.threshold(hop), QUARTERS[EVENT_AXES[hop]]
             names[radius] = f"{names[radius]}={name}" if radius in names else name
         names = {radius: name for radius, name in names.items() if radius in box.thresholds}
         return *sorted(names.items()), (box.largest_radius, LARGEST)

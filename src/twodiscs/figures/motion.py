@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from twodiscs.figures import panels, style
 from twodiscs.figures.style import BLACK, BLUE, GREY, LOOKS, SERIES, VERMILLION, new_figure
-from twodiscs.model.events import AXIS, HOPS
+from twodiscs.model.events import EVENT_AXES, HOPS
 from twodiscs.theory import laws
 
 #: Inches: each of the two panels.
@@ -32,7 +32,7 @@ def draw_trajectory(box, rows, radius=None):
     if box.family == "many":
         return draw_world_lines(box, rows, radius)
     hop = shown_hop(box)
-    axis = AXIS[hop]
+    axis = EVENT_AXES[hop]
     times = np.array([row["time"] for row in rows])
     apart = np.array([row[f"{axis}2"] - row[f"{axis}1"] for row in rows])
     hops = times[[row["event"] == hop for row in rows]]
@@ -256,7 +256,7 @@ def draw_hop_histogram(box, rows):
 def _mark_zero(axes, box, row, colour):
     """Mark the exact density at 0 if bins are fine enough to show it; return whether they are."""
     scene, hop = box.scene(row["radius"]), row["event"]
-    free, across = (scene.width, scene.height)[:: 1 if AXIS[hop] == "y" else -1]
+    free, across = (scene.width, scene.height)[:: 1 if EVENT_AXES[hop] == "y" else -1]
     sigma = scene.contact_distance
     are_fine = (row["right"] - row["left"]) * FINE <= min(across - sigma, free - 2 * sigma)
     if are_fine:

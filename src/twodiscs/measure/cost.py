@@ -20,7 +20,7 @@ import numpy as np
 
 from twodiscs.measure.result import Printed
 from twodiscs.model.calls import checked_call
-from twodiscs.model.checks import THINNEST, check_error, check_fraction
+from twodiscs.model.checks import THINNEST_SHELL, check_error, check_fraction
 from twodiscs.model.events import EVENTS
 from twodiscs.model.formats import format_number, format_seconds, quote
 from twodiscs.model.many_geometry import has_volume
@@ -130,7 +130,7 @@ def _pilot(run, name, seconds):
 
 def blocks_wanted(scene, pilots, target):
     """Return {component: blocks} that a run to the errors ``target``, {event: error}, takes."""
-    from twodiscs.sampling.rounds import MARGIN
+    from twodiscs.sampling.rounds import ROUND_MARGIN
 
     blocks = {}
     for name, pilot in pilots.items():
@@ -138,7 +138,7 @@ def blocks_wanted(scene, pilots, target):
         noise = max(((pilot.errors[e] / target[e]) ** 2 for e in own), default=0.0)
         needed = (exact.replicas_needed(scene, e, target[e]) / pilot.replicas for e in own)
         needed = max(needed, default=0.0) if name == "all" else 0.0
-        wanted = max(MARGIN * noise, needed)
+        wanted = max(ROUND_MARGIN * noise, needed)
         blocks[name] = wanted if wanted > pilot.first_round else pilot.first_round
     return blocks
 
@@ -476,7 +476,7 @@ def cost(
     if isinstance(errors, str) or not isinstance(errors, Iterable):
         errors = ERRORS if errors is None else [errors]
     errors = [check_error("errors", error) for error in errors]
-    check_fraction("shell", shell, THINNEST)
+    check_fraction("shell", shell, THINNEST_SHELL)
     run = DynamicsRun(check_scene(scene), dict.fromkeys(scene.events, 1.0), 10**15, 0)
     measured = pilots(run)
     prices = [*_prices_of_times(scene, measured), *_prices_of_samples(scene, shell)]

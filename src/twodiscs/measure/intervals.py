@@ -11,7 +11,7 @@ from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import InputError, check_choice, check_count, check_integer
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene, check_scene
-from twodiscs.points.estimates import MIN_EVENTS
+from twodiscs.points.estimates import LEAST_EVENTS
 from twodiscs.theory import laws
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ class Intervals(Result):
         density = point.estimate("density_at_zero")
         exact = laws.density_at_zero(scene, self.hop) if scene.is_plain else None
         at_zero, error, status = density.value, density.stderr, "extrapolated"
-        if min(self.counts[:2]) < MIN_EVENTS:
+        if min(self.counts[:2]) < LEAST_EVENTS:
             error, status = None, "too-few"
         from twodiscs.dynamics.engine import find_engine
 
@@ -204,10 +204,10 @@ def run_intervals(
             f"intervals have no exact mean, but moment_of_inertia is {scene.moment_of_inertia!r}"
         )
     number, seed = check_count("number", number), check_integer("seed", seed, 0)
-    from twodiscs.dynamics.runs import BUDGET, IntervalsRun
+    from twodiscs.dynamics.runs import INTERVALS_BUDGET, IntervalsRun
 
     settings = {"hop": hop, "number": number, "seed": seed, "name": name}
-    settings["budget"] = BUDGET if budget is None else check_count("budget", budget)
+    settings["budget"] = INTERVALS_BUDGET if budget is None else check_count("budget", budget)
     run = IntervalsRun.of(scene, settings)
     with progress_bar(progress, f"intervals r = {scene.radius:g}") as progress:
         point = run.run(progress, cores, resume_from)

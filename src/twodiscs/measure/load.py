@@ -17,7 +17,7 @@ from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import InputError
 from twodiscs.model.formats import quote
 from twodiscs.model.scene import Box, Scene
-from twodiscs.points.base import MALFORMED, digest, read_json, restore_arrays
+from twodiscs.points.base import MALFORMED_ERRORS, digest, read_json, restore_arrays
 from twodiscs.sampling.rounds import Ended
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def _configuration(path):
                 return configuration
             scenes = [s for s in configuration["scenes"] if s["name"] == path.parent.name]
             return {**configuration, "scenes": scenes}
-        except (OSError, *MALFORMED):
+        except (OSError, *MALFORMED_ERRORS):
             continue
     return None
 
@@ -128,7 +128,7 @@ def _configuration(path):
 def from_dict(content):
     """Return the result that ``to_dict`` describes, made again from its sums without any work.
 
-    Raises ``InputError``, or one of ``MALFORMED``, if no result has this content.
+    Raises ``InputError``, or one of ``MALFORMED_ERRORS``, if no result has this content.
     """
     if content["kind"] == "scan":
         from twodiscs.measure.scan import Scan
@@ -209,7 +209,7 @@ def load_result(path: str | PathLike[str]) -> Measurements | Any:
         )
     try:
         return from_dict(content)
-    except MALFORMED as error:
+    except MALFORMED_ERRORS as error:
         raise InputError(
             f"path must be a file that save() wrote, or a point of a build, but the content of "
             f"{path!r} was changed"

@@ -25,7 +25,7 @@ from twodiscs.measure.exact_values import Quantities
 from twodiscs.measure.result import Immutable, Result, note_of_number, progress_bar
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import (
-    THINNEST,
+    THINNEST_SHELL,
     AccuracyWarning,
     InputError,
     check_count,
@@ -36,7 +36,7 @@ from twodiscs.model.checks import (
 )
 from twodiscs.model.formats import did_you_mean, quote, round_up, texts_with_error
 from twodiscs.model.scene import Scene, check_scene, why_absent
-from twodiscs.points.estimates import MIN_EVENTS, Estimate
+from twodiscs.points.estimates import LEAST_EVENTS, Estimate
 from twodiscs.points.monte_carlo_point import WALL_AREAS, wall_weights
 
 if TYPE_CHECKING:
@@ -617,7 +617,7 @@ def run_sampling(
     key = "quantities", "quantity"
     quantities, target = _targets(error, *key, quantities, allowed, scene)
     settings = {"seed": check_integer("seed", seed, 0), "quantities": quantities, "name": name}
-    settings |= {"shell": check_fraction("shell", shell, THINNEST), "method": method}
+    settings |= {"shell": check_fraction("shell", shell, THINNEST_SHELL), "method": method}
     if error is None:
         samples = check_count("samples", 10**7 if samples is None else samples)
         settings["samples"] = samples
@@ -625,7 +625,7 @@ def run_sampling(
         settings["error"] = target if isinstance(error, Mapping) else check_error("error", error)
         settings["budget"] = None if budget is None else check_count("budget", budget)
     from twodiscs.sampling.initial_states import require_free_fraction
-    from twodiscs.sampling.montecarlo import COST_RATIO, MonteCarloRun
+    from twodiscs.sampling.montecarlo import PROPOSAL_TIME, MonteCarloRun
 
     require_free_fraction(scene)
     run = MonteCarloRun.of(scene, settings)
@@ -635,7 +635,7 @@ def run_sampling(
     # Insertions always have the volume.
     rows = [row for row in rows if row["quantity"] in quantities]
     if error is None:
-        fewer = f"conditioned ones, each as much work as {COST_RATIO} of the prism"
+        fewer = f"conditioned ones, each as much work as {PROPOSAL_TIME} of the prism"
         note = note_of_number("samples", samples, point.samples, fewer)
     else:
         for row in rows:
@@ -644,7 +644,7 @@ def run_sampling(
             if row["status"] == "sampled":
                 row["status"] = "reached" if known <= row["target"] else "budget"
         # No budget ended a run with too few misses, whose binomial error is small.
-        short = [row for row in rows if row["status"] != "too-few" or row["hits"] < MIN_EVENTS]
+        short = [row for row in rows if row["status"] != "too-few" or row["hits"] < LEAST_EVENTS]
         drawn, budget = point.samples * run.weight, settings["budget"]
         note = _note_of_error(rows, short, budget, drawn, "samples", "samples")
     return Measurements("sample", scene, rows, settings, point, note)

@@ -11,7 +11,7 @@ import numpy as np
 
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import open_block_kicks
-from twodiscs.dynamics.paths import MOST_EVENTS
+from twodiscs.dynamics.paths import MOST_PATH_EVENTS
 from twodiscs.measure.result import Result, note_of_number, progress_bar
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import InputError, check_count, make_list
@@ -371,10 +371,11 @@ def averages(
     each = BLOCK if scene.discs < LARGE else engine.block_replicas(scene)
     blocks = -(-asked // each)
     rate = engine.expected_event_rate(scene) + scene.friction
-    if times[-1] * rate > MOST_EVENTS:
+    if times[-1] * rate > MOST_PATH_EVENTS:
         raise InputError(
-            f"times must be below {format_number(MOST_EVENTS / rate, '.3g')}, where "
-            f"{format_number(MOST_EVENTS, 'g')} events are due, not {format_number(times[-1], 'g')}"
+            f"times must be below {format_number(MOST_PATH_EVENTS / rate, '.3g')}, where "
+            f"{format_number(MOST_PATH_EVENTS, 'g')} events are due, not "
+            f"{format_number(times[-1], 'g')}"
         )
 
     steps = np.diff(times, prepend=0.0)

@@ -22,7 +22,7 @@ from typing import Any, overload
 
 from twodiscs.measure.measurements import Measurement, Measurements, derived, text_table
 from twodiscs.model.checks import InputError
-from twodiscs.model.events import AXIS, WALLS
+from twodiscs.model.events import EVENT_AXES, WALLS
 from twodiscs.model.formats import quote
 from twodiscs.model.scene import Scene
 from twodiscs.theory import exact, n_discs, virial
@@ -76,12 +76,12 @@ def terms(scene):
         }
     pressures, weighted, norm = {}, {}, 0.0
     for wall in WALLS:
-        axis = AXIS[wall]
+        axis = EVENT_AXES[wall]
         if axis in scene.walled:
             force, reach = n * virial.momentum_per_hit(scene), float(scene.reach(axis))
             area = volume / scene.side(axis)
             pressures[f"{wall}_pressure"] = 0.0, {wall: force / area}
-            if axis not in map(AXIS.get, weighted):  # one wall of an axis is enough
+            if axis not in map(EVENT_AXES.get, weighted):  # one wall of an axis is enough
                 weighted[wall], norm = force * reach, norm + area * reach
     mean = {wall: weight / norm for wall, weight in weighted.items()}
     pressures["wall_pressure"] = 0.0, mean

@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from twodiscs.dynamics.engine import find_engine
-from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK
-from twodiscs.dynamics.two.hop_clusters import LARGEST_CLUSTER, SUMS
+from twodiscs.dynamics.ensemble import HOPS_PER_BLOCK
+from twodiscs.dynamics.two.hop_clusters import LARGEST_CLUSTER, N_HOP_SUMS
 from twodiscs.measure.result import Result, note_of_number, progress_bar
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import check_choice, check_count, check_integer
-from twodiscs.model.events import AXIS, HOPS
+from twodiscs.model.events import EVENT_AXES, HOPS
 from twodiscs.model.formats import texts_with_error
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.model.seeds import key, stream_name, stream_seed
 from twodiscs.points.base import reached
-from twodiscs.points.estimates import MIN_EVENTS, Estimate
+from twodiscs.points.estimates import LEAST_EVENTS, Estimate
 from twodiscs.sampling.rounds import fixed, run_all_in_rounds
 from twodiscs.theory import exact
 
@@ -47,7 +47,7 @@ def box_time(scene, hop):
 
     With N discs it is that across two of N equal parts of the box, at the mean speed of N discs.
     """
-    axis = AXIS[hop]
+    axis = EVENT_AXES[hop]
     length = scene.side(axis) if axis in scene.periodic else float(scene.reach(axis))
     return length * math.sqrt(2 / scene.discs)
 
@@ -81,7 +81,7 @@ def with_error(estimate, *numbers):
     The numbers are those of independent hops with each of the results whose mix is the estimate. If
     all of them had the same result, their spread would be 0 although another result is possible.
     """
-    return estimate if min(numbers) >= MIN_EVENTS else replace(estimate, stderr=None)
+    return estimate if min(numbers) >= LEAST_EVENTS else replace(estimate, stderr=None)
 
 
 def cluster_estimate(sizes):
@@ -276,7 +276,7 @@ def component_runs(scene, hop, mean, gap, times, blocks, name, seed):
     """Return {"times": run} for ``blocks`` of hops, and "clusters", too, if hops are rare."""
     seeds = {what: hop_seed(scene, hop, name, seed, what) for what in ("clusters", "times")}
     engine = find_engine(scene)
-    events = HOPS_OF_BLOCK * engine.expected_event_rate(scene)
+    events = HOPS_PER_BLOCK * engine.expected_event_rate(scene)
     work = engine.work_per_event(scene) * engine.chain_cost_ratio(scene)
 
     def clusters(first, stop):
@@ -357,7 +357,7 @@ def run_transmission(scene, hop, hops, seed, name, cores=1, progress=None, resum
     """Return the ``Transmission`` of ``transmission``, which goes on from ``resume_from``."""
     engine = find_engine(check_scene(scene))
     engine.require_coefficient(scene, check_choice("hop", hop, HOPS))
-    blocks = -(-check_count("hops", hops, most=10**9) // HOPS_OF_BLOCK)
+    blocks = -(-check_count("hops", hops, most=10**9) // HOPS_PER_BLOCK)
     seed = check_integer("seed", seed, 0)
     mean, gap = exact.mean_times(scene)[hop], quiet_time(scene, hop)
     neighbour_mean, others = engine.neighbours(scene, hop)
@@ -374,8 +374,8 @@ def run_transmission(scene, hop, hops, seed, name, cores=1, progress=None, resum
         clusters = {n: int(number) for n, number in enumerate(sizes) if number}
         law = partial(odd_clusters_per_passage, others=others)
         kappa = plateau(cluster_estimate(sizes), gap, neighbour_mean, law)
-    curve = time_estimates(sums.reshape(SUMS, len(times)), blocks * HOPS_OF_BLOCK)
-    note = note_of_number("hops", settings["hops"], blocks * HOPS_OF_BLOCK)
+    curve = time_estimates(sums.reshape(N_HOP_SUMS, len(times)), blocks * HOPS_PER_BLOCK)
+    note = note_of_number("hops", settings["hops"], blocks * HOPS_PER_BLOCK)
     return Transmission(
         scene, hop, kappa, gap, clusters, mean, neighbour_mean, times, curve, settings, components,
         note,

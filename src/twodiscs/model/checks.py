@@ -12,19 +12,19 @@ from tempfile import TemporaryDirectory
 from twodiscs.model.formats import decimal_hint, did_you_mean, format_number, quote
 
 #: Products of four lengths outside this range would overflow or underflow.
-SHORTEST, LONGEST = 1e-60, 1e60
+SHORTEST_LENGTH, LONGEST_LENGTH = 1e-60, 1e60
 
 #: Seeds and counts are signed 64-bit integers in the kernels.
 LARGEST_INTEGER = 2**63 - 1
 
 #: The thinnest shell: thinner ones are of few grains (see ``sampling.montecarlo``).
-THINNEST = 1e-6
+THINNEST_SHELL = 1e-6
 
 #: The largest number of discs, and the largest for the volume of configuration space.
-MOST_DISCS, MOST_WITH_VOLUME = 16384, 64
+MOST_DISCS, MOST_DISCS_WITH_VOLUME = 16384, 64
 
 #: Relative errors that have a name.
-PRESETS = {"draft": 1e-2, "paper": 3e-4, "reference": 1e-4}
+NAMED_ERRORS = {"draft": 1e-2, "paper": 3e-4, "reference": 1e-4}
 
 #: Letters of the longest message, which may quote a value of any length.
 LONGEST_SENTENCE = 1000
@@ -127,7 +127,7 @@ def check_length(name, value):
 
     A length is a real number, finite and positive, between 1e-60 and 1e60.
     """
-    return check_number(name, value, SHORTEST, LONGEST)
+    return check_number(name, value, SHORTEST_LENGTH, LONGEST_LENGTH)
 
 
 def check_integer(name, value, least=1, most=LARGEST_INTEGER):
@@ -152,17 +152,17 @@ def check_fraction(name, value, low=0):
 
 
 def check_error(name, value):
-    """Return a relative error as a float: a number above 0 and at most 1, or one of ``PRESETS``.
+    """Return a relative error as a float: a number above 0, at most 1, or one of ``NAMED_ERRORS``.
 
     Raises ``InputError`` for anything else.
     """
     real = isinstance(value, numbers.Real) and not isinstance(value, bool)
-    if not real and isinstance(value, str) and value in PRESETS:
-        return PRESETS[value]
+    if not real and isinstance(value, str) and value in NAMED_ERRORS:
+        return NAMED_ERRORS[value]
     if not real or not 0 < value <= 1:
         raise InputError(
-            f"{name} must be a number above 0 and at most 1, or one of {', '.join(PRESETS)}, not "
-            f"{quote(value)}{decimal_hint(value)}"
+            f"{name} must be a number above 0 and at most 1, or one of "
+            f"{', '.join(NAMED_ERRORS)}, not {quote(value)}{decimal_hint(value)}"
         )
     return float(value)
 

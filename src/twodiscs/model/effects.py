@@ -7,7 +7,7 @@ of the figures follow from these declarations.
 from dataclasses import dataclass
 from numbers import Real
 
-from twodiscs.model.checks import LONGEST, SHORTEST, InputError, check_number
+from twodiscs.model.checks import LONGEST_LENGTH, SHORTEST_LENGTH, InputError, check_number
 from twodiscs.model.formats import quote
 
 
@@ -58,7 +58,7 @@ EFFECTS = {
     effect.name: effect
     for effect in (
         Effect(
-            "depth", None, SHORTEST, LONGEST, "length",
+            "depth", None, SHORTEST_LENGTH, LONGEST_LENGTH, "length",
             "the third side of the box; the discs are balls then", "$d={:g}$", of_box=True,
         ),
         Effect(
@@ -76,7 +76,7 @@ EFFECTS = {
             "The momentum along them is conserved, unless rough discs meet walls, and it is zero.",
         ),
         Effect(
-            "field", 0.0, SHORTEST, LONGEST, "speed²/length",
+            "field", 0.0, SHORTEST_LENGTH, LONGEST_LENGTH, "speed²/length",
             "the uniform acceleration along −y", "$g={:g}$",
             "The total energy of 1/2 includes the potential energy.",
         ),
@@ -87,7 +87,7 @@ EFFECTS = {
             " surfaces too.",
         ),
         Effect(
-            "friction", 0.0, SHORTEST, LONGEST, "1/time",
+            "friction", 0.0, SHORTEST_LENGTH, LONGEST_LENGTH, "1/time",
             "the rate of random times at which all velocities are drawn anew", r"$\gamma={:g}$",
             "Energy and conserved momenta stay, and so does every mean time.",
         ),
@@ -95,4 +95,4 @@ EFFECTS = {
 }  # fmt: skip
 
 #: {name: value of its absence}, in the order of the declarations.
-ABSENT = {effect.name: effect.default for effect in EFFECTS.values()}
+ABSENT_VALUES = {effect.name: effect.default for effect in EFFECTS.values()}

@@ -24,7 +24,7 @@ class Event:
     side: int = 0
 
 
-DECLARED = {
+DECLARED_EVENTS = {
     event.name: event
     for event in (
         Event("vertical_hop", "hop", "y"),
@@ -37,10 +37,10 @@ DECLARED = {
 }
 
 #: Their names, in the order of every table.
-EVENTS = tuple(DECLARED)
+EVENTS = tuple(DECLARED_EVENTS)
 
 #: The events with an axis, {name: axis}.
-AXIS = {event.name: event.axis for event in DECLARED.values() if event.axis}
+EVENT_AXES = {event.name: event.axis for event in DECLARED_EVENTS.values() if event.axis}
 
 
 def by_kind(where, makers, events=EVENTS):
@@ -51,7 +51,7 @@ def by_kind(where, makers, events=EVENTS):
     """
     places = {}
     for name in events:
-        event = DECLARED[name]
+        event = DECLARED_EVENTS[name]
         if event.kind not in makers:
             known = ", ".join(makers)
             raise TypeError(f"{where} knows events of kind {known}, not {event.kind} as {name} is")
@@ -77,4 +77,4 @@ WALLS = _select(hop=False, collision=False, wall=True, walls=False)
 WALL_HITS = _select(hop=False, collision=False, wall=True, walls=True)
 
 #: The events whose surface has a simple shell; the surface of all walls together has corners.
-SHELLS = _select(hop=True, collision=True, wall=True, walls=False)
+SHELL_EVENTS = _select(hop=True, collision=True, wall=True, walls=False)

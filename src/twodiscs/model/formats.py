@@ -6,17 +6,17 @@ import reprlib
 from difflib import get_close_matches
 
 #: The form of quoted values: some items of a list, and of the lists in it.
-_SHORT = reprlib.Repr()
-_SHORT.maxlevel = 2
+_SHORT_REPR = reprlib.Repr()
+_SHORT_REPR.maxlevel = 2
 
 
 def quote(value):
     """Return the short text of any ``value`` for a message, of a large object its class."""
     try:
-        if type(value).__module__ != "builtins" and len(repr(value)) > _SHORT.maxother:
+        if type(value).__module__ != "builtins" and len(repr(value)) > _SHORT_REPR.maxother:
             name = type(value).__name__
             return f"a result of {value.kind}" if hasattr(value, "more") else f"a {name} object"
-        return " ".join(_SHORT.repr(value).split())
+        return " ".join(_SHORT_REPR.repr(value).split())
     except Exception:  # an integer of more than 4300 digits, or an odd class
         return f"a {type(value).__name__}"
 
@@ -74,7 +74,7 @@ def round_up(events):
 
 
 #: (seconds, the unit that they are) from the longest unit down.
-_UNITS = (
+_TIME_UNITS = (
     (365.25 * 86400, "years"), (86400.0, "d"), (3600.0, "h"), (60.0, "min"), (1.0, "s"),
     (1e-3, "ms"), (1e-6, "µs"),
 )  # fmt: skip
@@ -84,7 +84,7 @@ def format_seconds(seconds):
     """Return a time to two digits: 0.12 s, 20 min, 3.5 d; "–" for None and infinity."""
     if seconds is None or not math.isfinite(seconds):
         return "–"
-    length, unit = next((pair for pair in _UNITS if seconds >= pair[0]), _UNITS[-1])
+    length, unit = next((pair for pair in _TIME_UNITS if seconds >= pair[0]), _TIME_UNITS[-1])
     return f"{format_number(float(f'{seconds / length:.2g}'), 'g')} {unit}"
 
 

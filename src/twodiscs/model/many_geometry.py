@@ -4,7 +4,7 @@ import math
 from fractions import Fraction
 from functools import cache
 
-from twodiscs.model.checks import MOST_WITH_VOLUME, InputError
+from twodiscs.model.checks import MOST_DISCS_WITH_VOLUME, InputError
 from twodiscs.model.events import WALLS
 
 #: The effects of more than two discs.
@@ -34,10 +34,11 @@ def check_box(box):
 def has_volume(scene):
     """Return whether a double holds the volume of configuration space in the unit of length.
 
-    More than ``MOST_WITH_VOLUME`` discs have none, because almost no sample of it has a weight.
+    More than ``MOST_DISCS_WITH_VOLUME`` discs have none, because almost no sample of it has a
+    weight.
     """
     digits = scene.discs * math.log10(scene.range_x * scene.range_y)
-    return scene.discs <= MOST_WITH_VOLUME and abs(digits) <= MOST_DIGITS
+    return scene.discs <= MOST_DISCS_WITH_VOLUME and abs(digits) <= MOST_DIGITS
 
 
 def check(scene):

@@ -21,17 +21,17 @@ from functools import cached_property
 
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import (
-    LONGEST,
+    LONGEST_LENGTH,
     MOST_DISCS,
-    SHORTEST,
+    SHORTEST_LENGTH,
     InputError,
     check_choice,
     check_integer,
     check_length,
     check_number,
 )
-from twodiscs.model.effects import ABSENT, EFFECTS
-from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, WALL_HITS, WALLS
+from twodiscs.model.effects import ABSENT_VALUES, EFFECTS
+from twodiscs.model.events import DECLARED_EVENTS, EVENT_AXES, EVENTS, HOPS, WALL_HITS, WALLS
 from twodiscs.model.formats import quote
 from twodiscs.model.geometry import MANY_DISCS, TWO_DISCS
 from twodiscs.model.many_geometry import check_box
@@ -109,7 +109,7 @@ class Box:
     def _check_effects(self):
         if self.depth is not None:
             # Six lengths are multiplied.
-            ends = SHORTEST**0.75, LONGEST**0.75
+            ends = SHORTEST_LENGTH**0.75, LONGEST_LENGTH**0.75
             for name in ("depth", *self.LENGTHS):
                 self._settle(name, check_number(name, getattr(self, name), *ends))
         repeated = len(set(self.periodic)) != len(self.periodic)
@@ -177,7 +177,7 @@ class Box:
         """The effects, {name: value} in the order of the fields."""
         return {
             name: getattr(self, name)
-            for name, default in ABSENT.items()
+            for name, default in ABSENT_VALUES.items()
             if getattr(self, name) != default
         }
 
@@ -204,7 +204,9 @@ class Box:
 
         These are its effects, and ``discs`` if there are more than two.
         """
-        return {n: getattr(self, n) for n, usual in USUAL.items() if getattr(self, n) != usual}
+        return {
+            n: getattr(self, n) for n, usual in USUAL_VALUES.items() if getattr(self, n) != usual
+        }
 
     @property
     def is_plain(self):
@@ -327,8 +329,8 @@ class Box:
         return tuple(filter(self._has_place, EVENTS))
 
     def _has_place(self, event):
-        if event in AXIS:
-            return AXIS[event] in self.walled
+        if event in EVENT_AXES:
+            return EVENT_AXES[event] in self.walled
         return event not in WALL_HITS or bool(self.walled)
 
     # Radii -------------------------------------------------------------------------------------
@@ -448,7 +450,7 @@ class Box:
 
         Discs that pass each other on y1 = y2 are side by side along x, and need four radii there.
         """
-        return (self.width if AXIS[hop] == "y" else self.height) / 4
+        return (self.width if EVENT_AXES[hop] == "y" else self.height) / 4
 
     @cached_property
     def thresholds(self) -> tuple[float, ...]:
@@ -461,7 +463,7 @@ class Box:
 
 
 #: The values of keywords that are not given, {name: value}.
-USUAL = {field.name: field.default for field in fields(Box)[2:]}
+USUAL_VALUES = {field.name: field.default for field in fields(Box)[2:]}
 
 
 @checked_call
@@ -623,7 +625,7 @@ class Scene(Box):
         For equal discs in the plane it is B − σ for the horizontal hop and A − σ for the vertical
         one. It is negative if the hop is blocked.
         """
-        spread, sigma = self.squared_reaches(AXIS[hop]), self.exact_contact
+        spread, sigma = self.squared_reaches(EVENT_AXES[hop]), self.exact_contact
         return float(spread - sigma**2) / (math.sqrt(spread) + float(sigma))
 
     @cached_property
@@ -673,7 +675,7 @@ class Scene(Box):
 
         It is 1/2 for a wall that disc 1 reaches only from one side of disc 2, else 1.
         """
-        return 0.5 if event in WALLS and self.confined["xy".index(AXIS[event])] else 1.0
+        return 0.5 if event in WALLS and self.confined["xy".index(EVENT_AXES[event])] else 1.0
 
     def multiplicity(self, event):
         """Return how many events are equal to ``event`` by symmetry; their hits are counted as one.
@@ -710,8 +712,8 @@ class Scene(Box):
         if check_choice("event", event, EVENTS) not in self.events:
             return False
         if event in HOPS:
-            return AXIS[event] in self.open_axes
-        if self.field and AXIS.get(event) == "y" and DECLARED[event].side > 0:
+            return EVENT_AXES[event] in self.open_axes
+        if self.field and EVENT_AXES.get(event) == "y" and DECLARED_EVENTS[event].side > 0:
             return self.field * (self.height - 2 * self.radius) < ENERGY
         return True
 
@@ -729,7 +731,7 @@ def why_absent(scene, name):
     ``name`` is that of an event or of its quantity.
     """
     event = str(name).removesuffix("_area").removesuffix("_time")
-    axis = AXIS.get(event)
+    axis = EVENT_AXES.get(event)
     if axis is None or axis not in scene.periodic:
         return ""
     if event not in HOPS:
@@ -746,6 +748,6 @@ def hopping_along(scene, hop, axis):
     ``hop`` is a "vertical_hop" (along y) or a "horizontal_hop" (along x). One compiled kernel can
     then simulate both hops. In a field axes cannot be exchanged, and both are returned unchanged.
     """
-    if AXIS[check_choice("hop", hop, HOPS)] == axis or scene.field:
+    if EVENT_AXES[check_choice("hop", hop, HOPS)] == axis or scene.field:
         return scene, hop
     return scene.turned(), next(other for other in HOPS if other != hop)

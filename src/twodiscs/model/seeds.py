@@ -7,7 +7,7 @@ from twodiscs.model.formats import quote
 from twodiscs.model.scene import check_scene
 
 #: The methods with random numbers, each with separate streams.
-METHODS = (
+RANDOM_METHODS = (
     "monte_carlo", "dynamics", "intervals", "trajectory", "unmet", "strip", "passages",
     "observe",
 )  # fmt: skip
@@ -31,11 +31,12 @@ def seed_text(box):
 def stream_seed(seed, scene, method, key):
     """Return the integer in [0, 2**63) that seeds the streams of one job.
 
-    It depends on the configured ``seed``, the name of the scene, the method (one of ``METHODS``)
-    and the key of the radius. It does not depend on the order of a list or on other jobs.
+    It depends on the configured ``seed``, the name of the scene, the method (one of
+    ``RANDOM_METHODS``) and the key of the radius. It does not depend on the order of a list or on
+    other jobs.
     """
     seed = check_integer("seed", seed, 0)
-    text = "\n".join((str(seed), scene, check_choice("method", method, METHODS), key))
+    text = "\n".join((str(seed), scene, check_choice("method", method, RANDOM_METHODS), key))
     return int.from_bytes(blake2b(text.encode(), digest_size=8).digest(), "big") >> 1
 
 

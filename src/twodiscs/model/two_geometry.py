@@ -4,7 +4,7 @@ import math
 from fractions import Fraction
 
 from twodiscs.model.checks import InputError
-from twodiscs.model.events import AXIS, WALLS
+from twodiscs.model.events import EVENT_AXES, WALLS
 
 #: The total energy, kinetic and potential.
 ENERGY = 0.5
@@ -106,7 +106,7 @@ def multiplicity(scene, event):
     """Return the number of events with the rate of ``event``, see ``Scene``."""
     if event not in WALLS:
         return 1
-    mirrored = AXIS[event] == "x" or not scene.field
+    mirrored = EVENT_AXES[event] == "x" or not scene.field
     return round((1 + mirrored) * (1 + scene.identical) * scene.accessible_fraction(event))
 
 

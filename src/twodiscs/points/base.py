@@ -25,13 +25,13 @@ from twodiscs.model.scene import Scene
 # Files --------------------------------------------------------------------------------------------
 
 
-KEY = "sha256"
+DIGEST_KEY = "sha256"
 
 #: A key whose value differs from run to run: neither the content nor its digest includes it.
-SECONDS = "seconds"
+SECONDS_KEY = "seconds"
 
 #: The errors by which the content of a file shows that this package did not write it.
-MALFORMED = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
+MALFORMED_ERRORS = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 
 
 def digest(*paths):
@@ -67,9 +67,9 @@ def write_json(path, content, seconds=None):
     Each key has a line, so that a difference of two files names it. ``seconds`` is the processor
     time that it took, if known.
     """
-    content = content | {KEY: _content_digest(content)}
+    content = content | {DIGEST_KEY: _content_digest(content)}
     if seconds is not None:
-        content[SECONDS] = seconds
+        content[SECONDS_KEY] = seconds
     compact = {"sort_keys": True, "separators": (",", ":"), "allow_nan": False}
     lines = (f'"{key}": {json.dumps(content[key], **compact)}' for key in sorted(content))
     with writing_to(path) as new:
@@ -84,9 +84,9 @@ def read_json(path):
     """
     try:
         content = json.loads(Path(path).read_bytes())
-        content.pop(SECONDS, None)
-        written = content.pop(KEY) == _content_digest(content)
-    except (*MALFORMED, RecursionError):
+        content.pop(SECONDS_KEY, None)
+        written = content.pop(DIGEST_KEY) == _content_digest(content)
+    except (*MALFORMED_ERRORS, RecursionError):
         written = False
     if not written:
         raise InputError(f"{path} is not what its job wrote; delete it, and it is made again")

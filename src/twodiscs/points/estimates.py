@@ -20,20 +20,20 @@ import numpy as np
 from twodiscs.model.checks import check_fraction
 from twodiscs.model.events import EVENTS
 from twodiscs.model.formats import texts_with_error
-from twodiscs.theory.plain import RULE
+from twodiscs.theory.plain import ARC_RULE
 
 #: The least number of independent events, and of replicas, for an error bar. At 100 the error
 #: itself is known to some 10 %, and ± 1.96 errors have a coverage of 93 to 96 %, also for clustered
 #: counts.
-MIN_EVENTS = 100
+LEAST_EVENTS = 100
 
 #: The least typical weight of insertions, over the least weight whose square is not rounded to 0.
-RESOLVED = 8
+RESOLVED_WEIGHT = 8
 
 #: Allowance for clusters of rare events: the largest mean number of events in a replica with any. A
 #: hop through a narrow gap may be undone soon: just below the thresholds of boxes from 1 × 1 to
 #: 3 × 1, replicas of length 10 and 50 gave Σ N²/Σ N between 1.0 and 1.8.
-CLUSTER = 4
+CLUSTER_ALLOWANCE = 4
 
 
 @dataclass(frozen=True)
@@ -117,7 +117,7 @@ def weighted_estimate(total, squares, unit, samples, measure):
         return None, 0.0
     mean, second = total / (unit * samples), squares / (unit * samples)
     error = math.sqrt(max(second - mean**2, 0.0) / samples)
-    resolved = squares * math.sqrt(unit) >= RESOLVED * total
+    resolved = squares * math.sqrt(unit) >= RESOLVED_WEIGHT * total
     effective = total**2 / (squares * unit) if resolved else 0.0
     return Estimate(measure * mean, measure * error, samples), effective
 
@@ -164,14 +164,16 @@ def is_enough(least, total, squares, replicas, expected=None):
     nobody foresaw are seen in the counts: they have far fewer effective events than expected.
     """
     effective = effective_count(total, squares, replicas)
-    if replicas < MIN_EVENTS or expected is None:
-        return replicas >= MIN_EVENTS and effective >= least
-    return replicas >= least * relative_variance(expected) and effective >= least / CLUSTER
+    if replicas < LEAST_EVENTS or expected is None:
+        return replicas >= LEAST_EVENTS and effective >= least
+    return (
+        replicas >= least * relative_variance(expected) and effective >= least / CLUSTER_ALLOWANCE
+    )
 
 
 def has_error_bar(total, squares, replicas, expected=None):
     """Return whether there is an error bar: from 100 replicas and 100 effective events on."""
-    return is_enough(MIN_EVENTS, total, squares, replicas, expected)
+    return is_enough(LEAST_EVENTS, total, squares, replicas, expected)
 
 
 def mean_time(total, squares, replicas, duration, mean=None):
@@ -199,7 +201,7 @@ def mean_time_bound(replicas, duration):
     least (T/τ)/K. Then P(none) = (1 − q)^R ≤ exp(−RT/(Kτ)), which is 5 % at τ = RT/(K ln 20). K is
     4, as in the tests. The familiar RT/3 has K = 1, and is too large if events come in clusters.
     """
-    return duration * replicas / (CLUSTER * -math.log1p(-0.95))
+    return duration * replicas / (CLUSTER_ALLOWANCE * -math.log1p(-0.95))
 
 
 def sums_of_others(counts, products=None, replicas=None):
@@ -240,13 +242,13 @@ def density_of_chains_at_zero(densities, errors, linear=False):
 
 
 #: The number of strata of each quantity.
-PARTS = 8
+MOST_STRATA = 8
 
 #: The fastest initial states are one stratum, of at least this probability.
-LEAST_FRACTION = 1 / 64
+LEAST_STRATUM = 1 / 64
 
 #: If the smallest stratum expects fewer initial states than this, neighbours are merged.
-FEWEST = 16
+FEWEST_STATES = 16
 
 
 def fraction_below(cosine, components):
@@ -258,7 +260,7 @@ def fraction_below(cosine, components):
 
     def integral(end):
         return end * math.fsum(
-            weight * math.cos(end * t) ** (components - 2) for t, _, weight in RULE
+            weight * math.cos(end * t) ** (components - 2) for t, _, weight in ARC_RULE
         )
 
     return integral(math.asin(cosine)) / integral(math.pi / 2)
@@ -268,10 +270,10 @@ def fraction_below(cosine, components):
 def fractions_of_speeds(components):
     """Return the fractions of directions by the size of one component: up to 1/8, 2/8 and so on.
 
-    The last ones are merged into a fraction of at least ``LEAST_FRACTION``.
+    The last ones are merged into a fraction of at least ``LEAST_STRATUM``.
     """
-    below = [fraction_below(part / PARTS, components) for part in range(PARTS)]
-    below = [share for share in below if share <= 1 - LEAST_FRACTION]
+    below = [fraction_below(part / MOST_STRATA, components) for part in range(MOST_STRATA)]
+    below = [share for share in below if share <= 1 - LEAST_STRATUM]
     return tuple(np.diff([*below, 1.0]))
 
 
@@ -292,7 +294,7 @@ def stratified_mean(shares, starts, counts, squares):
     """
     strata = [np.array(part, float) for part in (shares, starts, counts, squares)]
     expected = strata[1].sum() * strata[0]
-    while strata[0].size > 1 and (expected.min() < FEWEST or strata[1].min() < 2):
+    while strata[0].size > 1 and (expected.min() < FEWEST_STATES or strata[1].min() < 2):
         *strata, expected = [_merged(part) for part in (*strata, expected)]
     shares, starts, counts, squares = strata
     means = counts / starts

@@ -12,23 +12,23 @@ from twodiscs.points.base import Point, reached
 from twodiscs.points.estimates import Estimate
 
 #: The number of equal bins.
-BINS = 512
+N_BINS = 512
 
 #: The least width of a wide bin, over its left edge.
-GROWTH = 0.08
+BIN_GROWTH = 0.08
 
 #: The unit of the times of chains, over the width of a bin: times are integers in it.
-GRAIN = 2.0**-52
+TIME_GRAIN = 2.0**-52
 
 
-def wide_edges(bins=BINS):
+def wide_edges(bins=N_BINS):
     """Return the edges of the wide bins, in units of the width of a bin.
 
-    They begin at zero, and each is one bin wide or wider than ``GROWTH`` times its left edge.
+    They begin at zero, and each is one bin wide or wider than ``BIN_GROWTH`` times its left edge.
     """
     edges = [0]
     for i in range(1, bins + 1):
-        if i >= (1 + GROWTH) * edges[-1]:
+        if i >= (1 + BIN_GROWTH) * edges[-1]:
             edges.append(i)
     return edges
 
@@ -95,18 +95,21 @@ class IntervalsPoint(Point):
             mean = Fraction(total, intervals)
             spread = squares - 2 * mean * joint + mean**2 * intervals_squared
             error = math.sqrt(spread * chains / (chains - 1)) / intervals
-            unit = component["bin_width"] * GRAIN
+            unit = component["bin_width"] * TIME_GRAIN
         else:
             intervals, intervals_squared, mean = chains * component["returns"], None, total / chains
             variance = (chains * squares - total * total) / (chains * chains * (chains - 1))
-            error, unit = math.sqrt(variance), component["bin_width"] * GRAIN / component["returns"]
-        rows, wide = sums.tolist(), slice(BINS + 1, BINS + len(edges))
+            error, unit = (
+                math.sqrt(variance),
+                component["bin_width"] * TIME_GRAIN / component["returns"],
+            )
+        rows, wide = sums.tolist(), slice(N_BINS + 1, N_BINS + len(edges))
         return cls(
             scene=scene,
             event=component["event"],
             bin_width=component["bin_width"],
-            overflow=rows[0][BINS],
-            equal=Bins([*range(BINS + 1)], *(row[:BINS] for row in rows)),
+            overflow=rows[0][N_BINS],
+            equal=Bins([*range(N_BINS + 1)], *(row[:N_BINS] for row in rows)),
             wide=Bins(edges, *(row[wide] for row in rows)),
             intervals=intervals,
             intervals_squared=intervals_squared,

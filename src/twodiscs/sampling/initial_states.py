@@ -2,7 +2,7 @@
 
 A state is a column of (x1, y1, x2, y2, u1, v1, u2, v2): centres, then velocities. Balls append
 (z1, z2, w1, w2), rough discs (s1, s2), their spins as the speeds rω of their surfaces. An array of
-initial states has ``COMPONENTS`` rows; rows that a scene does not use are zero.
+initial states has ``STATE_ROWS`` rows; rows that a scene does not use are zero.
 """
 
 import math
@@ -32,19 +32,19 @@ from twodiscs.sampling.threads import call_in_thread, draw_in_calls
 from twodiscs.theory import exact
 
 #: The most initial states in one call of a kernel: a tenth of a second without effects.
-CALL = 2**18
+STATES_PER_CALL = 2**18
 
 #: Initial states in an array that stays in the processor's cache.
-PIECE = 2**13
+STATES_PER_PIECE = 2**13
 
 #: The most numbers of the states that are kept for a user: 1 GB.
 MOST_NUMBERS = 120_000_000
 
 #: Rows of an array of initial states of two discs.
-COMPONENTS = 12
+STATE_ROWS = 12
 
 #: The largest error of a given state by rounding, over the sides and the energy.
-ROUNDING = 1e-9
+ROUNDING_OF_STATES = 1e-9
 
 
 def require_initial_states(scene):
@@ -196,7 +196,7 @@ def draw_with(stream, sampler, initial_states, prism):
 
 @inlined
 def draw_states(stream, sampler, initial_states):
-    """Fill ``initial_states`` (``COMPONENTS``, n) from a ``stream`` by a ``StartSampler``."""
+    """Fill ``initial_states`` (``STATE_ROWS``, n) from a ``stream`` by a ``StartSampler``."""
     draw_with(stream, sampler, initial_states, sampler.prism)
 
 
@@ -204,7 +204,7 @@ def states(scene, number, seed, block=0, order=(0, 0), progress=None):
     """Return ``number`` states of the invariant measure of a ``Scene``, one a column.
 
     They are the first states of the stream of ``seed`` for ``block``, integers ≥ 0, in an array of
-    ``COMPONENTS`` rows. ``order`` chooses the ergodic component of a plain scene (see
+    ``STATE_ROWS`` rows. ``order`` chooses the ergodic component of a plain scene (see
     ``draw_configuration``). N > 2 discs have the rows of ``components``. ``progress``, if given, is
     called repeatedly with the number of drawn states, and ``number``.
     """
@@ -213,22 +213,26 @@ def states(scene, number, seed, block=0, order=(0, 0), progress=None):
         from twodiscs.sampling.many.many_initial_states import labelled
 
         return labelled(scene, number, seed, block, progress)
-    filled = np.zeros((COMPONENTS, number))
+    filled = np.zeros((STATE_ROWS, number))
     sampler = start_sampler(scene, order=order)
     stream = call_in_thread(open_stream, np.uint64(seed), block)
 
     # The kernel fills whole arrays, continues the stream, and does not use all rows.
-    used, buffer = len(components(scene)), np.zeros((COMPONENTS, min(number, PIECE)))
+    used, buffer = len(components(scene)), np.zeros((STATE_ROWS, min(number, STATES_PER_PIECE)))
 
     def fill(first, stop):
-        for start in range(first, stop, PIECE):
-            end = min(start + PIECE, stop)
-            some = buffer if end - start == buffer.shape[1] else np.zeros((COMPONENTS, end - start))
+        for start in range(first, stop, STATES_PER_PIECE):
+            end = min(start + STATES_PER_PIECE, stop)
+            some = buffer if end - start == buffer.shape[1] else np.zeros((STATE_ROWS, end - start))
             draw_states(stream, sampler, some)
             filled[:used, start:end] = some[:used]
         return stop
 
-    step = CALL if sampler.prism is None else max(1, int(CALL * exact.free_fraction(scene)))
+    step = (
+        STATES_PER_CALL
+        if sampler.prism is None
+        else max(1, int(STATES_PER_CALL * exact.free_fraction(scene)))
+    )
     calls = ((first, min(first + step, number)) for first in range(0, number, step))
     draw_in_calls(fill, calls, number, progress)
     return filled

@@ -28,7 +28,7 @@ from functools import cached_property
 import numpy as np
 
 from twodiscs.model.checks import check_choice
-from twodiscs.model.events import DECLARED, EVENTS, SHELLS, WALLS, by_kind, facts
+from twodiscs.model.events import DECLARED_EVENTS, EVENTS, SHELL_EVENTS, WALLS, by_kind, facts
 from twodiscs.model.scene import Scene
 from twodiscs.model.seeds import job_seed
 from twodiscs.points.monte_carlo_point import MonteCarloPoint
@@ -48,21 +48,21 @@ from twodiscs.theory import exact
 GENERATORS = 64
 
 #: Samples of the prism with one random stream: 2¹⁴ of each generator.
-BLOCK = GENERATORS << 14
+SAMPLES_PER_BLOCK = GENERATORS << 14
 
 #: Samples of a generator between two readings of its packed counts, eight fields of eight bits.
 SAMPLES_PER_READING = 128
 
 #: Proposals of the conditioned sampler with one random stream.
-PROPOSALS = 1 << 16
+PROPOSALS_PER_BLOCK = 1 << 16
 
 #: The time of a proposal, or of a sample in a scene with effects, over the time of a sample of the
 #: prism, roughly.
-COST_RATIO = 64
-WEIGHTED_COST_RATIO = 40
+PROPOSAL_TIME = 64
+WEIGHTED_SAMPLE_TIME = 40
 
 #: Samples of the prism in about a day, the most without a budget.
-DAY = 86400 * 10**9
+DAY_OF_SAMPLES = 86400 * 10**9
 
 
 # Plain scenes -----------------------------------------------------------------------------------
@@ -70,26 +70,26 @@ DAY = 86400 * 10**9
 
 #: The counts: of the volume, of each shell, and of the samples in both the right and the top shell.
 #: An integer of 64 bits has eight fields of eight bits.
-SETS = 2 + len(SHELLS)
-if SETS > 8:
-    raise TypeError(f"sampling/montecarlo.py has room for 6 shells, not for {len(SHELLS)}")
+N_FIELDS = 2 + len(SHELL_EVENTS)
+if N_FIELDS > 8:
+    raise TypeError(f"sampling/montecarlo.py has room for 6 shells, not for {len(SHELL_EVENTS)}")
 
 # Whether a sample without overlap is in a shell: functions of the squares of the separations and of
 # the distance, of the centre of disc 1, and of the ends of all shells.
 
 
 def _hop_shell(event):
-    row, k = SHELLS.index(event.name), "xy".index(event.axis)
+    row, k = SHELL_EVENTS.index(event.name), "xy".index(event.axis)
     return lambda squares, square, centre, ends: squares[k] <= ends[row]
 
 
 def _collision_shell(event):
-    row = SHELLS.index(event.name)
+    row = SHELL_EVENTS.index(event.name)
     return lambda squares, square, centre, ends: square <= ends[row]
 
 
 def _wall_shell(event):
-    row, k = SHELLS.index(event.name), "xy".index(event.axis)
+    row, k = SHELL_EVENTS.index(event.name), "xy".index(event.axis)
     if event.side > 0:
         return lambda squares, square, centre, ends: centre[k] >= ends[row]
     return lambda squares, square, centre, ends: centre[k] <= ends[row]
@@ -98,7 +98,7 @@ def _wall_shell(event):
 IN_SHELL = by_kind(
     "sampling/montecarlo.py",
     {"hop": _hop_shell, "collision": _collision_shell, "wall": _wall_shell},
-    SHELLS,
+    SHELL_EVENTS,
 )
 
 
@@ -114,20 +114,20 @@ def _and(add, unit, in_shell):
 
 
 in_shells = inlined(lambda count, squares, square, centre, ends: count)
-for field, event in enumerate(SHELLS, 1):
+for field, event in enumerate(SHELL_EVENTS, 1):
     in_shells = _and(in_shells, 256**field, inlined(IN_SHELL[event]))
-BOTH = 8 * (1 + SHELLS.index("right_wall")), 8 * (1 + SHELLS.index("top_wall"))
+BOTH = 8 * (1 + SHELL_EVENTS.index("right_wall")), 8 * (1 + SHELL_EVENTS.index("top_wall"))
 
 
 @inlined
 def pack_sets(squares, square, centre, ends):
     """Return the sets of a sample: an integer with a field of eight bits, 0 or 1, for each set."""
     sets = in_shells(1, squares, square, centre, ends)
-    return sets + (((sets >> BOTH[0]) & (sets >> BOTH[1]) & 1) << (8 * (SETS - 1)))
+    return sets + (((sets >> BOTH[0]) & (sets >> BOTH[1]) & 1) << (8 * (N_FIELDS - 1)))
 
 
 def shell_ends(epsilon, collision, wall):
-    """Return the ends of shells of thicknesses ``epsilon``, in the order of ``SHELLS``.
+    """Return the ends of shells of thicknesses ``epsilon``, in the order of ``SHELL_EVENTS``.
 
     ``collision`` returns the square of the distance at which a shell of disc collisions of this
     thickness ends. ``wall`` returns the coordinate at which the shell of an axis and side begins.
@@ -137,7 +137,7 @@ def shell_ends(epsilon, collision, wall):
         "collision": lambda event, thick: collision(math.sqrt(2.0) * thick),
         "wall": lambda event, thick: wall(event.axis, event.side, thick),
     }
-    events = map(DECLARED.get, SHELLS)
+    events = map(DECLARED_EVENTS.get, SHELL_EVENTS)
     return tuple(makers[e.kind](e, thick) for e, thick in zip(events, epsilon, strict=True))
 
 
@@ -146,11 +146,11 @@ def sample_blocks(seed, first, stop, range_x, range_y, sigma, ends, areas):
     """Count the samples of blocks ``first`` … ``stop`` − 1 that fall into each set.
 
     ``ends`` are the ends of the shells, with coordinates in grains. Returns int64 counts: volume,
-    shells in the order of ``SHELLS``, right and top together. ``areas`` is True, or None if only
-    the volume is asked for: the shells are then not compiled.
+    shells in the order of ``SHELL_EVENTS``, right and top together. ``areas`` is True, or None if
+    only the volume is asked for: the shells are then not compiled.
     """
     s0, s1 = np.empty(GENERATORS, np.uint64), np.empty(GENERATORS, np.uint64)
-    packed, totals = np.zeros(GENERATORS, np.int64), np.zeros(SETS, np.int64)
+    packed, totals = np.zeros(GENERATORS, np.int64), np.zeros(N_FIELDS, np.int64)
     unit_x, unit_y = range_x * 2.0**-32, range_y * 2.0**-32
     inner = sigma * sigma
     mask = np.uint64(0xFFFFFFFF)
@@ -161,7 +161,7 @@ def sample_blocks(seed, first, stop, range_x, range_y, sigma, ends, areas):
             s0[i] = splitmix(counter)
             counter += GOLDEN
             s1[i] = splitmix(counter) | np.uint64(1)
-        for _ in range(BLOCK // GENERATORS // SAMPLES_PER_READING):
+        for _ in range(SAMPLES_PER_BLOCK // GENERATORS // SAMPLES_PER_READING):
             for _ in range(SAMPLES_PER_READING):
                 for i in range(GENERATORS):
                     # xoroshiro128+ (Blackman and Vigna 2021), twice.
@@ -185,7 +185,7 @@ def sample_blocks(seed, first, stop, range_x, range_y, sigma, ends, areas):
                         count = pack_sets((uu, vv), square, (grain_x, grain_y), ends)
                     packed[i] += count if square >= inner else 0
             for i in range(GENERATORS):
-                for e in range(SETS):
+                for e in range(N_FIELDS):
                     totals[e] += (packed[i] >> (8 * e)) & 255
                 packed[i] = 0
     return totals
@@ -268,12 +268,14 @@ def prism_sampler(scene, quantities, shell, seed):
     ends = shell_ends(epsilon, lambda thick: (sigma + thick) * (sigma + thick), first_grain)
     arguments = *ranges.values(), sigma, ends, True if any(epsilon) else None
     prism = (scene.range_x * scene.range_y) ** 2
-    return _sampler(scene, seed, wanted, epsilon, BLOCK, prism, sample_blocks, arguments)
+    return _sampler(
+        scene, seed, wanted, epsilon, SAMPLES_PER_BLOCK, prism, sample_blocks, arguments
+    )
 
 
 def _shelled(scene):
     """Return the events that Monte Carlo samples by a shell, in the order of its counts."""
-    return SHELLS if scene.is_plain else EVENTS
+    return SHELL_EVENTS if scene.is_plain else EVENTS
 
 
 def _shells(scene, quantities, shell):
@@ -302,7 +304,7 @@ def _sampler(
                 "place": place, "measure": factor * measure / thickness, "epsilon": thickness,
             }  # fmt: skip
     joined = {"right_wall", "top_wall"} <= wanted and "any_wall" not in _shelled(scene)
-    both = SETS - 1 if joined else None
+    both = N_FIELDS - 1 if joined else None
     constants = {"method": method, "samples": block, "quantities": sampled, "right_and_top": both}
     return Sampler(
         scene, block, lambda first, stop: kernel(seed, first, stop, *arguments), constants,
@@ -319,10 +321,10 @@ def propose_blocks(seed, first, stop, sampler, ends):
     thickness if the discs hardly fit. ``ends`` are ends of |Δx|² − σ² for collisions and of −1
     times the distance from the far wall.
     """
-    totals = np.zeros(SETS, np.int64)
+    totals = np.zeros(N_FIELDS, np.int64)
     for block in range(first, stop):
         state = open_stream(seed, block)
-        for _ in range(PROPOSALS):
+        for _ in range(PROPOSALS_PER_BLOCK):
             accepted, corner_x, corner_y, u, excess = propose_separation(state, sampler)
             if not accepted:
                 continue
@@ -334,7 +336,7 @@ def propose_blocks(seed, first, stop, sampler, ends):
             to_top = corner_y * uniform(state)
             to_top += v if bits & np.uint64(1 << 61) else 0.0
             sets = pack_sets((u * u, v * v), excess, (-to_right, -to_top), ends)
-            for e in range(SETS):
+            for e in range(N_FIELDS):
                 totals[e] += (sets >> (8 * e)) & 255
     return totals
 
@@ -358,8 +360,8 @@ def conditioned(scene, quantities, shell, seed):
         lambda axis, side, thick: -thick if side > 0 else thick - ranges[axis],
     )
     return _sampler(
-        scene, seed, wanted, epsilon, PROPOSALS, 2 * separations.mass, propose_blocks,
-        (separations, ends), "conditioned", COST_RATIO,
+        scene, seed, wanted, epsilon, PROPOSALS_PER_BLOCK, 2 * separations.mass, propose_blocks,
+        (separations, ends), "conditioned", PROPOSAL_TIME,
     )  # fmt: skip
 
 
@@ -427,7 +429,7 @@ def weighted_ends(scene, epsilon):
         "wall": lambda thick: thick,
         "walls": lambda thick: (tuple(thick / math.sqrt(m) for m in scene.masses), walled),
     }
-    kinds = (DECLARED[event].kind for event in EVENTS)
+    kinds = (DECLARED_EVENTS[event].kind for event in EVENTS)
     return tuple(
         makers[kind](thick) if thick else None for kind, thick in zip(kinds, epsilon, strict=True)
     )
@@ -479,7 +481,7 @@ def weighted_blocks(seed, first, stop, prism, ends):
     totals = np.zeros(1 + len(EVENTS), np.int64)
     for block in range(first, stop):
         state = open_stream(seed, block)
-        for _ in range(BLOCK):
+        for _ in range(SAMPLES_PER_BLOCK):
             x1, y1, z1, dx, dy, dz = propose_in_prism(state, prism)
             if dx * dx + dy * dy + dz * dz < prism.sigma * prism.sigma:
                 continue
@@ -506,8 +508,8 @@ def weighted(scene, quantities, shell, seed):
     ends, axes = weighted_ends(scene, epsilon), range(len(scene.axes))
     measure = math.prod(4 * prism.half_1[axis] * prism.half_2[axis] for axis in axes)
     return _sampler(
-        scene, seed, wanted, epsilon, BLOCK, measure, weighted_blocks, (prism, ends),
-        ratio=WEIGHTED_COST_RATIO,
+        scene, seed, wanted, epsilon, SAMPLES_PER_BLOCK, measure, weighted_blocks, (prism, ends),
+        ratio=WEIGHTED_SAMPLE_TIME,
     )  # fmt: skip
 
 
@@ -531,7 +533,7 @@ class MonteCarloRun(Run):
 
     The sampler is that of a ``method``, one of ``samplers``, or the best one for the scene. It is
     ``weighted`` for effects, and ``prism_sampler`` if a sample of the prism has no overlap with a
-    probability of at least 1/``COST_RATIO``. Otherwise it is ``conditioned``, with the number of
+    probability of at least 1/``PROPOSAL_TIME``. Otherwise it is ``conditioned``, with the number of
     samples that takes the same time. For more than two discs it is
     ``many.insertions.insertion_sampler``, which has no shells.
 
@@ -562,7 +564,7 @@ class MonteCarloRun(Run):
     def sampler(self):
         """The ``Sampler`` of the method."""
         makers = samplers(self.scene)
-        few = "conditioned" in makers and exact.free_fraction(self.scene) < 1 / COST_RATIO
+        few = "conditioned" in makers and exact.free_fraction(self.scene) < 1 / PROPOSAL_TIME
         best = [*makers][few]
         method = best if self.method is None else check_choice("method", self.method, makers)
         return makers[method](self.scene, self.quantities, self.shell, self.seed)
@@ -570,7 +572,7 @@ class MonteCarloRun(Run):
     @property
     def weight(self):
         """The samples of the prism for which each sample counts."""
-        return COST_RATIO if self.sampler.constants["method"] == "conditioned" else 1
+        return PROPOSAL_TIME if self.sampler.constants["method"] == "conditioned" else 1
 
     @cached_property
     def components(self):
@@ -592,7 +594,7 @@ class MonteCarloRun(Run):
         if self.target is None:
             return {"all": fixed(work, -(-self.samples // each), block, ratio)}
         ratio /= self.weight
-        budget = self.budget or DAY / ratio
+        budget = self.budget or DAY_OF_SAMPLES / ratio
         run = SequentialRun(work, error_over_target, None, each, budget, FIRST_ROUND, ratio)
         return {"all": run}
 

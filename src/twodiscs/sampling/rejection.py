@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.events import AXIS
+from twodiscs.model.events import EVENT_AXES
 from twodiscs.sampling.conditioned import draw_in_disc
 from twodiscs.sampling.jit import compiled, optional
 from twodiscs.sampling.streams import draw_largest, next_bits, signed_uniform, uniform
@@ -54,7 +54,7 @@ class RejectionSampler(NamedTuple):
 
 def find_neck(scene, hop, within):
     """Return the ``Neck`` of an open ``hop`` of a ``Scene``, ``within`` a distance < σ."""
-    axis, within = AXIS[hop], Fraction(within)
+    axis, within = EVENT_AXES[hop], Fraction(within)
     squares = {a: scene.reach(a) ** 2 for a in scene.axes if a != axis}
     missing = scene.exact_contact**2 - within**2 - sum(squares.values())
     least, span = dict.fromkeys("xyz", 0.0), dict.fromkeys("xyz", 0.0)

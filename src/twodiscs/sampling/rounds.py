@@ -24,14 +24,14 @@ from twodiscs.sampling.threads import map_in_threads
 #: Blocks of the first round, and the longest round over the work before it: an error from few
 #: events predicts badly.
 FIRST_ROUND = 32
-GROWTH = 8.0
+LONGEST_ROUND = 8.0
 
 #: A round is longer than its prediction by this factor, so that no short round has to follow.
-MARGIN = 1.05
+ROUND_MARGIN = 1.05
 
 #: Events of the plain ensemble in one call of a kernel, about, unless a block has more: some tenths
 #: of a second. Between calls the progress bar moves, and Ctrl-C stops the work.
-CALL = 2**24
+EVENTS_PER_CALL = 2**24
 
 #: Steps of the grid of planned blocks while their number doubles.
 STEPS = 16
@@ -82,7 +82,7 @@ def _done(run, stop, ranges, cores, progress):
     sums, first = reached(ranges, stop)
     if first == stop:
         return sums
-    step, new = max(1, int(CALL / run.block_work)), None
+    step, new = max(1, int(EVENTS_PER_CALL / run.block_work)), None
     calls = ((start, min(start + step, stop)) for start in range(first, stop, step))
     for done, more in enumerate(map_in_threads(run.work, calls, cores, lambda: progress(None)), 1):
         new = added(new, more)
@@ -119,12 +119,12 @@ def run_in_rounds(run, progress=None, cores=1, resume_from=None):
             break
         worst = float(np.max(excess))
         # The work that is missing for the error, and that the budget allows, over the work so far.
-        missing, affordable = MARGIN * worst * worst - 1.0, run.budget / simulated - 1.0
+        missing, affordable = ROUND_MARGIN * worst * worst - 1.0, run.budget / simulated - 1.0
         last = done * (1 + max(0.0, min(missing, affordable)))
         report(done)
         if worst <= 1.0 or affordable * done < 1.0:
             break
-        blocks = math.ceil(min(missing, GROWTH) * done)
+        blocks = math.ceil(min(missing, LONGEST_ROUND) * done)
         blocks = min(blocks, math.floor(affordable * done))
     return {ends: sums for ends, sums in ranges.items() if ends[1] <= done}
 

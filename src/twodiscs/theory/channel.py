@@ -33,14 +33,14 @@ from twodiscs.theory.flux import Derivatives
 from twodiscs.theory.quadrature import gauss_legendre
 
 #: Nodes of a panel, the phase that they resolve, and the most panels that double.
-ORDER, PHASE, MOST_PANELS = 20, 15.0, 60
+NODES_PER_PANEL, PANEL_PHASE, MOST_PANELS = 20, 15.0, 60
 
 #: An exponent x with a negligible exp(−x).
 NEGLIGIBLE = 40.0
 
 #: Relative sizes of neglected parts: periodic images of the function, which come from the step of
 #: the trapezoidal rule, and the terms after the last.
-ALIAS, TAIL = 1e-14, 1e-11
+ALIAS_ERROR, TAIL_ERROR = 1e-14, 1e-11
 
 #: The number of vectors in the first trial for the range of the kernel, and its relative error.
 FIRST_RANK, RANK_ERROR = 16, 2e-15
@@ -49,7 +49,7 @@ FIRST_RANK, RANK_ERROR = 16, 2e-15
 RATIO_ERROR = 4e-15
 
 #: The terms of an inverse in the first trial, and at most.
-FIRST_TERMS, TERMS = 24, 6000
+FIRST_TERMS, MOST_TERMS = 24, 6000
 
 
 class Channel(NamedTuple):
@@ -76,7 +76,7 @@ def graded_nodes(height, finest, widest, farthest):
     The first one is about ``finest``, none is wider than ``widest``, and none begins beyond
     ``farthest``.
     """
-    rule = gauss_legendre(ORDER)
+    rule = gauss_legendre(NODES_PER_PANEL)
     x, w = np.array([t for t, _, _ in rule]), np.array([weight for _, _, weight in rule])
     ends = [height / 2]
     while ends[-1] > finest and len(ends) < MOST_PANELS:
@@ -136,7 +136,7 @@ def panel_sizes(height, sigma, force, reach):
     return (
         height,
         1 / (2 * force * steepest),
-        PHASE / (reach * steepest),
+        PANEL_PHASE / (reach * steepest),
         height - math.sqrt((sigma - far) * (sigma + far)) if far < sigma else height,
     )
 
@@ -287,7 +287,7 @@ def derivatives(scene, hops=True):
 
     Hops in x are impossible. Hops in y, of any pair, take about as long as all the rest; with
     ``hops`` False they are None. Relative errors are less than 1e-12 in a channel longer than the
-    discs in a row, and some 1e-11 (``TAIL``) in others. If the discs hardly fit, errors are
+    discs in a row, and some 1e-11 (``TAIL_ERROR``) in others. If the discs hardly fit, errors are
     roundings over the free length. Two or three discs in a short channel have many terms; other
     modules have methods for them.
     """
@@ -309,12 +309,12 @@ def derivatives(scene, hops=True):
             continue
         sums = _windowed(np.array(terms))
         change = np.inf if last is None else np.max(np.abs(sums - last)[:4] / np.abs(sums)[:4])
-        if change < TAIL:
+        if change < TAIL_ERROR:
             break
-        if len(terms) >= TERMS:
+        if len(terms) >= MOST_TERMS:
             raise InputError(
-                f"the inverse Laplace transform for {scene.discs} discs needs more than {TERMS}"
-                " terms"
+                f"the inverse Laplace transform for {scene.discs} discs needs more than "
+                f"{MOST_TERMS} terms"
             )
         last, check = sums, math.ceil(1.25 * check)
     sums = sums * step / math.pi
@@ -341,7 +341,7 @@ def _windowed(terms):
 
 
 def _step(channel, p, phi):
-    """Return the step along the line at which periodic images of V are below ``ALIAS``.
+    """Return the step along the line at which periodic images of V are below ``ALIAS_ERROR``.
 
     The images are V at rooms longer by multiples of 2π/step, times exp(−p 2π/step) for each. V is
     bounded there by its transform at any q < p, e^{q (room + 2π/step)} q^(−N−1) Z(q).
@@ -350,6 +350,6 @@ def _step(channel, p, phi):
     for fraction in (0.2, 0.35, 0.5, 0.65, 0.8):
         q = fraction * p
         at_q = q * channel.room - (channel.discs + 1) * math.log(q) + _log_partition(channel, q)
-        best = min(best, (at_q - phi - math.log(ALIAS)) / ((1 - fraction) * p))
+        best = min(best, (at_q - phi - math.log(ALIAS_ERROR)) / ((1 - fraction) * p))
     # V vanishes for a room of 0, so images at shorter rooms need no larger period than the room.
     return 2 * math.pi / max(best, channel.room)

@@ -32,30 +32,30 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, WALL_HITS, WALLS
+from twodiscs.model.events import DECLARED_EVENTS, EVENT_AXES, EVENTS, HOPS, WALL_HITS, WALLS
 from twodiscs.theory import weighted
 from twodiscs.theory.quadrature import gauss_legendre
 
 #: The number of initial states in G that is enough for the error of its bursts.
-VISITS = 100
+ENOUGH_VISITS = 100
 
 #: A contribution to the error below this fraction of it is ignored.
-NEGLIGIBLE = 0.3
+NEGLIGIBLE_ERROR = 0.3
 
 #: The smallest d over the largest one: below, almost no events come from G.
-SMALLEST = 2.0**-20
+SMALLEST_REACH = 2.0**-20
 
 #: The rule for A, whose integrand is smooth: its error is below 1e-11 of A for all I up to 1.
-NODES = gauss_legendre(8)
+BURST_RULE = gauss_legendre(8)
 
 #: Points of the arc on which discs may touch a disc in a corner.
-POINTS = 64
+ARC_POINTS = 64
 
 #: The variance to add, over A. Scores of walls then have mean squares of 0.8 to 1.2 with 1024
 #: replicas, for eight scenes with two and three discs and 100 seeds each; without it of up to 2. In
 #: five scenes A was counted, by the 30th and the 100th largest of 40000 counts: it is 0.7 to 1.5 of
 #: what is computed here.
-UNSEEN = 2.5
+ADDED_VARIANCE = 2.5
 
 
 class Region(NamedTuple):
@@ -84,11 +84,11 @@ def regions(scene):
         return ()
     volume, areas, found = weighted.volume(scene), weighted.areas(scene), []
     for hop in HOPS:
-        axis = AXIS[hop]
+        axis = EVENT_AXES[hop]
         if axis not in scene.axes or (least := _neck(scene, hop)) is None:
             continue
         reach = float(scene.reach(axis))
-        within = max(least, reach * SMALLEST)
+        within = max(least, reach * SMALLEST_REACH)
         while within < reach:
             share = weighted.volume_near(scene, hop, within) / volume
             near = weighted.areas_near(scene, axis, within)
@@ -105,9 +105,9 @@ def replicas_needed(scene, event, error):
     """
     most = 0.0
     for region in regions(scene):
-        excess = region.rates.get(event, 0.0) / (NEGLIGIBLE * error)
+        excess = region.rates.get(event, 0.0) / (NEGLIGIBLE_ERROR * error)
         if excess > 1:
-            most = max(most, min(VISITS, excess**2) / region.volume)
+            most = max(most, min(ENOUGH_VISITS, excess**2) / region.volume)
     return most
 
 
@@ -133,7 +133,7 @@ def corner_hits(inertia):
     where no terms cancel. The integral is [1/3 − (1 − √q arctan(1/√q))/I]/I with q = (1 + I)/I. At
     I = 1 the circle is three points: a quarter of the directions stay, and A is a tenth larger.
     """
-    kept = sum(w * x**2 * (1 + x**2) / (1 + inertia * (1 + x**2)) for x, _, w in NODES)
+    kept = sum(w * x**2 * (1 + x**2) / (1 + inertia * (1 + x**2)) for x, _, w in BURST_RULE)
     return inertia**2 / (4 * (1 + 2 * inertia)) * kept
 
 
@@ -152,9 +152,9 @@ def corner_variance(scene, event, duration):
     bottom, top = (math.fsum(part) for part in zip(*corners, strict=True))
     found = bottom + top
     if event in WALLS:  # half of the hits, of a quarter of the variance
-        own = top if DECLARED[event].side > 0 else bottom
-        found = (found if AXIS[event] == "x" or not scene.field else own) / 4
-    return UNSEEN * corner_hits(inertia) * found
+        own = top if DECLARED_EVENTS[event].side > 0 else bottom
+        found = (found if EVENT_AXES[event] == "x" or not scene.field else own) / 4
+    return ADDED_VARIANCE * corner_hits(inertia) * found
 
 
 def _corners(scene, i, duration):
@@ -166,7 +166,7 @@ def _corners(scene, i, duration):
     # Contacts with a disc in the corner, as far as the other centre has room there; and that room.
     sigma, others, offset = scene.contact_distance, scene.discs - 1, scene.radii[j] - radius
     reach_x, reach_y = (s - 2 * scene.radii[j] for s in sides)
-    middles = (np.arange(POINTS) + 0.5) / POINTS
+    middles = (np.arange(ARC_POINTS) + 0.5) / ARC_POINTS
     x, y = sigma * np.cos(middles * math.pi / 2), sigma * np.sin(middles * math.pi / 2)
     there = (x >= offset) & (x <= offset + reach_x) & (y >= offset) & (y <= offset + reach_y)
     share = np.mean(there)

@@ -2,7 +2,7 @@
 
 import math
 
-from twodiscs.model.events import AXIS, by_kind
+from twodiscs.model.events import EVENT_AXES, by_kind
 from twodiscs.model.scene import Scene
 from twodiscs.theory.exact import volume
 from twodiscs.theory.plain import Arc
@@ -136,5 +136,5 @@ def density_at_zero(scene, hop):
     """
     if not scene.is_possible(hop):
         return None
-    side = {"x": scene.range_x, "y": scene.range_y}[AXIS[hop]]
+    side = {"x": scene.range_x, "y": scene.range_y}[EVENT_AXES[hop]]
     return 3 * math.sqrt(2) / (16 * side)

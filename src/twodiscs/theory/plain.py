@@ -19,15 +19,15 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple
 
-from twodiscs.model.events import SHELLS, WAYS, by_kind
+from twodiscs.model.events import SHELL_EVENTS, WAYS, by_kind
 from twodiscs.theory.quadrature import gauss_legendre
 
 #: The integrands are trigonometric polynomials of degree 4 at most over a quarter turn, or equally
 #: smooth: sixteen nodes are exact to rounding.
-RULE = gauss_legendre(16)
+ARC_RULE = gauss_legendre(16)
 
 #: Exact for cubics.
-CUBIC = gauss_legendre(2)
+CUBIC_RULE = gauss_legendre(2)
 
 
 class Arc:
@@ -78,7 +78,7 @@ class Arc:
             return
         turn = self.angle(first, second)
         before, after = self.angle(self.start, first), self.angle(second, self.stop)
-        for t, rest, weight in RULE:
+        for t, rest, weight in ARC_RULE:
             s = before + t * turn
             left = after + rest * turn
             yield (
@@ -176,7 +176,7 @@ def _collision_shell(arc, epsilon):
     rays += [(node, node[2] / node[4]) for node in arc.nodes(top_begins, arc.stop)]
     total = 0.0
     for (weight, x, y, cos, sin), ray in rays:
-        for t, _, share in CUBIC:
+        for t, _, share in CUBIC_RULE:
             s = t * ray
             total += weight * share * ray * (1 + s / arc.sigma) * (x - s * cos) * (y - s * sin)
     return 4 * total / epsilon
@@ -195,7 +195,7 @@ SHELL_OF = by_kind(
         "collision": lambda event: _collision_shell,
         "wall": _along("x", _wall_shell),
     },
-    SHELLS,
+    SHELL_EVENTS,
 )
 
 

@@ -45,7 +45,7 @@ from twodiscs.theory.flux import Derivatives
 from twodiscs.theory.quadrature import gauss_legendre
 
 #: Nodes between two kinks, for the sum of the gaps and for the larger gap.
-OUTER, INNER = 48, 32
+OUTER_NODES, INNER_NODES = 48, 32
 
 
 def _nodes(order):
@@ -75,7 +75,7 @@ def _ends(a, b, sigma):
 
 def _sums(a, b, sigma):
     """Return (t, weight, c) of the nodes of the outer integral."""
-    x, w = _nodes(OUTER)
+    x, w = _nodes(OUTER_NODES)
     # Powers of a half at the ends are smooth in the angle of a sine squared.
     fraction, slope = np.sin(math.pi / 2 * x) ** 2, math.pi / 2 * np.sin(math.pi * x)
     t, weight, c = [], [], []
@@ -90,7 +90,7 @@ def _sums(a, b, sigma):
             weight.append(width * slope * w * c[-1])
         else:
             t.append(low + (high - low) * fraction)
-            c.append(np.zeros(OUTER))
+            c.append(np.zeros(OUTER_NODES))
             weight.append((high - low) * slope * w)
     return np.concatenate(t), np.concatenate(weight), np.concatenate(c)
 
@@ -126,7 +126,7 @@ def _kinks(a, sigma, t, c):
 
 def _gaps(a, sigma, t, c):
     """Return (p, q, weight, P < σ, Q < σ) at the inner nodes, arrays (panels, nodes, t)."""
-    x, w = (part[:, None] for part in _nodes(INNER))
+    x, w = (part[:, None] for part in _nodes(INNER_NODES))
     larger, smaller = _kinks(a, sigma, t, c)
     low, high = larger[:-1, None, :], larger[1:, None, :]
     most, least = smaller[:-1, None, :], smaller[1:, None, :]
@@ -168,7 +168,7 @@ def _triangles(winding, sigma):
         return plane * sigma**4, 4 * plane * sigma**3
     if winding >= 3 * sigma:
         return 0.0, 0.0
-    x, w = _nodes(OUTER)
+    x, w = _nodes(OUTER_NODES)
 
     def lens(t):
         half = np.minimum(t / (2 * sigma), 1.0)

@@ -25,7 +25,7 @@ disc. At the same energy per disc times scale as 1/√N.
 
 import math
 
-from twodiscs.model.events import DECLARED
+from twodiscs.model.events import DECLARED_EVENTS
 from twodiscs.model.scene import check_scene
 from twodiscs.theory.flux import flux_constant
 
@@ -46,7 +46,7 @@ def pressure_factor(scene, event):
     force kT/side on the wall at a distance ``side`` from the opposite one. ``event`` is one of
     ``WALLS``.
     """
-    side = scene.side(DECLARED[event].axis)
+    side = scene.side(DECLARED_EVENTS[event].axis)
     return side * scene.velocity_components * momentum_per_hit(scene)
 
 

@@ -33,7 +33,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.events import AXIS, WAYS, by_kind
+from twodiscs.model.events import EVENT_AXES, WAYS, by_kind
 from twodiscs.model.two_geometry import ENERGY
 from twodiscs.theory.flux import flux_constant
 from twodiscs.theory.quadrature import double_exponential, gauss_legendre
@@ -58,13 +58,13 @@ def _rule(triples):
 
 
 #: Exact for the densities of an axis without field, which are piecewise linear.
-LINEAR = _rule(gauss_legendre(2))
+LINEAR_RULE = _rule(gauss_legendre(2))
 
 #: Exact to rounding for a piece of the arc between two such axes, a trigonometric polynomial.
-SMOOTH = _rule(gauss_legendre(16))
+SMOOTH_RULE = _rule(gauss_legendre(16))
 
 #: For half-integer powers: of the energy left in a field, or where a sphere touches a plane.
-SINGULAR = _rule(double_exponential(1 / 16))
+SINGULAR_RULE = _rule(double_exponential(1 / 16))
 
 
 def _nodes(cuts, rule):
@@ -145,7 +145,7 @@ class Branch:
         end = np.maximum(room, 0.0) / (float(self.reach) + np.sqrt(square))
         distances = self.distances
         cuts = np.minimum(distances, np.minimum(end, distances[-1])[..., None])
-        z, weights = _nodes(cuts, SINGULAR if self.curved else LINEAR)
+        z, weights = _nodes(cuts, SINGULAR_RULE if self.curved else LINEAR_RULE)
         return np.sum(weights * self.density(z), axis=(-2, -1))
 
 
@@ -249,7 +249,7 @@ def _outside(branches, square, room, surface, less=None):
     sine = y * (t0 + t) / np.maximum(t0 * k + t * k0, 1e-300)
     angles = _arctan2(sine, (t0 * t + k0 * k) / square[..., None])
     angles = angles if square.ndim else np.unique(angles)
-    angle, weights = _nodes(angles, SINGULAR if first.curved or len(rest) > 1 else SMOOTH)
+    angle, weights = _nodes(angles, SINGULAR_RULE if first.curved or len(rest) > 1 else SMOOTH_RULE)
     t0, k0, rho, room0 = (part[..., None] for part in (t0, k0, rho[..., None], room0))
     begin = _arctan2(k0, t0)
     y = 2 * rho * np.sin(angle / 2) * np.sin(begin + angle / 2)
@@ -297,7 +297,7 @@ def _near_contact(branches, sigma, thickness):
     # The difference would cancel. At the cuts the growing sphere touches an edge or a corner.
     touches = [float(c - sigma**2) / (float(sigma) + math.sqrt(c)) for c in _sums(branches)]
     cuts = np.unique(np.clip([0.0, *touches, float(thickness)], 0.0, min(touches[-1], thickness)))
-    nodes = zip(*(part.ravel() for part in _nodes(cuts, SINGULAR)), strict=True)
+    nodes = zip(*(part.ravel() for part in _nodes(cuts, SINGULAR_RULE)), strict=True)
     total = math.fsum(weight * _at_distance(branches, sigma, True, x) for x, weight in nodes)
     return total / float(thickness)
 
@@ -470,7 +470,9 @@ def areas(scene):
 
 def volume_near(scene, hop, distance):
     """Return the part of V with a separation up to ``distance`` along the axis of a ``hop``."""
-    return _Space(scene, scene.velocity_components / 2 - 1).within(AXIS[hop], Fraction(distance))
+    return _Space(scene, scene.velocity_components / 2 - 1).within(
+        EVENT_AXES[hop], Fraction(distance)
+    )
 
 
 # Shells -------------------------------------------------------------------------------------------
@@ -506,5 +508,5 @@ def rate(scene, event):
 def passing_rate(scene, hop):
     """Return the rate at which the discs pass each other in a ``hop`` along a periodic axis."""
     space = _Space(scene, (scene.velocity_components - 1) / 2)
-    area = scene.fastest * space.passing(AXIS[hop])
+    area = scene.fastest * space.passing(EVENT_AXES[hop])
     return flux_constant(scene.velocity_components) * area / volume(scene)

@@ -11,11 +11,11 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 
 from twodiscs.model.checks import (
     LARGEST_INTEGER,
-    LONGEST,
+    LONGEST_LENGTH,
     MOST_DISCS,
-    PRESETS,
-    SHORTEST,
-    THINNEST,
+    NAMED_ERRORS,
+    SHORTEST_LENGTH,
+    THINNEST_SHELL,
     parse_number,
 )
 from twodiscs.model.effects import EFFECTS
@@ -97,13 +97,14 @@ def text(allowed, pattern, most):
 
 
 A_LENGTH = (
-    f"a positive length between {format_number(SHORTEST, 'g')} and {format_number(LONGEST, 'g')}"
+    f"a positive length between {format_number(SHORTEST_LENGTH, 'g')} and "
+    f"{format_number(LONGEST_LENGTH, 'g')}"
 )
 AN_ERROR = "a number above 0 and at most 1"
-PRESET_NAMES = ", ".join(PRESETS)
+PRESET_NAMES = ", ".join(NAMED_ERRORS)
 
 Flag = Annotated[bool, words("true or false")]
-Length = number(A_LENGTH, "length", ge=SHORTEST, le=LONGEST)
+Length = number(A_LENGTH, "length", ge=SHORTEST_LENGTH, le=LONGEST_LENGTH)
 EVENTS_UNIT = "wall hits and disc collisions"
 Budget = integer(1, MOST_EVENTS, EVENTS_UNIT)
 Radii = Annotated[
@@ -116,7 +117,7 @@ Events = Annotated[
     words("true, false, or a non-empty list of different events"),
 ]
 Error = Annotated[
-    number(AN_ERROR, gt=0, le=1) | Literal[tuple(PRESETS)],
+    number(AN_ERROR, gt=0, le=1) | Literal[tuple(NAMED_ERRORS)],
     words(f"{AN_ERROR}, or a preset ({PRESET_NAMES})"),
 ]
 AXES = "a list of different axes among x, y and, in a box with a depth, z, or text such as xy"
@@ -245,7 +246,7 @@ class MonteCarlo(Block):
     fewer than 1/64 of the samples are accepted, a conditioned sampler draws 1/64 as many samples at
     the same cost."""
 
-    shell: number("a number above 1e-6 and below 1", gt=THINNEST, lt=1) = 0.02
+    shell: number("a number above 1e-6 and below 1", gt=THINNEST_SHELL, lt=1) = 0.02
     """The thickness of the shell that measures an area, as a fraction of the radius, or of the gap
     left to the discs if that is smaller."""
 

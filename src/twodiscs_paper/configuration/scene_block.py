@@ -3,7 +3,7 @@
 A mistake raises ``InputError`` with the key in the block of the scene.
 """
 
-from twodiscs.model.checks import MOST_WITH_VOLUME, PRESETS, InputError
+from twodiscs.model.checks import MOST_DISCS_WITH_VOLUME, NAMED_ERRORS, InputError
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.formats import format_number
 from twodiscs.model.many_geometry import has_volume
@@ -181,10 +181,10 @@ def _check_quantities(quantities, box, radii, histogram):
         known = ", ".join(Watch.model_fields)
         raise InputError(f"watch must ask for at least one of {known}, not for nothing")
     for name in ("volume", "areas"):
-        if getattr(quantities, name) and box.discs > MOST_WITH_VOLUME:
+        if getattr(quantities, name) and box.discs > MOST_DISCS_WITH_VOLUME:
             raise InputError(
-                f"watch.{name} must be false for more than {MOST_WITH_VOLUME} discs, because Monte "
-                f"Carlo finds almost no configuration of {box.discs} discs"
+                f"watch.{name} must be false for more than {MOST_DISCS_WITH_VOLUME} discs, because "
+                f"Monte Carlo finds almost no configuration of {box.discs} discs"
             )
     if quantities.mean_times:
         try:
@@ -206,7 +206,7 @@ def _accuracy(asked, events):
     if not isinstance(asked, Accuracy):
         asked = Accuracy(default=asked)
     errors = {event: getattr(asked, event) or asked.default for event in sorted(events)}
-    return {event: PRESETS.get(error, error) for event, error in errors.items()}
+    return {event: NAMED_ERRORS.get(error, error) for event, error in errors.items()}
 
 
 def _checked(radii, box, path):

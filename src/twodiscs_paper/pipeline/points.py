@@ -5,7 +5,7 @@ from pathlib import Path
 
 from twodiscs.model.checks import InputError
 from twodiscs.model.formats import quote
-from twodiscs.points.base import MALFORMED, SECONDS, read_json, restore_arrays
+from twodiscs.points.base import MALFORMED_ERRORS, SECONDS_KEY, read_json, restore_arrays
 
 #: The remedy for a wrong file.
 REMEDY = "delete it, and it is made again"
@@ -21,7 +21,7 @@ def read_components(path, stage, scene, settings):
     try:
         found = {"kind": content["kind"]} | content["scene"] | content["settings"]
         components = restore_arrays(content["parts"])
-    except MALFORMED:
+    except MALFORMED_ERRORS:
         raise InputError(f"{path} must be a point or a shard of one; {REMEDY}") from None
     asked = json.loads(json.dumps({"kind": stage.call} | scene.parameters() | settings))
     for name in asked | found:
@@ -37,13 +37,13 @@ def read_point(path, stage, scene, settings):
     components = read_components(path, stage, scene, settings)
     try:
         return stage.point.of(scene, components)
-    except MALFORMED:
+    except MALFORMED_ERRORS:
         raise InputError(f"{path} is a point of another version; {REMEDY}") from None
 
 
 def read_seconds(path):
     """Return the seconds in a file of ``write_json``, None without any."""
-    return json.loads(Path(path).read_bytes()).get(SECONDS)
+    return json.loads(Path(path).read_bytes()).get(SECONDS_KEY)
 
 
 def read_shards(paths, stage, scene, settings):

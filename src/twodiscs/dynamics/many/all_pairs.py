@@ -21,8 +21,8 @@ import numpy as np
 from twodiscs.dynamics import ensemble
 from twodiscs.dynamics.law import (
     END_OF_TIME,
-    NEVER,
-    VANISHING,
+    INFINITE_GAP,
+    VANISHING_SQUARE,
     contact_quotient,
     crosses,
     divided,
@@ -250,7 +250,7 @@ def earlier_event(gap, speed, code, other_gap, other_speed, number, half):
     return gap, speed, number if sooner else code
 
 
-@optional(lambda position, velocity, half: (NEVER, 1.0))
+@optional(lambda position, velocity, half: (INFINITE_GAP, 1.0))
 def walled_quotient(position, velocity, half):
     """Return (gap, speed) to the wall ahead; without walls (``half`` None) the gap is infinite."""
     return wall_quotient(position, velocity, half)
@@ -311,7 +311,7 @@ def pair_meeting(dx, dy, du, dv, sigma, ring_x, ring):
 def pair_contact(dx, dy, du, dv, sigma):
     """Return (gap, speed) of two discs; the gap is infinite if they separate."""
     gap, speed, approach = contact_quotient(dx, dy, None, du, dv, None, sigma)
-    return gap if approach else NEVER, speed
+    return gap if approach else INFINITE_GAP, speed
 
 
 @optional(lambda limit, code, ring: (limit, code))
@@ -405,7 +405,7 @@ def advance(all_lanes, law, hops_x):
                 dx, dy = nearest(dx, law.ring_x), nearest(dy, law.ring_y)
                 square = dx * dx + dy * dy
                 exchange = (dx * (ui[l] - uj[l]) + dy * (vi[l] - vj[l])) / square
-                meets = (codes[l] == number) & (square > VANISHING)
+                meets = (codes[l] == number) & (square > VANISHING_SQUARE)
                 exchange = exchange if meets else 0.0
                 ui[l] -= exchange * dx
                 vi[l] -= exchange * dy

@@ -26,7 +26,13 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.dynamics.ensemble import kick_limit, open_kicks
-from twodiscs.dynamics.law import NEVER, VANISHING, contact_quotient, crosses, crossing_time
+from twodiscs.dynamics.law import (
+    INFINITE_GAP,
+    VANISHING_SQUARE,
+    contact_quotient,
+    crosses,
+    crossing_time,
+)
 from twodiscs.dynamics.many import all_pairs
 from twodiscs.dynamics.many.all_pairs import COLLISIONS, HORIZONTAL_HOPS, N_CLASSES, VERTICAL_HOPS
 from twodiscs.sampling.jit import compiled, inlined, optional
@@ -170,7 +176,7 @@ def new_motion(discs, grid, rough=None):
         np.zeros(discs), np.zeros(discs), np.zeros(discs), np.zeros(discs), np.zeros(discs),
         np.zeros(discs), np.zeros(discs), np.zeros(discs, np.bool_),
         np.zeros(discs, np.int64), np.zeros(discs, np.int64), np.zeros(discs, np.int64),
-        np.full(2 * leaves, NEVER), grids.new_places(discs, grid),
+        np.full(2 * leaves, INFINITE_GAP), grids.new_places(discs, grid),
         all_pairs.new_spins(1, discs, rough),
     )  # fmt: skip
 
@@ -197,7 +203,7 @@ def find_contact(i, now, columns, rows, motion, grid, law):
     x, y, u, v = motion.x[i], motion.y[i], motion.u[i], motion.v[i]
     lag = now - motion.time[i]
     x, y = x + u * lag, y + v * lag
-    gap, speed, partner = NEVER, 1.0, -1
+    gap, speed, partner = INFINITE_GAP, 1.0, -1
     across, up = grid.x.size - 1, grid.y.size - 1
     first, last = grids.columns_within(columns[0], columns[1], across, law.ring_x)
     lowest, highest = grids.columns_within(rows[0], rows[1], up, law.ring_y)
@@ -224,7 +230,7 @@ def find_contact(i, now, columns, rows, motion, grid, law):
 @inlined
 def time_to(border, position, velocity):
     """Return the time until a disc is at the ``border`` ahead; infinite for one that rests."""
-    return abs(border - position) / abs(velocity) if velocity != 0.0 else NEVER
+    return abs(border - position) / abs(velocity) if velocity != 0.0 else INFINITE_GAP
 
 
 @inlined
@@ -308,7 +314,7 @@ def count_hops(i, at, now, band, kind, log, bands):
     own, count = bands.entry[i], 0
     start, speed, since = bands.at[own], bands.speed[own], bands.since[own]
     # A disc has not changed order with itself.
-    bands.at[own] = NEVER
+    bands.at[own] = INFINITE_GAP
     first, end = bands.first[band], bands.first[band + 1]
     # Parts of arrays, whose indices cannot be negative, become vectors.
     places, speeds, times = bands.at[first:end], bands.speed[first:end], bands.since[first:end]
@@ -388,13 +394,13 @@ def collide(i, j, motion, law):
     dy = all_pairs.nearest(motion.y[i] - motion.y[j], law.ring_y)
     du, dv = motion.u[i] - motion.u[j], motion.v[i] - motion.v[j]
     square = dx * dx + dy * dy
-    exchange = (dx * du + dy * dv) / square if square > VANISHING else 0.0
+    exchange = (dx * du + dy * dv) / square if square > VANISHING_SQUARE else 0.0
     motion.u[i] -= exchange * dx
     motion.v[i] -= exchange * dy
     motion.u[j] += exchange * dx
     motion.v[j] += exchange * dy
     discs = motion.u, motion.v, all_pairs.only_lane(motion.s)
-    all_pairs.rub_discs(discs, i, discs, j, dx, dy, square > VANISHING, law.rough)
+    all_pairs.rub_discs(discs, i, discs, j, dx, dy, square > VANISHING_SQUARE, law.rough)
 
 
 @optional(lambda i, column, columns, positions, laps, ring: column)

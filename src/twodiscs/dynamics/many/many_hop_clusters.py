@@ -16,13 +16,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK, open_kicks, renew_kicks
+from twodiscs.dynamics.ensemble import HOPS_PER_BLOCK, open_kicks, renew_kicks
 from twodiscs.dynamics.law import crossing_time
 from twodiscs.dynamics.many import all_pairs
 from twodiscs.dynamics.many.all_pairs import COLLISIONS, ManyLaw, many_disc_law
-from twodiscs.dynamics.two.hop_clusters import LARGEST_CLUSTER, SUMS
+from twodiscs.dynamics.two.hop_clusters import LARGEST_CLUSTER, N_HOP_SUMS
 from twodiscs.model.checks import InputError
-from twodiscs.model.events import AXIS
+from twodiscs.model.events import EVENT_AXES
 from twodiscs.model.many_geometry import LARGE
 from twodiscs.model.scene import hopping_along
 from twodiscs.sampling.jit import compiled
@@ -140,35 +140,35 @@ def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes, kicks):
     Without a ``gap`` (0), ``sums`` gets the sums of ``hop_clusters.NetHops`` at ``times``.
     With a gap, which is then the only time, ``sizes`` gets the numbers of clusters of each size.
     The other of the two arrays is overwritten and has no meaning. ``kicks`` are those of
-    ``HOPS_OF_BLOCK`` lanes, None without friction.
+    ``HOPS_PER_BLOCK`` lanes, None without friction.
     """
     discs, law, events, sides = pair.sampler.discs, pair.law, 0, 2 if gap > 0.0 else 1
-    states, steps = np.zeros((pair.sampler.rows, HOPS_OF_BLOCK)), np.zeros(HOPS_OF_BLOCK)
-    net, hops = np.zeros(HOPS_OF_BLOCK), np.zeros(HOPS_OF_BLOCK)
+    states, steps = np.zeros((pair.sampler.rows, HOPS_PER_BLOCK)), np.zeros(HOPS_PER_BLOCK)
+    net, hops = np.zeros(HOPS_PER_BLOCK), np.zeros(HOPS_PER_BLOCK)
     for block in range(first, stop):
         draw_on_surface(open_stream(seed, block), pair, states, -1)
-        own, size = sums[block - first], np.ones(HOPS_OF_BLOCK)
+        own, size = sums[block - first], np.ones(HOPS_PER_BLOCK)
         for side in range(sides):
             now = begin(discs, states, side, net, hops)
-            for l in range(HOPS_OF_BLOCK):
+            for l in range(HOPS_PER_BLOCK):
                 if side == 0:
-                    open_kicks(l, seed, block * HOPS_OF_BLOCK + l, kicks)
+                    open_kicks(l, seed, block * HOPS_PER_BLOCK + l, kicks)
                 else:
                     renew_kicks(l, kicks)
             for k in range(times.size):
-                for l in range(HOPS_OF_BLOCK):
+                for l in range(HOPS_PER_BLOCK):
                     steps[l] = times[k] - (times[k - 1] if k > 0 else 0.0)
                 events += follow_pair(now, steps, gap, net, hops, law, kicks)
-                for l in range(HOPS_OF_BLOCK):
+                for l in range(HOPS_PER_BLOCK):
                     falls = states[2 * discs, l] < states[2 * discs + 1, l]
                     n, m = np.int64(-net[l] if falls else net[l]), np.int64(hops[l])
                     own[0, k] += n
                     own[1, k] += n * n
                     own[2, k] += m
                     own[3, k] += m * m
-            for l in range(HOPS_OF_BLOCK):
+            for l in range(HOPS_PER_BLOCK):
                 size[l] += hops[l]
-        for l in range(HOPS_OF_BLOCK):
+        for l in range(HOPS_PER_BLOCK):
             sizes[min(np.int64(size[l]), sizes.size - 1)] += 1
     return events
 
@@ -177,10 +177,10 @@ def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes, kicks):
 
 
 def _followed(scene, hop, times, gap, blocks, seed, first):
-    sums = np.zeros((blocks, SUMS, len(times)), np.int64)
+    sums = np.zeros((blocks, N_HOP_SUMS, len(times)), np.int64)
     sizes = np.zeros(LARGEST_CLUSTER + 1, np.int64)
     run = np.uint64(seed), first, first + blocks, np.array(times), gap, surface_pair(scene, hop)
-    return sums, sizes, follow_blocks(*run, sums, sizes, all_pairs.new_kicks(scene, HOPS_OF_BLOCK))
+    return sums, sizes, follow_blocks(*run, sums, sizes, all_pairs.new_kicks(scene, HOPS_PER_BLOCK))
 
 
 def hop_sums(scene, hop, times, blocks, seed, first=0):
@@ -199,7 +199,7 @@ def require_coefficient(scene, hop):
     """Raise ``InputError`` unless hops of a ``Scene`` can be followed for their coefficient."""
     if scene.discs >= LARGE:
         raise InputError(f"discs must be at most {LARGE - 1} for passages, not {scene.discs}")
-    if scene.periodic not in ("", AXIS[hop]):
+    if scene.periodic not in ("", EVENT_AXES[hop]):
         raise InputError(
             f"hop must be along the only periodic axis for passages of {scene.discs} discs, not "
             f"{hop!r} with periodic {scene.periodic!r}"

@@ -11,12 +11,12 @@ import numpy as np
 from twodiscs.dynamics.ensemble import LANES, REPLICAS, SWEEPS
 from twodiscs.dynamics.law import DISC, END_OF_TIME, WALL_X1, WALL_X2, WALL_Y1, WALL_Y2, crosses
 from twodiscs.dynamics.two.follow import follow
-from twodiscs.model.events import DECLARED, EVENTS, HOPS, WALLS, by_kind
+from twodiscs.model.events import DECLARED_EVENTS, EVENTS, HOPS, WALLS, by_kind
 from twodiscs.sampling.initial_states import start_sampler
 from twodiscs.sampling.jit import inlined, optional
 
 #: Sweeps between two unpackings of the counts: a packed count must be below 256.
-UNPACKED = 248
+SWEEPS_PER_UNPACKING = 248
 
 # How events are counted --------------------------------------------------------------------------
 
@@ -54,7 +54,7 @@ def _wall_seen(event):
     )
 
 
-SEEN = by_kind(
+DETECTORS = by_kind(
     "dynamics/two/event_counts.py",
     {
         "hop": _hop_seen,
@@ -69,21 +69,24 @@ SEEN = by_kind(
 #: are always tracked. An entry that is None is not compiled.
 TRACKED = {"hop": 0, "wall": 1, "walls": 2, "collision": 3}
 
-N = len(EVENTS)
-COLLISIONS, ANY_WALLS = EVENTS.index("disc_collision"), EVENTS.index("any_wall")
-BESIDE, ABOVE = EVENTS.index("right_wall"), EVENTS.index("top_wall")
+N_EVENTS = len(EVENTS)
+DISC_COLLISION, ANY_WALL = EVENTS.index("disc_collision"), EVENTS.index("any_wall")
+RIGHT_WALL, TOP_WALL = EVENTS.index("right_wall"), EVENTS.index("top_wall")
 
 #: A lane counts in a double that holds this many fields of eight bits. A second double takes
 #: the events that the first one has no room for. If each event had an array of its own, the loop
 #: would load and store too many of them: for rough discs it took 193 ms in place of 62 ms.
-FIELDS = 6
-if N > 2 * FIELDS:
-    raise TypeError(f"dynamics/two/event_counts.py has room for {2 * FIELDS} events, not for {N}")
+COUNTS_PER_DOUBLE = 6
+if N_EVENTS > 2 * COUNTS_PER_DOUBLE:
+    raise TypeError(
+        f"dynamics/two/event_counts.py has room for {2 * COUNTS_PER_DOUBLE} events, "
+        f"not for {N_EVENTS}"
+    )
 
 
 def _and(add, event, unit):
     """Return ``add`` extended by an ``event``: a flight with it adds a ``unit`` to the count."""
-    seen, k = inlined(SEEN[event]), TRACKED[DECLARED[event].kind]
+    seen, k = inlined(DETECTORS[event]), TRACKED[DECLARED_EVENTS[event].kind]
 
     @optional(lambda count, code, before, after, identical, field, tracked: count)
     def add_one(count, code, before, after, identical, field, tracked):
@@ -105,13 +108,13 @@ def _word(events):
     return add
 
 
-first_word, second_word = _word(EVENTS[:FIELDS]), _word(EVENTS[FIELDS:])
+first_word, second_word = _word(EVENTS[:COUNTS_PER_DOUBLE]), _word(EVENTS[COUNTS_PER_DOUBLE:])
 
 
-@optional(lambda counts, rest: counts[BESIDE] + counts[ABOVE])
+@optional(lambda counts, rest: counts[RIGHT_WALL] + counts[TOP_WALL])
 def all_walls(counts, rest):
     """Return the hits of all walls. If both axes count all their hits, it is the sum of these."""
-    return counts[ANY_WALLS] - counts[COLLISIONS]
+    return counts[ANY_WALL] - counts[DISC_COLLISION]
 
 
 class Counts(NamedTuple):
@@ -140,29 +143,32 @@ class Counts(NamedTuple):
 
     def note(self, i, before, after, code, time, left):
         """Add the events of a flight to the packed counts."""
-        first_count, second_count = self.packed[i], self.more[i] if N > FIELDS else 0.0
+        first_count, second_count = (
+            self.packed[i],
+            self.more[i] if N_EVENTS > COUNTS_PER_DOUBLE else 0.0,
+        )
         flight = code, before, after, self.identical, self.field, self.tracked
         self.packed[i] = first_word(first_count, *flight)
-        if N > FIELDS:
+        if N_EVENTS > COUNTS_PER_DOUBLE:
             self.more[i] = second_word(second_count, *flight)
         return left
 
     def swept(self, sweeps):
         """Unpack the counts before one of them is full."""
-        if sweeps % UNPACKED == 0:
+        if sweeps % SWEEPS_PER_UNPACKING == 0:
             for i in range(self.packed.size):
                 unpack(self, i)
 
     def ended(self, i, replica, stretch):
         """Add the counts of a replica and their products."""
         unpack(self, i)
-        for e in range(N):
+        for e in range(N_EVENTS):
             self.of_replica[e] = self.counts[e, i]
             self.counts[e, i] = 0
-        self.of_replica[ANY_WALLS] = all_walls(self.of_replica, self.tracked[2])
-        for e in range(N):
+        self.of_replica[ANY_WALL] = all_walls(self.of_replica, self.tracked[2])
+        for e in range(N_EVENTS):
             self.sums[e] += self.of_replica[e]
-            for f in range(e, N):
+            for f in range(e, N_EVENTS):
                 self.products[e, f] += self.of_replica[e] * self.of_replica[f]
         return 0.0
 
@@ -172,8 +178,10 @@ def unpack(counting, i):
     """Move the packed counts of lane ``i`` of ``Counts`` to its ``counts``."""
     words = np.int64(counting.packed[i]), np.int64(counting.more[i])
     counting.packed[i] = counting.more[i] = 0.0
-    for e in range(N):
-        counting.counts[e, i] += (words[e // FIELDS] >> (8 * (e % FIELDS))) & 255
+    for e in range(N_EVENTS):
+        counting.counts[e, i] += (
+            words[e // COUNTS_PER_DOUBLE] >> (8 * (e % COUNTS_PER_DOUBLE))
+        ) & 255
 
 
 def run_blocks(
@@ -199,10 +207,10 @@ def run_blocks(
         field=scene.field or None,
         packed=np.zeros(lanes),
         more=np.zeros(lanes),
-        counts=np.zeros((N, lanes), np.int64),
-        of_replica=np.zeros(N, np.int64),
-        sums=np.zeros(N, np.int64),
-        products=np.zeros((N, N), np.int64),
+        counts=np.zeros((N_EVENTS, lanes), np.int64),
+        of_replica=np.zeros(N_EVENTS, np.int64),
+        sums=np.zeros(N_EVENTS, np.int64),
+        products=np.zeros((N_EVENTS, N_EVENTS), np.int64),
     )
     sampler = start_sampler(scene, order=order)
     follow(counting, scene, sampler, seed, first, stop, replicas, lanes, SWEEPS)

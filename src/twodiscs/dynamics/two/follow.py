@@ -47,7 +47,7 @@ from twodiscs.dynamics.law import (
     redrawn,
     two_disc_law,
 )
-from twodiscs.sampling.initial_states import COMPONENTS, draw_states
+from twodiscs.sampling.initial_states import STATE_ROWS, draw_states
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.streams import exponential, open_stream
 
@@ -127,8 +127,8 @@ def _owned(experiment, function, names=()):
 def _follow_lanes(
     experiment, seed, first, stop, replicas, lanes, sweeps, sampler, law, kicks, going
 ):
-    rows, initial_states = new_rows(lanes, law), np.zeros((COMPONENTS, replicas))
-    reversed_states = np.zeros((COMPONENTS, lanes))
+    rows, initial_states = new_rows(lanes, law), np.zeros((STATE_ROWS, replicas))
+    reversed_states = np.zeros((STATE_ROWS, lanes))
     remaining, times, codes = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
     replica, stretch = np.full(lanes, -1), np.zeros(lanes, np.int64)
     block, used, running, done = first, replicas, 0, 0
@@ -179,7 +179,7 @@ def _follow_lanes(
 def keep_reversed(reversed_states, i, initial_states, k, law, both_ways):
     """Keep the state in column ``k`` for lane ``i``, with velocities and spins reversed."""
     positions = 10 if law.depth is not None else 8
-    for component in range(COMPONENTS):
+    for component in range(STATE_ROWS):
         value = initial_states[component, k]
         turned = 4 <= component < 8 or component >= positions
         reversed_states[component, i] = -value if turned else value

@@ -34,11 +34,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import HOPS_OF_BLOCK, LANES, SHORT_SWEEPS
+from twodiscs.dynamics.ensemble import HOPS_PER_BLOCK, LANES, SHORT_SWEEPS
 from twodiscs.dynamics.law import END_OF_TIME, WRAP_X, WRAP_Y, crosses, crossing_time
 from twodiscs.dynamics.two.follow import follow, relative_motion
 from twodiscs.model.checks import InputError
-from twodiscs.model.events import AXIS
+from twodiscs.model.events import EVENT_AXES
 from twodiscs.model.scene import hopping_along
 from twodiscs.sampling.initial_states import StartSampler, require_initial_states
 from twodiscs.sampling.jit import inlined
@@ -49,7 +49,7 @@ from twodiscs.sampling.rejection import rejection_sampler
 LARGEST_CLUSTER = 2**13
 
 #: The sums at each time after a hop: n = Σ s_0 s_k and n², N hops and N².
-SUMS = 4
+N_HOP_SUMS = 4
 
 
 @inlined
@@ -70,7 +70,7 @@ class NetHops(NamedTuple):
 
     If ``hopping``, the initial states are on the surface of the hop. The hop at time 0 then has the
     direction s_0 in which they fall through it; otherwise s_0 is 1. ``sums`` are Σ n, Σ n², Σ N and
-    Σ N² over the replicas of each block (blocks, ``SUMS``, times; int64), from the replica
+    Σ N² over the replicas of each block (blocks, ``N_HOP_SUMS``, times; int64), from the replica
     ``first`` on. N is the number of hops, and n = Σ s_0 s_k.
     """
 
@@ -104,7 +104,7 @@ class NetHops(NamedTuple):
     def ended(self, i, replica, stretch):
         """Add the hops until one of the times; go on to the next one."""
         n = np.int64(self.rises[i] if self.falls[i] == 0.0 else -self.rises[i])
-        m, block = np.int64(self.hops[i]), (replica - self.first) // HOPS_OF_BLOCK
+        m, block = np.int64(self.hops[i]), (replica - self.first) // HOPS_PER_BLOCK
         self.sums[block, 0, stretch] += n
         self.sums[block, 1, stretch] += n * n
         self.sums[block, 2, stretch] += m
@@ -161,7 +161,7 @@ class Clusters(NamedTuple):
 def require_coefficient(scene, hop):
     """Raise ``InputError`` unless the hops of a ``Scene`` can have a transmission coefficient."""
     require_initial_states(scene)
-    if AXIS[hop] in scene.periodic:
+    if EVENT_AXES[hop] in scene.periodic:
         raise InputError(
             f"hop {hop!r} must be between walls for a transmission coefficient, but its axis is "
             "periodic"
@@ -173,7 +173,7 @@ def require_coefficient(scene, hop):
 
 
 def _axis(hop):
-    return (None, WRAP_Y) if AXIS[hop] == "y" else (True, WRAP_X)
+    return (None, WRAP_Y) if EVENT_AXES[hop] == "y" else (True, WRAP_X)
 
 
 def _followed(experiment, scene, hop, blocks, seed, first, on_surface=True):
@@ -181,17 +181,17 @@ def _followed(experiment, scene, hop, blocks, seed, first, on_surface=True):
     sampler = StartSampler(None, rejection_sampler(scene))
     if on_surface:
         sampler = StartSampler(
-            None, rejection_sampler(scene, hop, 0.0), surface="xy".index(AXIS[hop])
+            None, rejection_sampler(scene, hop, 0.0), surface="xy".index(EVENT_AXES[hop])
         )
-    stop, shape = first + blocks, (HOPS_OF_BLOCK, LANES, SHORT_SWEEPS)
+    stop, shape = first + blocks, (HOPS_PER_BLOCK, LANES, SHORT_SWEEPS)
     follow(experiment, scene, sampler, seed, first, stop, *shape)
     return int(experiment.events.sum())
 
 
 def hop_sums(scene, hop, times, blocks, seed, first=0, on_surface=True):
-    """Return (sums, events) of ``blocks`` blocks of ``HOPS_OF_BLOCK`` initial states each.
+    """Return (sums, events) of ``blocks`` blocks of ``HOPS_PER_BLOCK`` initial states each.
 
-    ``sums`` (blocks, ``SUMS``, times; integers) have Σ n, Σ n², Σ N and Σ N² at the ascending
+    ``sums`` (blocks, ``N_HOP_SUMS``, times; integers) have Σ n, Σ n², Σ N and Σ N² at the ascending
     ``times``, lengths over unit speed, as in ``NetHops``. Initial states are on the surface of the
     ``hop``, weighted by the flux through it, or of the invariant measure unless ``on_surface``. The
     blocks are those from the ``first`` one on of the streams of ``seed``.
@@ -199,7 +199,7 @@ def hop_sums(scene, hop, times, blocks, seed, first=0, on_surface=True):
     times = np.array(times, float)
     scene, hop = hopping_along(scene, hop, "x")
     falls, rises, hops, events = np.zeros((4, LANES))
-    sums, begin = np.zeros((blocks, SUMS, times.size), np.int64), first * HOPS_OF_BLOCK
+    sums, begin = np.zeros((blocks, N_HOP_SUMS, times.size), np.int64), first * HOPS_PER_BLOCK
     net = NetHops(times, on_surface, _axis(hop), falls, rises, hops, events, sums, begin)
     return sums, _followed(net, scene, hop, blocks, seed, first, on_surface)
 
@@ -207,7 +207,7 @@ def hop_sums(scene, hop, times, blocks, seed, first=0, on_surface=True):
 def cluster_sizes(scene, hop, gap, blocks, seed, first=0):
     """Return (sizes, events): how many hops are in a cluster of 0, 1, 2 … hops.
 
-    ``sizes`` (``LARGEST_CLUSTER`` + 1 integers) are over ``blocks`` blocks of ``HOPS_OF_BLOCK``
+    ``sizes`` (``LARGEST_CLUSTER`` + 1 integers) are over ``blocks`` blocks of ``HOPS_PER_BLOCK``
     hops, each a random one; the last has all larger clusters. A cluster ends where no hop comes for
     a time ``gap``. Arguments are otherwise as for ``hop_sums``.
     """

@@ -12,7 +12,7 @@ from twodiscs.dynamics.law import after_event, crosses, crossing_time, next_even
 from twodiscs.dynamics.rows import new_rows, put_event, start_row
 from twodiscs.dynamics.two.follow import kicked, new_kicks, put_state, relative_motion, state_at
 from twodiscs.model.events import HOPS
-from twodiscs.sampling.initial_states import COMPONENTS, components
+from twodiscs.sampling.initial_states import STATE_ROWS, components
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.theory import exact
 
@@ -20,9 +20,9 @@ from twodiscs.theory import exact
 LONGEST_TRAJECTORY = 6000
 
 #: The kind of a row, by the code of the end of a flight from 0 on, and the discs of its event.
-KINDS = np.array([0, 0, 1, 3, 4, 0, 2, 5]) + kinds.WALL
-KINDS[int(codes.END_OF_TIME)], KINDS[int(codes.DISC)] = kinds.END, kinds.COLLISION
-FIRST, SECOND = np.array([0, 1, 1, 2, 2, 1, 1, 2]), np.array([0, 0, 0, 0, 0, 2, 0, 0])
+ROW_KINDS = np.array([0, 0, 1, 3, 4, 0, 2, 5]) + kinds.WALL
+ROW_KINDS[int(codes.END_OF_TIME)], ROW_KINDS[int(codes.DISC)] = kinds.END, kinds.COLLISION
+FIRST_DISCS, SECOND_DISCS = np.array([0, 1, 1, 2, 2, 1, 1, 2]), np.array([0, 0, 0, 0, 0, 2, 0, 0])
 
 
 @optional(lambda state, present: 0.0)
@@ -50,7 +50,7 @@ def count_jump(wraps, i, state, code, law):
 
 @compiled
 def advance_states(states, wraps, time, law, kicks):
-    """Advance the columns of ``states`` (``COMPONENTS``, n) by a ``time`` > 0.
+    """Advance the columns of ``states`` (``STATE_ROWS``, n) by a ``time`` > 0.
 
     Jumps of a periodic separation along x, y, z are added to ``wraps`` (3, n), with the sign of the
     separation before. ``kicks`` are those of the columns, None without friction.
@@ -104,7 +104,7 @@ def put_row(rows, jumps, n, time, kind, discs, state, wraps, law):
 
 @compiled
 def record_rows(now, clock, duration, law, kicks, hops, wraps, jumps, rows):
-    """Fill ``rows`` with the next events of the state ``now`` (``COMPONENTS``, 1) at its time.
+    """Fill ``rows`` with the next events of the state ``now`` (``STATE_ROWS``, 1) at its time.
 
     ``clock`` (1,) has this time. ``hops`` say whether vertical and horizontal ones are rows.
     Returns the number of rows; the last one is the end if the ``duration`` is over.
@@ -117,7 +117,7 @@ def record_rows(now, clock, duration, law, kicks, hops, wraps, jumps, rows):
         flight, code = next_event(state, limit, law)
         after = after_event(state, flight, code, law)
         first_hop = second_hop = kinds.VERTICAL_HOP
-        until = later = codes.NEVER
+        until = later = codes.INFINITE_GAP
         apart, rising = relative_motion(state, None)
         if hops[0] and crosses(apart, relative_motion(after, None)[0]):
             until = crossing_time(apart, rising)
@@ -127,7 +127,7 @@ def record_rows(now, clock, duration, law, kicks, hops, wraps, jumps, rows):
         if later <= until:
             until, later, first_hop, second_hop = later, until, second_hop, first_hop
         for time_to, hop in ((until, first_hop), (later, second_hop)):
-            if time_to < codes.NEVER:
+            if time_to < codes.INFINITE_GAP:
                 at_hop = after_event(state, time_to, codes.END_OF_TIME, law)
                 put_row(rows, jumps, n, time + time_to, hop, (1, 2), at_hop, wraps, law)
                 n += 1
@@ -135,8 +135,10 @@ def record_rows(now, clock, duration, law, kicks, hops, wraps, jumps, rows):
         count_jump(wraps, 0, state, code, law)
         if code >= codes.END_OF_TIME:
             k = np.int64(code)
-            kind = KINDS[k] if k > 0 or limit >= left else kinds.KICK
-            put_row(rows, jumps, n, time, kind, (FIRST[k], SECOND[k]), state, wraps, law)
+            kind = ROW_KINDS[k] if k > 0 or limit >= left else kinds.KICK
+            put_row(
+                rows, jumps, n, time, kind, (FIRST_DISCS[k], SECOND_DISCS[k]), state, wraps, law
+            )
             n += 1
     put_state(now, 0, state, law)
     clock[0] = time
@@ -151,7 +153,7 @@ def path_rows(scene, state, duration, seed=0):
     yield start_row(state)
     names, law = components(scene), two_disc_law(scene)
     kicks = open_block_kicks(new_kicks(scene, 1), seed)
-    now, clock, wraps = np.zeros((COMPONENTS, 1)), np.zeros(1), np.zeros((3, 1))
+    now, clock, wraps = np.zeros((STATE_ROWS, 1)), np.zeros(1), np.zeros((3, 1))
     image, periods = nearest_image(scene, state)
     now[: len(names), 0] = image
     hops, rows = tuple(hop in scene.events for hop in HOPS), None

@@ -24,10 +24,10 @@ import numpy as np
 from twodiscs.dynamics.ensemble import LANES, REPLICAS, SHORT_SWEEPS
 from twodiscs.dynamics.law import END_OF_TIME, crosses
 from twodiscs.dynamics.two.follow import follow, relative_motion
-from twodiscs.model.events import AXIS, HOPS
+from twodiscs.model.events import EVENT_AXES, HOPS
 from twodiscs.model.scene import hopping_along
 from twodiscs.model.seeds import key, stream_seed
-from twodiscs.points.estimates import PARTS, fractions_of_speeds, stratified_mean
+from twodiscs.points.estimates import MOST_STRATA, fractions_of_speeds, stratified_mean
 from twodiscs.sampling.initial_states import start_sampler
 from twodiscs.sampling.rejection import (
     find_neck,
@@ -40,15 +40,16 @@ from twodiscs.theory import exact
 
 #: Hops that come more often than once in this many events are counted from ordinary initial
 #: states.
-RARE = 40
+RARE_HOP_EVENTS = 40
 
-#: A strip is as wide as the neck if the density on its surface is at least ``FILL`` times the mean
-#: density in it. If it is at least ``NO_NECK`` times in the widest strip, there is no neck.
-FILL = 0.75
-NO_NECK = 0.97
+#: A strip is as wide as the neck if the density on its surface is at least ``NECK_FILL`` times the
+#: mean density in it. If it is at least ``NO_NECK_FILL`` times in the widest strip, there is no
+#: neck.
+NECK_FILL = 0.75
+NO_NECK_FILL = 0.97
 
 #: The largest number of wall and disc events in the time 2T, about.
-EVENTS_OF_PATH = 32
+EVENTS_PER_PATH = 32
 
 #: The duration of paths over 2T, about: 1 for few events, 0.55 for many.
 LASTING = 0.75
@@ -61,14 +62,14 @@ MARGIN_OF_COUNTS, MARGIN_OF_ROUGH, GROWTH_BY_KICKS = 0.2, 0.6, 5 / 8
 
 #: The time of an event of these paths over the time of an event of the ensemble, roughly. Paths are
 #: short, and every start is drawn.
-COST_RATIO = 6
+PATH_EVENT_COST = 6
 
 #: The time of a proposal over the time of an event, roughly; and the most proposals that an event
 #: of the budget includes. With more proposals the budget allows fewer events.
-PROPOSAL, PROPOSALS_PER_EVENT = 2, 64
+PROPOSAL_COST, PROPOSALS_PER_EVENT = 2, 64
 
 #: Counts of hops and of events share a double: a hop counts as this many events.
-HOP = 2.0**32
+HOP_UNIT = 2.0**32
 
 
 class Strip(NamedTuple):
@@ -104,7 +105,7 @@ def widest(scene, hop):
 
     Its |Δ| is below √2 times the smaller radius, and below the largest possible |Δ|.
     """
-    limit = min(math.sqrt(2) * min(scene.radii), float(scene.reach(AXIS[hop])))
+    limit = min(math.sqrt(2) * min(scene.radii), float(scene.reach(EVENT_AXES[hop])))
     return math.ldexp(1.0, math.frexp(0.999 * limit / scene.fastest)[1] - 1)
 
 
@@ -127,15 +128,15 @@ def choose_strip(scene, hop):
     time = widest(scene, hop)
     while True:
         strip = strip_around(scene, hop, time)
-        few = expected_events(scene, hop, strip) <= EVENTS_OF_PATH
-        if few and _fill(scene, hop, strip) >= FILL:
+        few = expected_events(scene, hop, strip) <= EVENTS_PER_PATH
+        if few and _fill(scene, hop, strip) >= NECK_FILL:
             return strip
         time /= 2
 
 
 def stratum_fractions(scene, hop, strip):
-    """Return the exact shares of the strata of starts, by |Δ| and by |Δ̇| (``PARTS``, m)."""
-    ends = [strip.within * part / PARTS for part in range(1, PARTS + 1)]
+    """Return the exact shares of the strata of starts, by |Δ| and by |Δ̇| (``MOST_STRATA``, m)."""
+    ends = [strip.within * part / MOST_STRATA for part in range(1, MOST_STRATA + 1)]
     near = [exact.fraction_near(scene, hop, end) for end in ends]
     distances = np.diff([0.0, *near]) / near[-1]
     return np.outer(distances, fractions_of_speeds(scene.velocity_components))
@@ -166,8 +167,8 @@ def rare_hops(scene):
         hop
         for hop in HOPS
         if scene.is_possible(hop)
-        and exact.event_rate(scene) > RARE * exact.rate(scene, hop)
-        and _fill(scene, hop, strip_around(scene, hop, widest(scene, hop))) < NO_NECK
+        and exact.event_rate(scene) > RARE_HOP_EVENTS * exact.rate(scene, hop)
+        and _fill(scene, hop, strip_around(scene, hop, widest(scene, hop))) < NO_NECK_FILL
         and acceptance(scene, hop, choose_strip(scene, hop)) >= exact.MIN_FRACTION
     )
 
@@ -178,7 +179,7 @@ class HopsInStrip(NamedTuple):
     A path ends if its discs would have to be faster than ``fastest`` to hop again. ``near`` is the
     size of a stratum in |Δ|, ``slow`` the size in |Δ̇| if all energy is kinetic. The hops are
     vertical, or horizontal if ``horizontal`` is True instead of None. ``sums`` are initial states,
-    Σ N and Σ N² by strata (3, ``PARTS``, m), int64.
+    Σ N and Σ N² by strata (3, ``MOST_STRATA``, m), int64.
     """
 
     time: float
@@ -197,7 +198,7 @@ class HopsInStrip(NamedTuple):
         """Find the stratum of an initial state."""
         separation, speed = relative_motion(state, self.horizontal)
         speed /= math.sqrt(state_kinetic_fraction(state, self.prism))
-        self.stratum[0, i] = min(np.int64(abs(separation) / self.near), PARTS - 1)
+        self.stratum[0, i] = min(np.int64(abs(separation) / self.near), MOST_STRATA - 1)
         self.stratum[1, i] = min(np.int64(abs(speed) / self.slow), self.sums.shape[2] - 1)
         self.packed[i] = 0.0
         return self.time
@@ -206,7 +207,7 @@ class HopsInStrip(NamedTuple):
         """Count a hop and an event; end the path if no other hop can follow."""
         count, separation = self.packed[i], relative_motion(after, self.horizontal)[0]
         hop = crosses(relative_motion(before, self.horizontal)[0], separation)
-        count += HOP if hop else 0.0
+        count += HOP_UNIT if hop else 0.0
         self.packed[i] = count + (1.0 if code > END_OF_TIME else 0.0)
         return left if abs(separation) <= self.fastest * left else 0.0
 
@@ -214,8 +215,8 @@ class HopsInStrip(NamedTuple):
         """Go on from the reversed initial state; after that add the count to its stratum."""
         if stretch == 1:
             near, slow = self.stratum[0, i], self.stratum[1, i]
-            count = np.int64(self.packed[i] * (1.0 / HOP))
-            self.events[0] += np.int64(self.packed[i] - count * HOP)
+            count = np.int64(self.packed[i] * (1.0 / HOP_UNIT))
+            self.events[0] += np.int64(self.packed[i] - count * HOP_UNIT)
             self.sums[0, near, slow] += 1
             self.sums[1, near, slow] += count
             self.sums[2, near, slow] += count * count
@@ -227,15 +228,15 @@ def run_blocks(scene, hop, strip, seed, first, stop, *, replicas=REPLICAS, lanes
 
     Returns (starts, Σ N, Σ N² by strata; wall hits and collisions), integers that shards can add.
     """
-    strata = PARTS, len(fractions_of_speeds(scene.velocity_components))
+    strata = MOST_STRATA, len(fractions_of_speeds(scene.velocity_components))
     if scene.is_plain:  # initial states are drawn near the surface of horizontal hops only
         scene, hop = hopping_along(scene, hop, "x")
     sampler = start_sampler(scene, hop, strip.within)
     hops = HopsInStrip(
         time=strip.time,
         fastest=strip.fastest,
-        near=strip.within / PARTS,
-        slow=scene.fastest / PARTS,
+        near=strip.within / MOST_STRATA,
+        slow=scene.fastest / MOST_STRATA,
         prism=sampler.prism,
         horizontal=True if hop == "horizontal_hop" else None,
         packed=np.zeros(lanes),
@@ -273,7 +274,7 @@ def strip_run(scene, hop, target, budget, seed):
         REPLICAS * events,
         max(1, int(budget / max(1.0, proposals / PROPOSALS_PER_EVENT))),
         round_up_blocks(margin / target**2 / hops),
-        COST_RATIO + PROPOSAL * proposals,
+        PATH_EVENT_COST + PROPOSAL_COST * proposals,
     )
 
 

@@ -34,7 +34,7 @@ def replica_duration(scene):
 
 def cost_ratio(scene):
     """Return the time of an event, with the draws of starts, over its time in the plain scene."""
-    return 1 + strip.PROPOSAL * proposals_per_event(scene)
+    return 1 + strip.PROPOSAL_COST * proposals_per_event(scene)
 
 
 def proposals_per_event(scene):

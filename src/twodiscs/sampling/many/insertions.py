@@ -19,8 +19,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.checks import MOST_WITH_VOLUME, InputError
-from twodiscs.model.events import SHELLS, by_kind
+from twodiscs.model.checks import MOST_DISCS_WITH_VOLUME, InputError
+from twodiscs.model.events import SHELL_EVENTS, by_kind
 from twodiscs.model.many_geometry import has_volume
 from twodiscs.points.monte_carlo_point import InsertionPoint
 from twodiscs.sampling.conditioned import draw_in_disc
@@ -50,7 +50,7 @@ SUM_OF_EVENT = by_kind(
         "collision": lambda event: SUM_NAMES.index("per_contact"),
         "wall": lambda event: SUM_NAMES.index("per_width" if event.axis == "x" else "per_height"),
     },
-    SHELLS,
+    SHELL_EVENTS,
 )
 
 #: The index of the sum of each quantity of a point, in the order of the sums.
@@ -289,9 +289,9 @@ def insertion_sampler(scene, quantities, shell, seed):
     Arguments are as in ``montecarlo.prism_sampler``; no shell is needed. A point is an
     ``InsertionPoint``. The area of all walls comes with those of the right and the top wall.
     """
-    if scene.discs > MOST_WITH_VOLUME:
+    if scene.discs > MOST_DISCS_WITH_VOLUME:
         raise InputError(
-            f"discs must be at most {MOST_WITH_VOLUME} for Monte Carlo by insertion, not "
+            f"discs must be at most {MOST_DISCS_WITH_VOLUME} for Monte Carlo by insertion, not "
             f"{scene.discs}: almost every insertion of more discs has the weight 0"
         )
     if not has_volume(scene):

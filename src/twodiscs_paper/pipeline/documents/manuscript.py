@@ -9,12 +9,12 @@ from twodiscs.dynamics.runs import RETURNS
 from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.measure.transmission import QUIET
 from twodiscs.model.scene import Box
-from twodiscs.sampling.montecarlo import COST_RATIO
+from twodiscs.sampling.montecarlo import PROPOSAL_TIME
 from twodiscs_paper.catalogue import STUDY_FIGURES
 from twodiscs_paper.pipeline.results.provenance import commit, versions
 
 #: Numbers of the methods; they are in no table.
-CONSTANTS = {"dearer": COST_RATIO, "intervals": RETURNS, "passages_pause": QUIET}
+CONSTANTS = {"dearer": PROPOSAL_TIME, "intervals": RETURNS, "passages_pause": QUIET}
 
 
 class PaperNumbersTable(Table):

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from twodiscs.points.base import KEY, SECONDS, require_logged
+from twodiscs.points.base import DIGEST_KEY, SECONDS_KEY, require_logged
 
 #: The largest difference of floats, relative to their size.
 RELATIVE = 1e-12
@@ -146,7 +146,9 @@ def renew(results, expected, tables, points):
     by_stage = {}
     for path in map(Path, points):
         point = json.loads(path.read_text("utf-8"))
-        kept = {n: value for n, value in point.items() if n not in (KEY, SECONDS, "twodiscs")}
+        kept = {
+            n: value for n, value in point.items() if n not in (DIGEST_KEY, SECONDS_KEY, "twodiscs")
+        }
         line = f'"{path.stem}": {json.dumps(kept, sort_keys=True)}'
         by_stage.setdefault(path.parent.relative_to(results), []).append(line)
     texts = {f"{stage}.json": "{\n" + ",\n".join(p) + "\n}\n" for stage, p in by_stage.items()}

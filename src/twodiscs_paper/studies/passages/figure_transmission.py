@@ -5,7 +5,7 @@ import numpy as np
 from twodiscs.figures import panels
 from twodiscs.figures.curves import QUARTERS
 from twodiscs.figures.style import BLACK, BLUE, GREY, SKY, VERMILLION
-from twodiscs.model.events import AXIS
+from twodiscs.model.events import EVENT_AXES
 from twodiscs.model.scene import Box
 from twodiscs_paper.studies.passages.figure import (
     LOOKS,
@@ -101,13 +101,15 @@ def _units(rows):
 
 def place(box, hop):
     """Return the sides of a ``Box`` and the radius where a ``hop`` becomes blocked, in mathtext."""
-    return f"${panels.sides(box)}$, ${QUARTERS[AXIS[hop]]}$"
+    return f"${panels.sides(box)}$, ${QUARTERS[EVENT_AXES[hop]]}$"
 
 
 def cube_root(row):
     """Return ∛(σ²ε)/A of a ``row``: the range A along its hop, the room ε left in the neck."""
     scene, hop = Box(row["width"], row["height"]).scene(row["radius"]), row["event"]
-    return (scene.contact_distance**2 * scene.clearance(hop)) ** (1 / 3) / scene.reach(AXIS[hop])
+    return (scene.contact_distance**2 * scene.clearance(hop)) ** (1 / 3) / scene.reach(
+        EVENT_AXES[hop]
+    )
 
 
 def _rough(axes, ours, kept, where):

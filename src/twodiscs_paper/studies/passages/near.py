@@ -12,7 +12,7 @@ import numpy as np
 from twodiscs.analysis.scores import student_deviate
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.two import strip
-from twodiscs.dynamics.two.hop_clusters import HOPS_OF_BLOCK, cluster_sizes, hop_sums
+from twodiscs.dynamics.two.hop_clusters import HOPS_PER_BLOCK, cluster_sizes, hop_sums
 from twodiscs.measure.transmission import (
     TIMES,
     are_rare,
@@ -24,7 +24,7 @@ from twodiscs.measure.transmission import (
     plateau,
     quiet_time,
 )
-from twodiscs.model.events import AXIS, HOPS
+from twodiscs.model.events import EVENT_AXES, HOPS
 from twodiscs.model.scene import Box
 from twodiscs.points import estimates
 from twodiscs.points.estimates import Estimate
@@ -58,7 +58,7 @@ FEWEST_ROUGH = 256
 
 def coefficients_at_times(sums):
     """Return the estimates of ``correlations`` from ``sums``, a row for each block of hops."""
-    return correlations(sums.sum(axis=0), sums.shape[0] * HOPS_OF_BLOCK)
+    return correlations(sums.sum(axis=0), sums.shape[0] * HOPS_PER_BLOCK)
 
 
 def order_correlation(x):
@@ -85,7 +85,7 @@ def blocks_for(scene, distance, time, events):
     """Return how many blocks of hops take about ``events``, if hops are followed for ``time``."""
     factor, power = MET[scene.moment_of_inertia is not None]
     price = time * exact.event_rate(scene) + factor / distance**power
-    return int(min(max(events / price, FEWEST_HOPS), MOST_HOPS)) // HOPS_OF_BLOCK
+    return int(min(max(events / price, FEWEST_HOPS), MOST_HOPS)) // HOPS_PER_BLOCK
 
 
 def scene_at(box, hop, halvings, **effects):
@@ -143,7 +143,7 @@ def passing_rate(scene, hop):
     Between walls it is that of an event. On a periodic axis it is the rate at which the separation
     to the nearest image changes its sign at 0.
     """
-    periodic = AXIS[hop] in scene.periodic
+    periodic = EVENT_AXES[hop] in scene.periodic
     return weighted.passing_rate(scene, hop) if periodic else exact.rate(scene, hop)
 
 
@@ -240,11 +240,11 @@ class NearThreshold:
         (correlated,) = coefficients_at_times(sums)
         yield self.row("diffusion", "hops", correlated, around, events=simulated)
         time = max(around, self.mean)
-        blocks = int(min(max(events / (rate * 2 * time), FEWEST), MOST_HOPS)) // HOPS_OF_BLOCK
+        blocks = int(min(max(events / (rate * 2 * time), FEWEST), MOST_HOPS)) // HOPS_PER_BLOCK
         sums, simulated = hop_sums(
             self.scene, self.hop, [time, 2 * time], blocks, self._seed("states"), on_surface=False
         )
-        per_time = sums / (HOPS_OF_BLOCK * time)
+        per_time = sums / (HOPS_PER_BLOCK * time)
         counted = sample_mean(per_time[:, 2, 1] / 2)
         rate = self.row("rate", "states", counted, 2 * time, 1 / self.mean, simulated)
         if self.scene.moment_of_inertia is not None and blocks < FEWEST_ROUGH:

@@ -4,7 +4,7 @@ import numpy as np
 
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import BLACK, GREY, LOOKS, event_name
-from twodiscs.model.events import HOPS, SHELLS
+from twodiscs.model.events import HOPS, SHELL_EVENTS
 from twodiscs.theory.exact import mean_times
 from twodiscs_paper.studies.thresholds.measure import leading_law, near, passages, start
 
@@ -16,7 +16,7 @@ def draw(box, tables):
     """Draw mean_times.csv, if given, and the first passages of distributions.csv."""
     figure, (hops, ratios) = panels.stacked(hops=2.3, ratios=2.0)
     for event, (colour, marker) in LOOKS.items():
-        law = leading_law(box, event) if event in SHELLS else None
+        law = leading_law(box, event) if event in SHELL_EVENTS else None
         if law is None:
             continue
         rows = [row for row in _mean_times(tables) if row["event"] == event]

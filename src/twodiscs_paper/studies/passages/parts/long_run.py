@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from twodiscs.dynamics.two.hop_clusters import HOPS_OF_BLOCK, cluster_sizes
+from twodiscs.dynamics.two.hop_clusters import HOPS_PER_BLOCK, cluster_sizes
 from twodiscs.model.scene import Box
 from twodiscs_paper.studies.passages.near import NearThreshold, scene_at
 from twodiscs_paper.studies.passages.parts.with_friction import (
@@ -34,7 +34,7 @@ def cluster_counts(one):
     ``sizes`` are pairs [n, how many of the hops are in a cluster of n], without those of none;
     "of" is how many sizes are told apart.
     """
-    found, blocks = [], -(-one["hops"] // HOPS_OF_BLOCK)
+    found, blocks = [], -(-one["hops"] // HOPS_PER_BLOCK)
     for near, gap in long_run_thresholds(one):
         sizes, events = cluster_sizes(near.scene, near.hop, gap, blocks, near.cluster_seed)
         pairs = [[n, int(hops)] for n, hops in enumerate(sizes) if hops]

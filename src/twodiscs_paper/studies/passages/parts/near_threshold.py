@@ -1,6 +1,6 @@
 """κ of smooth and of rough discs without friction, near the radius where their hop is blocked."""
 
-from twodiscs.dynamics.two.hop_clusters import HOPS_OF_BLOCK
+from twodiscs.dynamics.two.hop_clusters import HOPS_PER_BLOCK
 from twodiscs.measure.transmission import quiet_time
 from twodiscs_paper.studies.passages.near import (
     FEWEST_HOPS,
@@ -30,9 +30,9 @@ def one_hop(name, box, hop, halvings, inertia, events, seed):
         blocks = blocks_for(scene, 2.0**-n, both, IN_PAUSES * events)
         kappa, rows = near.clusters(blocks)
         yield from rows
-        yield from near.curve(max(blocks // RECORDED, FEWEST_HOPS // HOPS_OF_BLOCK), kappa)
+        yield from near.curve(max(blocks // RECORDED, FEWEST_HOPS // HOPS_PER_BLOCK), kappa)
         if inertia is None:
-            yield from near.slope(MOST_HOPS // HOPS_OF_BLOCK)
+            yield from near.slope(MOST_HOPS // HOPS_PER_BLOCK)
 
 
 def near_threshold(name, box, hop, inertias, events, seed):

@@ -8,9 +8,9 @@ import math
 
 import numpy as np
 
-from twodiscs.dynamics.two.hop_clusters import HOPS_OF_BLOCK, cluster_sizes
+from twodiscs.dynamics.two.hop_clusters import HOPS_PER_BLOCK, cluster_sizes
 from twodiscs.measure.transmission import quiet_time
-from twodiscs.model.events import AXIS
+from twodiscs.model.events import EVENT_AXES
 from twodiscs.model.scene import Box
 from twodiscs.points.estimates import Estimate
 from twodiscs.theory import exact
@@ -47,7 +47,7 @@ def one_friction(name, box, friction, halvings, events, seed):
         gap = cluster_pause(scene, near.hop)
         price = 2 * gap * (exact.event_rate(scene) + KICK * friction)
         hops = min(max(WORK * events / price, FEWEST_KICKED), MOST_HOPS)
-        found = cluster_sizes(scene, near.hop, gap, int(hops) // HOPS_OF_BLOCK, near.cluster_seed)
+        found = cluster_sizes(scene, near.hop, gap, int(hops) // HOPS_PER_BLOCK, near.cluster_seed)
         kappa, rows = near.cluster_rows(*found, gap)
         yield from rows
         if n == halvings[0]:
@@ -68,7 +68,7 @@ def scaled_friction(scene, hop):
 
 def diffusive_limit(scene, hop):
     """Return κ x of two smooth discs between walls that diffuse: 3/4 if the neck is short."""
-    reach = float(scene.reach(AXIS[hop]))
+    reach = float(scene.reach(EVENT_AXES[hop]))
     return plane.scaled_coefficient(reach, scene.clearance(hop), scene.contact_distance)
 
 
