@@ -68,7 +68,6 @@ NO_JOB = {
     "twodiscs/figures/plot.py",
     "twodiscs_paper/pipeline/build.py",
     "twodiscs_paper/pipeline/results/verify.py",
-    "twodiscs_paper/studies/more_discs/tori.py",
 }
 
 #: Modules that are imported without an effect on a table: the start of a job, titles and captions.

@@ -118,7 +118,7 @@ for name, study in STUDIES.items():
     own = modules(f"{study_folder(study)}/**/*.py")
     CODE[name] = with_shared([path for path in own if path not in study_figures(study)])
 
-# Calls of the face, the build, the comparison with expected results, and a long run: no job with one
+# Calls of the face, the build, and the comparison with expected results: no job with one
 # of these groups imports them, so their edit must not rerun it.
 FACE = modules(
     *(
@@ -128,7 +128,6 @@ FACE = modules(
     "twodiscs/figures/plot.py",
     "twodiscs_paper/pipeline/build.py",
     "twodiscs_paper/pipeline/results/verify.py",
-    "twodiscs_paper/studies/more_discs/tori.py",
 )
 CODE = {group: [path for path in paths if path not in FACE] for group, paths in CODE.items()}
 

@@ -11,7 +11,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from twodiscs.points.base import DIGEST_KEY, SECONDS_KEY, require_logged
+from twodiscs.dynamics.stages import STAGES
+from twodiscs.points.base import DIGEST_KEY, SECONDS_KEY, read_json, require_logged
+from twodiscs_paper.configuration import yaml_files
+from twodiscs_paper.pipeline.points import read_point
 
 #: The largest difference of floats, relative to their size.
 RELATIVE = 1e-12
@@ -138,10 +141,37 @@ def differences(results, expected):
     return found
 
 
+def long_run_tables(folder):
+    """Yield (path, table, rows) of the long runs in a ``folder`` whose counts are kept."""
+    from twodiscs.analysis.tables import MeanTimesTable
+    from twodiscs_paper.studies.more_discs import tori
+    from twodiscs_paper.studies.more_discs.study import ToriTable
+    from twodiscs_paper.studies.passages import brownian
+    from twodiscs_paper.studies.passages.parts import long_files, long_run
+    from twodiscs_paper.studies.passages.study import BrownianTable, PassagesTable
+
+    far = yaml_files.load(yaml_files.read(folder / "far/config.yaml")).scenes[0]
+    job = STAGES["dynamics"], far.box.scene(far.radii[0]), far.arguments("dynamics")
+    point = read_point(folder / "far/dynamics.json", *job)
+    yield folder / "far/mean_times.csv", MeanTimesTable, MeanTimesTable.rows([point])
+    given = yaml_files.read(folder / "passages/config.yaml")["thresholds"]
+    rows = long_run.long_run_rows(given, read_json(folder / "passages/clusters.json"))
+    yield folder / "passages/passages.csv", PassagesTable, rows
+    given = yaml_files.read(folder / "files/config.yaml")
+    counts = zip(given["files"], read_json(folder / "files/counts.json")["files"], strict=True)
+    rows = (row for one, count in counts for row in long_files.file_rows(one, given, count))
+    yield folder / "files/passages.csv", PassagesTable, rows
+    rows = brownian.rows(read_json(folder / "brownian/counts.json"))
+    yield folder / "brownian/brownian.csv", BrownianTable, rows
+    rows = tori.rows(read_json(folder / "tori/counts.json")["counts"])
+    yield folder / "tori/tori.csv", ToriTable, rows
+
+
 def renew(results, expected, tables, points):
     """Replace the folder ``expected`` by results: the files of ``tables`` and of ``points``.
 
-    Digests, processor times and versions of points are left out.
+    Digests, processor times and versions of points are left out. Tables of long runs beside the
+    folder are made again from their counts.
     """
     by_stage = {}
     for path in map(Path, points):
@@ -163,3 +193,6 @@ def renew(results, expected, tables, points):
     for name, text in texts.items():
         (expected / name).parent.mkdir(parents=True, exist_ok=True)
         (expected / name).write_text(text, "utf-8", newline="\n")
+    if (kept := expected.parent / "long_run").is_dir():
+        for path, table, rows in long_run_tables(kept):
+            table.write(path, rows)
