@@ -389,7 +389,7 @@ def _table(scene, numbers):
         event: "impossible" if not scene.is_possible(event) else _known(time)
         for event, time in numbers["mean_times"].items()
     }
-    effects = [f"{name.replace('_', ' '):<20}{value}" for name, value in scene.calls_for.items()]
+    effects = [f"{name.replace('_', ' '):<20}{value}" for name, value in scene.options.items()]
     if effects:
         effects.append(f"{'velocity components':<20}{scene.velocity_components}")
     if scene.conserved:

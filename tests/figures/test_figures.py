@@ -50,7 +50,7 @@ def cases(quick, names=FIGURES):
         for own in [quick if entry.tables and name != "mean_hop_time" else QUICK]
         for box in (TABLED if entry.tables else BOXES)
         for sides in [(BOXES | OTHERS)[box]]
-        if name in names and entry.is_called(quantities(sides), sides.calls_for)
+        if name in names and entry.shown_for(quantities(sides), sides.options)
     ]
 
 
@@ -183,8 +183,8 @@ def test_the_histogram_has_the_densities_of_its_bins(box):
 
 def test_drawings_are_those_of_all_plain_scenes():
     drawings = [entry for entry in FIGURES.values() if not entry.tables]
-    assert all(one.is_called({"volume"}) for one in drawings)
-    assert not any(one.is_called(QUANTITIES, {"field": 1.5}) for one in drawings)
+    assert all(one.shown_for({"volume"}) for one in drawings)
+    assert not any(one.shown_for(QUANTITIES, {"field": 1.5}) for one in drawings)
 
 
 def test_a_table_without_the_quantity_of_a_figure_is_named():

@@ -47,7 +47,7 @@ def test_the_same_box_is_equal_and_has_the_same_hash_and_parameters(effects):
     assert scene == Scene(1.5, 1.0, 0.1, **effects)
     family = "many" if discs > 2 else "effects" if effects else "plain"
     assert (scene.family, scene.is_plain) == (family, not effects)
-    assert scene.calls_for == box.calls_for == effects
+    assert scene.options == box.options == effects
     assert eval(repr(scene), {"Scene": Scene}) == scene
     assert scene.masses == (1.0,) + (effects.get("mass_ratio", 1.0),) * (discs - 1)
     assert scene.radii == (0.1,) + (0.1 * effects.get("radius_ratio", 1.0),) * (discs - 1)

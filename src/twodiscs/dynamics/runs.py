@@ -31,7 +31,7 @@ from twodiscs.points.dynamics_point import DynamicsPoint, simulated_events
 from twodiscs.points.estimates import relative_variance
 from twodiscs.points.intervals_point import N_BINS, TIME_GRAIN, IntervalsPoint, wide_edges
 from twodiscs.sampling.initial_states import require_initial_states
-from twodiscs.sampling.rounds import Ended, Run, SequentialRun, fixed, round_up_blocks
+from twodiscs.sampling.rounds import FinishedComponents, Run, SequentialRun, fixed, round_up_blocks
 from twodiscs.theory.exact import corner_variance, replicas_needed
 
 #: Chains of intervals that share a stream, and the usual budget of their wall and disc events.
@@ -99,7 +99,7 @@ class DynamicsRun(Run):
         return [hop for hop in rare if hop in self.target]
 
     @property
-    def _waited(self):
+    def _ordinary_events(self):
         return [e for e in self._events if self.scene.is_possible(e) and e not in self._rare]
 
     @cached_property
@@ -133,12 +133,12 @@ class DynamicsRun(Run):
     def _everything(self, budget):
         scene, engine = self.scene, find_engine(self.scene)
         duration, each = self.replica_duration, engine.block_replicas(scene)
-        index = [EVENTS.index(event) for event in self._waited]
-        goals = np.array([self.target[event] for event in self._waited])
+        index = [EVENTS.index(event) for event in self._ordinary_events]
+        goals = np.array([self.target[event] for event in self._ordinary_events])
         replicas = (
             relative_variance(engine.expected_rate(scene, event) * duration)
             / self.target[event] ** 2
-            for event in self._waited
+            for event in self._ordinary_events
         )
 
         def work(first, stop):
@@ -146,17 +146,19 @@ class DynamicsRun(Run):
 
         block_events = each * engine.expected_event_rate(scene) * duration
         # Errors of bursts that the budget cannot reach are ignored.
-        needed = np.array([replicas_needed(scene, e, self.target[e]) for e in self._waited])
+        needed = np.array(
+            [replicas_needed(scene, e, self.target[e]) for e in self._ordinary_events]
+        )
         needed = needed / each
         needed = np.ceil(np.where(needed * block_events <= budget, needed, 0.0))
         planned = max([max(replicas, default=0.0) / each, *needed])
         if scene.discs > 2:  # rare hops of two discs have their own components
             planned = min(planned, budget / block_events)
 
-        unseen = np.array([corner_variance(scene, event, duration) for event in EVENTS])
+        burst_variance = np.array([corner_variance(scene, event, duration) for event in EVENTS])
 
         def error_over_target(sums, blocks):
-            errors = relative_errors(*sums, blocks * each, unseen)[index] / goals
+            errors = relative_errors(*sums, blocks * each, burst_variance)[index] / goals
             return np.maximum(errors, np.sqrt(needed / blocks))
 
         return SequentialRun(
@@ -171,7 +173,7 @@ class DynamicsRun(Run):
 
     def run(self, progress=None, cores=1, resume_from=None):
         """Return the point; replicas of another duration, from another budget, are done again."""
-        old = None if isinstance(resume_from, Ended) else resume_from
+        old = None if isinstance(resume_from, FinishedComponents) else resume_from
         if old and old["all"]["duration"] != self.replica_duration:
             resume_from = None
         return super().run(progress, cores, resume_from)
@@ -194,15 +196,15 @@ class DynamicsRun(Run):
         return {event: self.target[event] for event in self._events}
 
 
-def relative_errors(sums, products, replicas, unseen=0.0):
+def relative_errors(sums, products, replicas, burst_variance=0.0):
     """Return the relative standard error of each mean count (n), inf without a count.
 
     Replicas are independent, so the error is √(var N / R) / ⟨N⟩. The variance has a part that is
-    ``unseen`` in samples (see ``exact.corner_variance``).
+    ``burst_variance`` in samples (see ``exact.corner_variance``).
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         mean = sums / replicas
-        variance = np.maximum(np.diag(products) / replicas - mean**2, 0.0) + unseen
+        variance = np.maximum(np.diag(products) / replicas - mean**2, 0.0) + burst_variance
         errors = np.sqrt(variance / replicas) / mean
     return np.where(sums > 0, errors, np.inf)
 

@@ -207,7 +207,7 @@ def heading(box, more=""):
 
 def effects(box):
     """Return the number of discs of a ``Box``, if not two, and its effects, as texts in symbols."""
-    named = box.calls_for | {"periodic": "$, $".join(box.effects.get("periodic", ""))}
+    named = box.options | {"periodic": "$, $".join(box.effects.get("periodic", ""))}
     return [powers(text.format(named[name])) for name, text in SYMBOLS.items() if named.get(name)]
 
 

@@ -139,7 +139,7 @@ def _draw(result, figure):
         )
     name = _chosen(figure, fitting, rows)
     if not box.is_plain and name in BOX_DRAWINGS:
-        more = ", ".join(f"{name} {value}" for name, value in box.calls_for.items())
+        more = ", ".join(f"{name} {value}" for name, value in box.options.items())
         raise InputError(
             f"scene must be two plain discs for a drawing, but it has {more}; plot a trajectory"
         )
@@ -269,7 +269,7 @@ def _fitting_figures(rows, box):
     shown, names = {*map(row_quantity, rows)}, []
     for table in ("mean_times", "volume", "areas"):
         entries = ((name, one) for name, one in FIGURES.items() if one.tables == (table,))
-        own = [name for name, one in entries if one.is_called(shown, box.calls_for)]
+        own = [name for name, one in entries if one.shown_for(shown, box.options)]
         if own and table in CURVES and table != "volume":
             several = sum(name in CURVES for name in own) > 1
             own.insert(0 if several else len(own), table)

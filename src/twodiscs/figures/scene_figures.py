@@ -52,7 +52,7 @@ class Caption:
 
     def full_text(self, box=None):
         """Return the text for the scenes in a ``Box``, for plain ones if it is None."""
-        called = box.calls_for if box else {}
+        called = box.options if box else {}
         parts = [self.text, self.other if called else self.plain]
         parts += [self.square] * bool(box and not called and box.width == box.height)
         parts += [self.many] * ("discs" in called) + [self.field] * ("field" in called)
@@ -87,7 +87,7 @@ class Figure:
     main_tables: tuple = ()
     long_runs: dict = field(default_factory=dict)
 
-    def is_called(self, quantities, effects=()):
+    def shown_for(self, quantities, effects=()):
         """Return whether a scene that computes the ``quantities`` has the figure.
 
         ``effects`` are the effects of the scene, if it has any.

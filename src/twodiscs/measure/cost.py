@@ -112,8 +112,10 @@ def _pilot(run, name, seconds):
     if name == "all":
         number, errors = blocks * replicas, {}
         duration = engine.replica_duration(scene)
-        unseen = np.array([exact.corner_variance(scene, event, duration) for event in EVENTS])
-        measured = relative_errors(*sums, number, unseen).tolist()
+        burst_variance = np.array(
+            [exact.corner_variance(scene, event, duration) for event in EVENTS]
+        )
+        measured = relative_errors(*sums, number, burst_variance).tolist()
         for event, count, error in zip(EVENTS, sums[0].tolist(), measured, strict=True):
             if event in run.target and scene.is_possible(event):
                 expected = engine.expected_rate(scene, event) * duration

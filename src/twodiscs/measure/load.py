@@ -18,7 +18,7 @@ from twodiscs.model.checks import InputError
 from twodiscs.model.formats import quote
 from twodiscs.model.scene import Box, Scene
 from twodiscs.points.base import MALFORMED_ERRORS, digest, read_json, restore_arrays
-from twodiscs.sampling.rounds import Ended
+from twodiscs.sampling.rounds import FinishedComponents
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -151,7 +151,7 @@ def from_dict(content):
         }  # fmt: skip
         kind, settings = content["kind"], content["settings"]
         numbers = float if kind in ("observe", "diffusion") else int
-        components = Ended(restore_arrays(content["parts"], numbers))
+        components = FinishedComponents(restore_arrays(content["parts"], numbers))
         with np.errstate(invalid="ignore"):  # counts that no run has are refused below
             found = makers[kind](Scene(**content["scene"]), **settings, resume_from=components)
         # A point of a build has some of the settings, maybe in another order.

@@ -21,7 +21,7 @@ from twodiscs.model.scene import Scene, check_scene
 from twodiscs.model.seeds import job_seed
 from twodiscs.points.base import reached
 from twodiscs.sampling.initial_states import MOST_NUMBERS, components, make_records, states
-from twodiscs.sampling.rounds import Ended
+from twodiscs.sampling.rounds import FinishedComponents
 from twodiscs.sampling.threads import map_in_threads
 
 if TYPE_CHECKING:
@@ -331,7 +331,7 @@ def run_observe(
     For a result from a file the ``function`` is its name, a text.
     """
     settings = {"times": times, "replicas": replicas, "seed": seed, "name": name}
-    if isinstance(resume_from, Ended):
+    if isinstance(resume_from, FinishedComponents):
         settings["function"] = function
         return averages("observe", scene, None, settings, cores, progress, resume_from)
     if function is None and resume_from is not None:
@@ -417,7 +417,7 @@ def averages(
     mean, square = sums or (0.0, 0.0)
     total = done * each
     forms = {(tuple(old["names"]), mean.shape[1:])} if done and not over_times else set()
-    if isinstance(resume_from, Ended):
+    if isinstance(resume_from, FinishedComponents):
         _check_names(old["names"])
         shape = times.shape + (mean.shape[1:] if not old["names"] else (len(old["names"]),))
         if done < blocks or not shape == mean.shape == square.shape or not np.all(square >= 0):

@@ -1,17 +1,22 @@
 """Calls with wrong arguments: an ``InputError`` that names the nearest right one."""
 
+from collections.abc import Callable
 from functools import wraps
 from inspect import signature
+from typing import Any, TypeVar
 
 from twodiscs.model.checks import InputError
 from twodiscs.model.formats import did_you_mean
+
+#: A function or a class, whose type a checker keeps.
+Call = TypeVar("Call", bound=Callable[..., Any])
 
 
 class WrongCall(InputError, TypeError):
     """A call with an unknown argument, with too many arguments or with too few."""
 
 
-def checked_call(function):
+def checked_call(function: Call) -> Call:
     """Return a ``function`` that raises a ``WrongCall`` for wrong arguments, or such a class."""
     if isinstance(function, type):
         function.__init__ = checked_call(function.__init__)

@@ -150,7 +150,7 @@ class Box:
 
     def __repr__(self):
         lengths = [repr(getattr(self, name)) for name in self.LENGTHS]
-        named = [f"{name}={value!r}" for name, value in self.calls_for.items()]
+        named = [f"{name}={value!r}" for name, value in self.options.items()]
         return f"{type(self).__name__}({', '.join([*lengths, *named])})"
 
     def parameters(self) -> dict[str, object]:
@@ -170,7 +170,7 @@ class Box:
         >>> td.Box(1.5, 1.0, field=0.5).parameters()
         {'width': 1.5, 'height': 1.0, 'field': 0.5}
         """
-        return {name: getattr(self, name) for name in self.LENGTHS} | self.calls_for
+        return {name: getattr(self, name) for name in self.LENGTHS} | self.options
 
     @property
     def effects(self) -> dict[str, object]:
@@ -199,7 +199,7 @@ class Box:
         return MANY_DISCS if self.discs > 2 else TWO_DISCS
 
     @property
-    def calls_for(self):
+    def options(self):
         """Everything beyond two equal, smooth discs between walls, {name: value}.
 
         These are its effects, and ``discs`` if there are more than two.
@@ -211,7 +211,7 @@ class Box:
     @property
     def is_plain(self):
         """Whether it is two equal, smooth discs between walls."""
-        return not self.calls_for
+        return not self.options
 
     def turned(self) -> Self:
         """Return the same box or scene with x and y exchanged.
@@ -358,7 +358,7 @@ class Box:
         >>> td.Box(1.5, 1.0).scene(0.3).regime
         'vertical-hops'
         """
-        return Scene(self.width, self.height, radius, **self.calls_for)
+        return Scene(self.width, self.height, radius, **self.options)
 
     def fits(self, radius: float) -> bool:
         """Return whether there is a scene at a radius.
@@ -534,7 +534,7 @@ class Scene(Box):
     @property
     def box(self) -> Box:
         """The box with its effects and its number of discs, without the radius."""
-        return Box(self.width, self.height, **self.calls_for)
+        return Box(self.width, self.height, **self.options)
 
     def with_radius(self, radius: float) -> Scene:
         """Return the same scene with another radius of disc 1.

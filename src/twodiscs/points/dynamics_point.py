@@ -157,10 +157,14 @@ class DynamicsPoint(Point):
         Rough discs stay in corners of walls (see ``exact.corner_variance``). The counts of several
         walls have the same bursts.
         """
-        unseen = {e: exact.corner_variance(self.scene, e, self.duration) for e in self.counts}
+        burst_variance = {
+            e: exact.corner_variance(self.scene, e, self.duration) for e in self.counts
+        }
         return {
             pair: total
-            + round(self.replicas * math.sqrt(math.prod(unseen[e] for e in pair.split("*"))))
+            + round(
+                self.replicas * math.sqrt(math.prod(burst_variance[e] for e in pair.split("*")))
+            )
             for pair, total in self.products.items()
         }
 

@@ -148,7 +148,7 @@ class Sampler(NamedTuple):
         return MonteCarloPoint.of(self.scene, {"all": self.constants | {"sums": ranges}})
 
 
-class Ended(dict):
+class FinishedComponents(dict):
     """The components of a run that has ended: no more work is done than they have."""
 
     def ranges(self, name, run):
@@ -163,9 +163,9 @@ def run_all_in_rounds(components, progress=None, cores=1, resume_from=None):
     """Return {name: sums} of the runs in ``components``, {name: run}, one after the other.
 
     ``progress`` is called with the work of all of them; ``resume_from`` are the components of an
-    earlier run. If they are ``Ended``, nothing is computed.
+    earlier run. If they are ``FinishedComponents``, nothing is computed.
     """
-    if isinstance(resume_from, Ended):
+    if isinstance(resume_from, FinishedComponents):
         return {name: resume_from.ranges(name, run) for name, run in components.items()}
     resume_from = {} if resume_from is None else resume_from
     done, work = {}, {name: run.planned * run.block_work for name, run in components.items()}

@@ -72,7 +72,7 @@ class SceneRequest:
 
         These are the effects, and ``discs`` if there are more than two.
         """
-        return self.box.calls_for
+        return self.box.options
 
     @property
     def event_budget(self):
@@ -239,7 +239,7 @@ class Configuration:
         return {
             name: _pictures(f"{self.results}/{scene}/figures/{name}")
             for name, entry in FIGURES.items()
-            if entry.is_called(request.quantities.names, request.effects)
+            if entry.shown_for(request.quantities.names, request.effects)
         }
 
     def shown(self, scene):
@@ -255,7 +255,7 @@ class Configuration:
     def animation(self, scene):
         """Return the files of the animation of a scene, () if the scene has no trajectory."""
         request = self.folders[scene]
-        called = ANIMATION.is_called(request.quantities.names, request.effects)
+        called = ANIMATION.shown_for(request.quantities.names, request.effects)
         return _pictures(f"{self.results}/{scene}/figures/animation", "gif") if called else ()
 
     def study(self, name):

@@ -70,7 +70,7 @@ def _most(scene, stage, radius=None):
     """
     discs = scene.box.discs
     sample, event, interval = 1.0, DEAREST, 1.0
-    if "discs" in scene.box.calls_for:
+    if "discs" in scene.box.options:
         sample, event = DRAW * discs, max(DEAREST, discs**2 / 2)
         interval = event
     each, most, needed = {

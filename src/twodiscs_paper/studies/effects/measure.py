@@ -66,7 +66,7 @@ def survivors(scene, times, blocks, seed):
 # The table ----------------------------------------------------------------------------------------
 
 #: The columns that effects.csv takes from mean_times.csv.
-KEPT = (
+KEPT_COLUMNS = (
     "radius", "exact", "estimate", "stderr", "z", "count", "replicas", "duration", "status", "test",
     "starts", "share",
 )  # fmt: skip
@@ -91,7 +91,7 @@ def rows(tables, scenes, seed, blocks=BLOCKS):
         for time in times:
             event = time["event"]
             yield row(
-                start | {column: time[column] for column in KEPT},
+                start | {column: time[column] for column in KEPT_COLUMNS},
                 effects=json.dumps(box.effects, sort_keys=True),
                 quantity=f"{event}_time",
                 plain=plain_time(box, time["radius"], event),
