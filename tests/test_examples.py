@@ -177,11 +177,27 @@ def test_python_runs(names, tmp_path):
 
 @pytest.mark.slow
 def test_python_has_the_types_that_are_declared(tmp_path):
-    """As a type checker reads the pages, of which each is one program."""
+    """As a type checker reads the pages, each one program, and calls with misspelt words.
+
+    Pages use figures that exist in their scenes, so None is not checked in them.
+    """
     programs = [program(name, tmp_path) for name in NAMES]
     options = ["--ignore-missing-imports", "--follow-imports", "silent", "--scripts-are-modules"]
+    options += ["--no-strict-optional", "--allow-redefinition"]
     checked = python("-m", "mypy", *options, *programs, cwd=tmp_path)
     assert checked.returncode == 0, checked.stdout
+    wrong = {
+        "td.Scene(1.5, 1.0, 0.2, frictoin=1.0)": 'did you mean "friction"?',
+        "td.simulate(SCENE, 0.01, sed=3)": 'did you mean "seed"?',
+        'td.intervals(SCENE, "vertical_hopp")': "Literal['vertical_hop', 'horizontal_hop']",
+        "td.simulate(SCENE, 0.01).framee()": 'has no attribute "framee"',
+    }
+    begin = "import twodiscs as td\nSCENE = td.Scene(1.5, 1.0, 0.2)\n"
+    (tmp_path / "wrong.py").write_text(begin + "\n".join(wrong), encoding="utf-8")
+    checked = python("-m", "mypy", "--strict", "wrong.py", cwd=tmp_path)
+    errors = [line for line in checked.stdout.splitlines() if "error:" in line]
+    assert all(map(str.__contains__, errors, wrong.values())), checked.stdout
+    assert len(errors) == len(wrong), checked.stdout
 
 
 # Commands ---------------------------------------------------------------------------------------
