@@ -41,7 +41,7 @@ class AccuracyWarning(UserWarning):
     Examples
     --------
     >>> import warnings
-    >>> with warnings.catch_warnings(record=True) as found:
+    >>> with warnings.catch_warnings(record=True, action="always") as found:
     ...     _ = td.simulate(scene, 1e-3, budget=1e6)
     >>> found[0].category is td.AccuracyWarning
     True
