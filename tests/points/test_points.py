@@ -191,3 +191,9 @@ def test_a_file_is_what_the_last_line_of_its_log_says(tmp_path):
     path.write_text("old")
     with pytest.raises(InputError, match=re.escape(SENTENCE)):
         require_logged(path)
+    # Without its log a table is believed, unless it is one of a build.
+    log.unlink()
+    require_logged(path)
+    (tmp_path / "configuration.json").touch()
+    with pytest.raises(InputError, match=re.escape(SENTENCE)):
+        require_logged(path)

@@ -47,6 +47,7 @@ if MAIN:
             numbers=CONFIGURATION.table("paper_numbers"),
         log:
             f"{RESULTS}/logs/paper.log",
+            numbers=f"{RESULTS}/logs/paper_numbers.log",
         localrule: True
         params:
             scenes=CONFIGURATION.described(),

@@ -17,7 +17,7 @@ rule figure:
             subcategory="{scene}",
         ),
     log:
-        f"{RESULTS}/logs/{{scene}}/figure-{{figure}}.log",
+        f"{RESULTS}/logs/{{scene}}/figures/{{figure}}.log",
     wildcard_constraints:
         figure="|".join(FIGURES),
     localrule: True
@@ -40,7 +40,7 @@ use rule figure as shared_figure with:
             subcategory="all scenes",
         ),
     log:
-        f"{RESULTS}/logs/figure-{{figure}}.log",
+        f"{RESULTS}/logs/figures/{{figure}}.log",
     wildcard_constraints:
         figure="|".join(STUDY_FIGURES),
     localrule: True

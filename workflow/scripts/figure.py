@@ -4,7 +4,7 @@ from twodiscs_paper.pipeline.job import start  # isort: split
 
 from twodiscs.figures import animation, draw, style
 from twodiscs.model.scene import Box
-from twodiscs.points.base import digest
+from twodiscs.points.base import digest, digest_line
 from twodiscs_paper.catalogue import STUDY_FIGURES, read_table
 
 start(snakemake.log[0])
@@ -31,3 +31,5 @@ with style.context():
             origin += f", tables {digest(*files.tables)[:16]}"
         for path in snakemake.output:
             style.save(figure, path, origin)
+for path in snakemake.output:
+    print(digest_line(path))

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from twodiscs.points.base import require_logged
+from twodiscs.points.base import digest_line, require_logged
 from twodiscs_paper.pipeline.documents.manuscript import PaperNumbersTable, typeset
 from twodiscs_paper.pipeline.job import start
 
@@ -18,4 +18,5 @@ numbers = typeset(
     params.seed,
     params.configuration,
 )
-PaperNumbersTable.write_and_log(snakemake.output.numbers, numbers)
+PaperNumbersTable.write(snakemake.output.numbers, numbers)
+Path(snakemake.log.numbers).write_text(f"{digest_line(snakemake.output.numbers)}\n", "utf-8")

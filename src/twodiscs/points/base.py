@@ -47,18 +47,18 @@ def digest_line(path):
 def require_logged(path):
     """Raise ``InputError`` if the log of the job that wrote a file has another digest of it.
 
-    The log of results/a/b.csv is results/logs/a/b.log. Without one, the file may be any.
+    The log of results/a/b.csv is results/logs/a/b.log. A table of a build must have one; any other
+    file without a log may be any.
     """
     path = Path(path)
     for folder in path.parents:
         log = folder / "logs" / path.relative_to(folder).with_suffix(".log")
-        if log.is_file():
-            text = log.read_text(encoding="utf-8", errors="replace")
-            lines = [line for line in text.splitlines() if line.endswith(f"  {path.name}")]
-            if lines and lines[-1] != digest_line(path):
-                raise InputError(
-                    f"{path} is not what its job wrote; delete it, and it is made again"
-                )
+        text = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
+        lines = [line for line in text.splitlines() if line.endswith(f"  {path.name}")]
+        build = (folder / "logs").is_dir() and (folder / "configuration.json").is_file()
+        of_build = path.suffix == ".csv" and build
+        if (lines or of_build) and lines[-1:] != [digest_line(path)]:
+            raise InputError(f"{path} is not what its job wrote; delete it, and it is made again")
 
 
 def write_json(path, content, seconds=None):
