@@ -194,6 +194,21 @@ def test_reflected_discs_have_the_exponents_of_both_theories():
     assert all(-2 < row["estimate"] < -1.95 for row in short)
 
 
+def test_rejected_steps_have_their_law_without_a_parameter():
+    """κ in necks of 8 steps or more; and the powers −5/2 and −7/2 of ε ≪ s ≪ √(εσ)."""
+    _, found, _ = kept("brownian", BrownianTable)
+    rows = [
+        row
+        for row in of(found, method="crossings", quantity="coefficient")
+        if row["program"] in brownian.REJECTING and row["neck"] >= 8 and row["room"] <= 1 / 16
+    ]
+    assert len(rows) == 8
+    assert all(abs(row["estimate"] - row["diffusive"]) < 5 * row["stderr"] for row in rows)
+    for program, power in (("together", -3.5), ("confined", -3.5), ("singly", -2.5)):
+        near, far = (brownian.diffusive(2**-16, 2**-n, program) * 4**-n for n in (24, 22))
+        assert math.log(near / far) / math.log(4) == pytest.approx(power, abs=0.02)
+
+
 def test_a_small_run_counts_every_hop_once():
     one = {"name": "small", "width": 1.5, "height": 1.0, "hop": "horizontal_hop", "seed": 1}
     one |= {"first": 7, "last": 7, "hops": 2 * HOPS_PER_BLOCK - 1, "pauses": [1, 2]}

@@ -50,6 +50,10 @@ LONG, SHORT = 8.0, 0.125
 #: touch need not come to the end of the ring, where passages begin and end.
 NARROW = 1 / 16
 
+#: Nodes and weights on [0, 1].
+NODES, WEIGHTS = (part / 2 for part in np.polynomial.legendre.leggauss(48))
+NODES = NODES + 1 / 2
+
 
 def side_volume(room, near=0.0):
     """Return the volume of the allowed (u, y₁, y₂) on one side, for a neck of the width ``room``.
@@ -61,14 +65,45 @@ def side_volume(room, near=0.0):
     return breadth**2 * (HALF - near) - arc * breadth + 2 / 3 - u + u**3 / 3
 
 
-def resistance(room):
-    """Return ∫ du/ρ(u) over the whole ring."""
+def acceptance(program, slack):
+    """Return the share of moves whose heights stay within the ``slack`` L, in steps s.
+
+    The slacks at the walls are uniform in a triangle. Walls that fold make it a square of the side
+    √2 L, over which the two deviates are independent; of one disc the slack is 2tL, 0 ≤ t ≤ 1, with
+    the density 2t. Walls that reject leave (1 − m/L)² of the triangle, m the largest of |a|, |b|
+    and |a + b|. For L ≪ s the shares are L²/(πs²), (4/3) L/(√(2π) s) and L²/(4πs²).
+    """
+    if program == "together":
+        return _kept(math.sqrt(2) * slack) ** 2
+    if program == "singly":
+        return sum(w * 2 * t * _kept(2 * t * slack) for t, w in zip(NODES, WEIGHTS, strict=True))
+    angles = (2 * NODES - 1) * math.pi / 2
+    a, b = np.cos(angles), np.sin(angles)
+    reach = slack / np.maximum(np.maximum(np.abs(a), np.abs(b)), np.abs(a + b))
+    r = np.outer(NODES, np.minimum(reach, 9.0))
+    kept = (1 - r / reach) ** 2 * r * np.exp(-(r**2) / 2) * np.minimum(reach, 9.0)
+    return float(WEIGHTS @ kept @ WEIGHTS)
+
+
+def _kept(length):
+    """Return the share of normal deviates from uniform points of a ``length`` that stay on it."""
+    rest = -math.expm1(-(length**2) / 2) * math.sqrt(2 / math.pi) / length
+    return math.erf(length / math.sqrt(2)) - rest
+
+
+def resistance(room, program="reflected", step=1.0):
+    """Return ∫ du/(ρ a) over the whole ring, a the ``acceptance``, which is 1 without rejection.
+
+    This neglects steps through the other disc, which end the law once s is not short against the
+    neck.
+    """
 
     def inverse(u):
-        return (1 + room - math.sqrt(1 - u * u)) ** -2.0
+        slack = 1 + room - math.sqrt(1 - u * u)
+        return slack**-2.0 / (acceptance(program, slack / step) if program in REJECTING else 1.0)
 
-    near, _ = quad(inverse, 0, 1, points=[math.sqrt(room)], epsabs=0, epsrel=1e-10)
-    return 2 * (near + (HALF - 1) / (1 + room) ** 2)
+    near, _ = quad(inverse, 0, 1, points=[math.sqrt(room)], epsabs=0, epsrel=1e-9)
+    return 2 * (near + (HALF - 1) * inverse(1.0))
 
 
 def first_passage(step, room):
@@ -89,13 +124,10 @@ def crossing_rate(step, room):
     return step / math.sqrt(math.pi) * room**2 / side_volume(room)
 
 
-def diffusive(step, room):
-    """Return κ of a separation that diffuses."""
-    return step**2 / (side_volume(room) * resistance(room)) / crossing_rate(step, room)
-
-
-#: {quantity: the function of step and ε that it is for a separation that diffuses}.
-DIFFUSING = {"coefficient": diffusive, "first_time": first_passage}
+def diffusive(step, room, program="reflected"):
+    """Return κ of a separation that diffuses, by the moves of a ``program`` that are accepted."""
+    passed = step**2 / (side_volume(room) * resistance(room, program, step))
+    return passed / crossing_rate(step, room)
 
 
 def neck(step, halvings):
@@ -240,8 +272,10 @@ def rows(counts):
             both = joined(point["seeds"])
             for quantity, found in estimates(point, both).items():
                 cells = start | {"quantity": quantity}
-                if quantity in DIFFUSING:
-                    cells["diffusive"] = DIFFUSING[quantity](step, start["room"])
+                if quantity == "coefficient":
+                    cells["diffusive"] = diffusive(step, start["room"], program)
+                if quantity == "first_time":
+                    cells["diffusive"] = first_passage(step, start["room"])
                 place = (program, step, halvings, quantity)
                 reference = _reference(known, *place)
                 if reference is not None:
@@ -315,7 +349,8 @@ def _time(point, found):
     """Return (ε, ln of the time between passages over V, its error, the same by diffusion)."""
     kappa, room = found["coefficient"], 2.0 ** -point["halvings"]
     time = -math.log(kappa.value * room**2)
-    return room, time, kappa.stderr / kappa.value, math.log(resistance(room))
+    passed = resistance(room, point["program"], point["step"])
+    return room, time, kappa.stderr / kappa.value, math.log(passed)
 
 
 def _first(point, found):

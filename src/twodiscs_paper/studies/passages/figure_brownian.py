@@ -6,6 +6,7 @@ import numpy as np
 
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILLION
+from twodiscs_paper.studies.passages.brownian import REJECTING
 from twodiscs_paper.studies.passages.figure import columns, points
 from twodiscs_paper.study import select
 
@@ -22,10 +23,13 @@ LOOKS = {
 MARKERS = {2.0**-2: "o", 2.0**-3: "s", 2.0**-5: "^", 2.0**-7: "D"}
 
 #: The abscissas and the ordinates that are shown.
-NECKS, KAPPAS, EXPONENTS = (0.006, 60), (2e-3, 120), (-3.6, 0.4)
+NECKS, KAPPAS, EXPONENTS = (0.006, 60), (2e-3, 120), (-3.7, 0.4)
 
 #: Wider channels, in σ, have no neck.
 WIDEST = 1 / 4
+
+#: In necks of fewer steps rejected discs step through each other, and no law is drawn.
+LONGEST_STEP = 4
 
 #: κ times neck over step, for a separation that diffuses through a long neck.
 DIFFUSIVE = math.sqrt(2 / math.pi)
@@ -46,11 +50,22 @@ def draw(box, tables):
                 powers = select(own, quantity="local_exponent")
                 if powers:
                     points(lower, *columns(powers, *SHOWN), (colour, marker), filled=filled)
+            laws = select(rows, program=program, step=step, method="crossings")
+            laws = [row for row in laws if program in REJECTING and row["neck"] >= LONGEST_STEP]
+            for panel, quantity in ((upper, "coefficient"), (lower, "local_exponent")):
+                law = select(laws, quantity=quantity)
+                panel.plot(*columns(law, "neck", "diffusive"), color=colour, lw=0.8, zorder=4)
     dashed = {"color": BLACK, "lw": 0.8, "ls": (0, (4, 2)), "zorder": 5}
     upper.plot(NECKS, np.ones(2), **dashed)
     long = np.array([DIFFUSIVE, NECKS[1]])
     upper.plot(long, DIFFUSIVE / long, **dashed)
-    for power, name in ((-1.5, r"$-\frac{3}{2}$"), (-2.0, "$-2$"), (0.0, "$0$")):
+    for power, name in (
+        (-1.5, r"$-\frac{3}{2}$"),
+        (-2.0, "$-2$"),
+        (-2.5, r"$-\frac{5}{2}$"),
+        (-3.5, r"$-\frac{7}{2}$"),
+        (0.0, "$0$"),
+    ):
         lower.axhline(power, color=GREY, lw=0.8, ls=(0, (4, 2)), zorder=1)
         drawing.label(lower, name, (NECKS[1], power), (3, 0), ha="left", color=GREY)
     for colour, name in LOOKS.values():

@@ -158,7 +158,10 @@ class BrownianTable(Table):
         ),
         "estimate": Column(float, "step or none", "estimate"),
         "stderr": AS_ESTIMATE("its standard error"),
-        "diffusive": NUMBER("the same of a separation that diffuses: κ, first_time, an exponent"),
+        "diffusive": NUMBER(
+            "the same of a separation that diffuses, by the moves that a program accepts: κ, "
+            "first_time, an exponent"
+        ),
         "reference": AS_ESTIMATE(
             "expected value: 1 for crossings of reflected discs, by crossings for passages, of "
             "reflected discs for kicked ones"
@@ -292,9 +295,11 @@ STUDY = Study(
                 transition state theory. Open symbols follow random crossings in both directions of
                 time, dots are first passages. Dashed: 1, and √(2/π) s/√(εσ) of a separation that
                 diffuses. (b) The local power of ε with which the mean time between passages grows,
-                divided by the volume of the allowed positions. Dashed: the powers that theories of
-                diffusion and of transition states have, and 0 of a time that stays finite. Error
-                bars are one standard error. All symbols are from a long run.
+                divided by the volume of the allowed positions. Dashed: −3/2 of diffusion and −2 of
+                transition state theory, −5/2 and −7/2 of rejected moves of one disc and of both,
+                and 0 of a time that stays finite. Lines: the law of rejected moves, without a free
+                parameter, for necks of four steps or more. Error bars are one standard error. All
+                symbols are from a long run.
                 """
             ),
             long_runs={"brownian": "paper/long_run/brownian/brownian.csv"},
