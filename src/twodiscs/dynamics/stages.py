@@ -13,7 +13,9 @@ from twodiscs.points.monte_carlo_point import MonteCarloPoint
 
 @dataclass(frozen=True)
 class Stage:
-    """One kind of work, with one name in the configuration, in paths and as a target.
+    """A kind of work (sample, simulate, intervals): its call, its run, its sums and its tables.
+
+    It has one name in the configuration, in paths and as a target of Snakemake.
 
     ``call`` is the function of the face that does this work with the same settings; a file of sums
     has it as its kind. ``point`` is the class of the sums, and ``import_run`` returns the class of

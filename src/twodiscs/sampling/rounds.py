@@ -75,7 +75,7 @@ def fixed(work, blocks, block_events, cost_ratio=1.0):
 
 
 def _done(run, stop, ranges, cores, progress):
-    """Simulate the blocks up to ``stop`` that ``ranges`` lack; return the sums of all of them.
+    """Return the sums of all blocks before ``stop``; those that ``ranges`` lack are simulated.
 
     The sums of the new blocks are added to ``ranges``. Each call of a thread does a few blocks.
     """

@@ -172,9 +172,10 @@ def exact(scene: Scene) -> Exact:
 
 
 def replicas_needed(scene, event, error):
-    """Return the number of initial states that a relative ``error`` of an ``event`` needs.
+    """Return the least number of replicas in which the ``error`` of an ``event`` includes bursts.
 
-    It is 0 for smooth discs; rough discs have bursts of events (see ``clusters``). For more than
+    Fewer replicas may have seen none of the bursts of rough discs (see ``clusters``), and give too
+    small an error. ``error`` is relative. Smooth discs have no bursts and need 0. For more than
     two discs it is an estimate: that of two of the discs in the same box, divided by the number of
     pairs. Any pair may begin in a neck, and the other discs only shorten its bursts. Each disc is
     in N − 1 pairs, whose bursts at the walls add up.

@@ -113,7 +113,10 @@ first_word, second_word = _word(EVENTS[:COUNTS_PER_DOUBLE]), _word(EVENTS[COUNTS
 
 @optional(lambda counts, rest: counts[RIGHT_WALL] + counts[TOP_WALL])
 def all_walls(counts, rest):
-    """Return the hits of all walls. If both axes count all their hits, it is the sum of these."""
+    """Return the hits of all walls, from counts in which their entry has the collisions too.
+
+    If no entry counts all walls (``rest`` is None), it is the sum of the right and the top wall.
+    """
     return counts[ANY_WALL] - counts[DISC_COLLISION]
 
 
