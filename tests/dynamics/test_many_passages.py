@@ -15,8 +15,8 @@ from dynamics.rates import five, same_sizes
 from marks import slow
 
 from twodiscs.dynamics.many import many_hop_clusters
+from twodiscs.dynamics.transmission import cluster_coefficient, odd_clusters_per_passage, plateau
 from twodiscs.dynamics.two import hop_clusters as of_two
-from twodiscs.measure.transmission import cluster_coefficient, odd_clusters_per_passage, plateau
 from twodiscs.model.scene import Scene
 from twodiscs.theory import n_discs
 from twodiscs_paper.studies.passages.near import coefficients_at_times

@@ -18,8 +18,8 @@ from scalar_passages import sample
 from scipy.stats import f
 
 from twodiscs.dynamics.many import many_hop_clusters as of_many
+from twodiscs.dynamics.transmission import cluster_coefficient, odd_clusters_per_passage, plateau
 from twodiscs.dynamics.two import hop_clusters
-from twodiscs.measure.transmission import cluster_coefficient, odd_clusters_per_passage, plateau
 from twodiscs.model.scene import Scene
 from twodiscs_paper.studies.passages.near import (
     coefficients_at_times,

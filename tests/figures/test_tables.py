@@ -14,10 +14,10 @@ from matplotlib.patches import StepPatch
 
 import twodiscs as td
 from twodiscs.analysis.tables import SCENE_TABLES
+from twodiscs.dynamics.transmission import box_time
 from twodiscs.figures import style
 from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.figures.style import LOOKS
-from twodiscs.measure.transmission import box_time
 from twodiscs.model.events import HOPS, SHELL_EVENTS
 from twodiscs.theory import exact
 from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES, read_table

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import twodiscs as td
+from twodiscs.dynamics import transmission
 from twodiscs.dynamics.two import hop_clusters
-from twodiscs.measure import transmission
 from twodiscs.model.formats import texts_with_error
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling import rounds

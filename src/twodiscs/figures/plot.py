@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends import backend_registry
 
 from twodiscs.analysis.tables import SCENE_TABLES, row_quantity
+from twodiscs.dynamics.transmission import box_time
 from twodiscs.figures import animation, panels, style
 from twodiscs.figures.draw import BOX_DRAWINGS, draw
 from twodiscs.figures.radius import CURVES, add
@@ -24,7 +25,7 @@ from twodiscs.measure.measurements import Measurements
 from twodiscs.measure.observe import Observed
 from twodiscs.measure.scan import Scan
 from twodiscs.measure.trajectory import require_all_rows
-from twodiscs.measure.transmission import Transmission, box_time
+from twodiscs.measure.transmission import Transmission
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import InputError, check_choice
 from twodiscs.model.formats import quote

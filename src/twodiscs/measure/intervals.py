@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from twodiscs.analysis.tables import HopHistogramTable
 from twodiscs.measure.measurements import Measurement, indexed_frame, text_table
-from twodiscs.measure.result import Result, note_of_number, progress_bar
+from twodiscs.measure.result import Result, note_of_number, work
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import InputError, check_choice, check_count, check_integer
 from twodiscs.model.events import HOPS
@@ -115,9 +115,6 @@ class Intervals(Result):
     def __hash__(self):
         return hash((self.scene, self.hop))
 
-    def _again(self, settings, options):
-        return run_intervals(self.scene, **settings, **options, resume_from=self.components)
-
     def _texts(self) -> pd.DataFrame:
         """Return the texts of the printed table: the mean and the density at 0."""
         return text_table([self.mean, self.at_zero])
@@ -187,28 +184,26 @@ def intervals(
     >>> abs(td.intervals(scene, "vertical_hop", 1e5, seed=1).mean.z) < 5
     True
     """
-    return run_intervals(scene, hop, number, seed, name, cores, progress)
+    return make_intervals(**locals())
 
 
-def run_intervals(
-    scene, hop, number, seed, name, cores=1, progress=None, resume_from=None, budget=None
-):
-    """Return the ``Intervals`` of ``intervals``; the components ``resume_from`` are not done again.
+def make_intervals(scene, **asked):
+    """Return the ``Intervals`` of the arguments that are ``asked``, see ``Result``.
 
-    ``budget`` is the largest number of wall hits and collisions, None for the usual one.
+    A point of a build also has a ``budget``, the largest number of wall hits and collisions.
     """
-    check_choice("hop", hop, HOPS)
+    hop = check_choice("hop", asked["hop"], HOPS)
     if check_scene(scene).moment_of_inertia is not None and not scene.friction:
         raise InputError(
             "scene must have smooth discs, because rough discs in a box are not ergodic and their "
             f"intervals have no exact mean, but moment_of_inertia is {scene.moment_of_inertia!r}"
         )
-    number, seed = check_count("number", number), check_integer("seed", seed, 0)
+    number, seed = check_count("number", asked["number"]), check_integer("seed", asked["seed"], 0)
     from twodiscs.dynamics.runs import INTERVALS_BUDGET, IntervalsRun
 
-    settings = {"hop": hop, "number": number, "seed": seed, "name": name}
-    settings["budget"] = INTERVALS_BUDGET if budget is None else check_count("budget", budget)
-    run = IntervalsRun.of(scene, settings)
-    with progress_bar(progress, f"intervals r = {scene.radius:g}") as progress:
-        point = run.run(progress, cores, resume_from)
-    return Intervals(scene, point, settings)
+    settings = {"hop": hop, "number": number, "seed": seed, "name": asked["name"]}
+    settings["budget"] = check_count("budget", asked.get("budget", INTERVALS_BUDGET))
+    return Intervals(scene, work("intervals", IntervalsRun.of(scene, settings), asked), settings)
+
+
+Intervals.makers = {"intervals": make_intervals}

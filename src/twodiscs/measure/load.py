@@ -143,14 +143,15 @@ def from_dict(content):
         is_right = is_right and {*map(len, refused)} <= {len(names)} and found[0].kind != "scan"
         known = {"results": content["results"]}
     else:
-        from twodiscs.measure import intervals, measurements, observe, transmission
+        from twodiscs.measure.intervals import Intervals
+        from twodiscs.measure.measurements import Measurements
+        from twodiscs.measure.observe import Observed
+        from twodiscs.measure.transmission import Transmission
 
-        makers = measurements.MAKERS | {
-            "intervals": intervals.run_intervals, "transmission": transmission.run_transmission,
-            "observe": observe.run_observe, "diffusion": observe.run_diffusion,
-        }  # fmt: skip
+        kinds = Measurements, Intervals, Transmission, Observed
+        makers = {kind: make for one in kinds for kind, make in one.makers.items()}
         kind, settings = content["kind"], content["settings"]
-        numbers = float if kind in ("observe", "diffusion") else int
+        numbers = float if kind in Observed.makers else int
         components = FinishedComponents(restore_arrays(content["parts"], numbers))
         with np.errstate(invalid="ignore"):  # counts that no run has are refused below
             found = makers[kind](Scene(**content["scene"]), **settings, resume_from=components)

@@ -22,7 +22,7 @@ from twodiscs.analysis.tables import (
     shortfall,
 )
 from twodiscs.measure.exact_values import Quantities
-from twodiscs.measure.result import Immutable, Result, note_of_number, progress_bar
+from twodiscs.measure.result import Immutable, Result, note_of_number, work
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import (
     THINNEST_SHELL,
@@ -293,9 +293,6 @@ class Measurements(Result, Mapping[str, Measurement]):
             by_name["any_wall_area"] = sum(n * by_name[wall] for wall, n in weights.items())
         return by_name
 
-    def _again(self, settings, options):
-        return MAKERS[self.kind](self.scene, **settings, **options, resume_from=self.components)
-
     def __getitem__(self, name: str) -> Measurement:
         return self._measurements[name]
 
@@ -451,22 +448,19 @@ def simulate(
     """
     if error is None and duration is None:
         error = 1e-3
-    asked = error, duration, seed, budget, events, name, cores, progress
-    return run_simulation(scene, *asked, method=method)
+    return make_simulation(**locals())
 
 
-def run_simulation(
-    scene, error, duration=None, seed=1, budget=None, events=None, name=None, cores=1,
-    progress=None, resume_from=None, method=None,
-):  # fmt: skip
-    """Return the ``Measurements`` of ``simulate``, which goes on from ``resume_from``."""
+def make_simulation(scene, **asked):
+    """Return the ``Measurements`` of the arguments that are ``asked``, see ``Result``."""
+    error, duration, budget = (asked.get(name) for name in ("error", "duration", "budget"))
     possible, timed = check_scene(scene).events, duration is not None
     if timed and error is not None:
         raise InputError("error and duration must not both be given: leave out one of them")
-    tracked, target = _targets(error, "events", "event", events, possible, scene)
+    tracked, target = _targets(error, "events", "event", asked.get("events"), possible, scene)
     budget = None if budget is None else check_count("budget", budget)
-    seed = check_integer("seed", seed, 0)
-    settings = {"seed": seed, "budget": budget, "events": tracked, "name": name, "method": method}
+    settings = {"seed": check_integer("seed", asked["seed"], 0), "budget": budget}
+    settings |= {"events": tracked, "name": asked["name"], "method": asked.get("method")}
     if timed:
         duration = check_length("duration", duration)
         settings |= {"error": None, "duration": duration}
@@ -474,9 +468,7 @@ def run_simulation(
         settings["error"] = target if isinstance(error, Mapping) else check_error("error", error)
     from twodiscs.dynamics.runs import DynamicsRun
 
-    run = DynamicsRun.of(scene, settings)
-    with progress_bar(progress, f"simulate r = {scene.radius:g}") as progress:
-        point = run.run(progress, cores, resume_from)
+    point = work("simulate", DynamicsRun.of(scene, settings), asked)
     rows = MeanTimesTable.rows([point])
     if timed:
         note = (
@@ -600,24 +592,22 @@ def sample(
     >>> abs(volume.value - td.volume(scene)) < 5 * volume.stderr
     True
     """
-    given = samples, seed, quantities, shell, name, cores, progress
-    return run_sampling(scene, *given, error=error, budget=budget, method=method)
+    return make_sampling(**locals())
 
 
-def run_sampling(
-    scene, samples=None, seed=1, quantities=None, shell=0.02, name=None, cores=1, progress=None,
-    resume_from=None, error=None, budget=None, method=None,
-):  # fmt: skip
-    """Return the ``Measurements`` of ``sample``, which goes on from ``resume_from``."""
+def make_sampling(scene, **asked):
+    """Return the ``Measurements`` of the arguments that are ``asked``, see ``Result``."""
+    samples, error, budget = (asked.get(name) for name in ("samples", "error", "budget"))
     if error is not None and samples is not None:
         raise InputError("samples and error must not both be given: leave out one of them")
     if error is None and budget is not None:
         raise InputError("budget must be left out without an error: samples is the number to draw")
     allowed = ("volume", *(f"{event}_area" for event in check_scene(scene).events))
     key = "quantities", "quantity"
-    quantities, target = _targets(error, *key, quantities, allowed, scene)
-    settings = {"seed": check_integer("seed", seed, 0), "quantities": quantities, "name": name}
-    settings |= {"shell": check_fraction("shell", shell, THINNEST_SHELL), "method": method}
+    quantities, target = _targets(error, *key, asked["quantities"], allowed, scene)
+    settings = {"seed": check_integer("seed", asked["seed"], 0), "quantities": quantities}
+    settings |= {"name": asked["name"], "method": asked.get("method")}
+    settings["shell"] = check_fraction("shell", asked["shell"], THINNEST_SHELL)
     if error is None:
         samples = check_count("samples", 10**7 if samples is None else samples)
         settings["samples"] = samples
@@ -629,8 +619,7 @@ def run_sampling(
 
     require_free_fraction(scene)
     run = MonteCarloRun.of(scene, settings)
-    with progress_bar(progress, f"sample r = {scene.radius:g}") as progress:
-        point = run.run(progress, cores, resume_from)
+    point = work("sample", run, asked)
     rows = VolumeTable.rows([point]) + AreasTable.rows([point])
     # Insertions always have the volume.
     rows = [row for row in rows if row["quantity"] in quantities]
@@ -650,5 +639,4 @@ def run_sampling(
     return Measurements("sample", scene, rows, settings, point, note)
 
 
-#: {kind of a result: the function that makes it}
-MAKERS = {"simulate": run_simulation, "sample": run_sampling}
+Measurements.makers = {"simulate": make_simulation, "sample": make_sampling}

@@ -4,25 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
-from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from twodiscs.dynamics.engine import find_engine
-from twodiscs.dynamics.ensemble import open_block_kicks
-from twodiscs.dynamics.paths import MOST_PATH_EVENTS
-from twodiscs.measure.result import Result, note_of_number, progress_bar
+from twodiscs.dynamics.averages import ObserveRun, check_times
+from twodiscs.measure.result import Result, note_of_number, progress_bar, work
 from twodiscs.model.calls import checked_call
-from twodiscs.model.checks import InputError, check_count, make_list
+from twodiscs.model.checks import InputError, check_count
 from twodiscs.model.formats import format_number, quote, texts_with_error
-from twodiscs.model.many_geometry import LARGE
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.model.seeds import job_seed
-from twodiscs.points.base import reached
 from twodiscs.sampling.initial_states import MOST_NUMBERS, components, make_records, states
 from twodiscs.sampling.rounds import FinishedComponents
-from twodiscs.sampling.threads import map_in_threads
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,15 +24,6 @@ if TYPE_CHECKING:
     from twodiscs import Axis
 
     Function = Callable[[np.ndarray, np.ndarray], Any]
-
-#: Replicas with one random stream. ``LARGE`` numbers of discs have the blocks of ``simulate``.
-BLOCK = 4096
-
-#: The most numbers of the states of a block at several times that are in memory together.
-KEPT = 2**22
-
-#: Values of a function are smaller, so that their squares can be added.
-LARGEST = 1e140
 
 
 @checked_call
@@ -139,12 +124,10 @@ class Observed(Result):
     names: tuple[str, ...] = ()
     function: Callable | Mapping[str, Callable] | None = None
 
-    def _again(self, settings, options):
-        if self.kind == "diffusion":
-            return run_diffusion(self.scene, **settings, **options, resume_from=self.components)
-        function = settings.pop("function")
-        function = self.function if function == self.settings["function"] else function
-        return run_observe(self.scene, function, **settings, **options, resume_from=self.components)
+    def _again(self, **asked):
+        if self.kind == "observe" and asked["function"] == self.settings["function"]:
+            asked["function"] = self.function
+        return super()._again(**asked)
 
     @property
     def rows(self) -> list[dict[str, object]]:
@@ -190,85 +173,6 @@ class Observed(Result):
             columns += zip((name, "± error"), texts, strict=True)
         names, texts = zip(*columns, strict=True)
         return pd.DataFrame(zip(*texts, strict=True), columns=names)
-
-
-def _times(times):
-    times = make_list(times)
-    try:
-        checked = np.atleast_1d(np.asarray(times, float))
-        ascending = checked.ndim == 1 and checked.size and np.all(np.diff(checked) > 0)
-        ascending = ascending and not np.ma.is_masked(times)
-        if ascending and checked[0] >= 0 and np.isfinite(checked[-1]):
-            return checked
-    except (TypeError, ValueError):
-        pass
-    raise InputError(f"times must be ascending numbers from 0 on, not {quote(times)}")
-
-
-def _values(function, start, now):
-    """Return (names, values) of the ``function``: an array with a row for each replica.
-
-    A dict has names; its values, and those of a tuple or list of arrays, are columns.
-    """
-    # The same start is used for all times. A function that changes it would spoil later times.
-    start.flags.writeable = now.flags.writeable = False
-    returned = function(start, now)
-    names = tuple(returned) if isinstance(returned, Mapping) else ()
-    columns = [*returned.values()] if names else returned
-    try:
-        if isinstance(columns, list | tuple) and all(np.shape(c) == start.shape for c in columns):
-            columns = np.ma.stack(columns, axis=1)
-        values = np.ma.asarray(columns)  # a list may hold masked arrays
-    except (TypeError, ValueError):  # lists of several lengths
-        values = None
-    is_real = values is not None and values.dtype.kind in "biuf"
-    masked = is_real and np.ma.is_masked(values)
-    shape = start.shape + ((len(names),) if names else ())
-    if not is_real or masked or values.shape[: len(shape)] != shape:
-        allowed = (
-            "function must return a real number, or the same number of them, for each of the "
-            f"{start.size} replicas"
-        )
-        if returned is None:
-            what = "None: is its return missing?"
-        elif masked:
-            what = "an array with masked values, which have to be filled or left out of the average"
-        elif values is None or not values.shape or names:
-            what = quote(returned)
-        elif values.dtype.names:
-            what = f"an array with the fields {', '.join(values.dtype.names)}: choose one of them"
-        elif values.dtype.kind == "c":
-            what = (
-                f"complex ones of shape {values.shape}: return real and imaginary part as two "
-                "columns, np.stack((z.real, z.imag), axis=1)"
-            )
-        else:
-            what = f"an array of shape {values.shape} and kind {values.dtype}"
-        raise InputError(f"{allowed}, not {what}")
-    _check_names(names)
-    return names, values.data.astype(float)
-
-
-def _check_names(names):
-    """Raise ``InputError`` unless these are different texts, with those of their errors too."""
-    texts = all(isinstance(name, str) for name in names)
-    if not texts or len({*names, *(f"{name}_stderr" for name in names)}) < 2 * len(names):
-        raise InputError(
-            "names of what function returns must be texts, none of them another one with _stderr, "
-            f"not {quote([*names])}"
-        )
-
-
-def _check_finite(values, times, first):
-    """Raise ``InputError`` for NaN and large ``values``, from the replica ``first`` on."""
-    if not (wrong := ~(np.abs(values) < LARGEST)).any():
-        return
-    replica, time, *_ = np.argwhere(wrong)[0]
-    value = values[replica, time][wrong[replica, time]].flat[0]
-    raise InputError(
-        f"function must return finite numbers, below {format_number(LARGEST, 'g')}, not {value} at "
-        f"the time {times[time]:g} of the replica {first + replica}"
-    )
 
 
 @checked_call
@@ -320,21 +224,17 @@ def observe(
     >>> bool(abs(found.mean[0] - 1 / 4) < 5 * found.stderr[0])  # ⟨u₁²⟩ of four components
     True
     """
-    return run_observe(scene, function, times, replicas, seed, name, cores, progress)
+    return make_observed(**locals())
 
 
-def run_observe(
-    scene, function, times, replicas, seed, name, cores=1, progress=None, resume_from=None
-):
-    """Return the ``Observed`` of ``observe``, which goes on from ``resume_from``.
+def make_observed(scene, function, **asked):
+    """Return the ``Observed`` of the arguments that are ``asked``, see ``Result``.
 
-    For a result from a file the ``function`` is its name, a text.
+    For a result from a file the function is its name, a text.
     """
-    settings = {"times": times, "replicas": replicas, "seed": seed, "name": name}
-    if isinstance(resume_from, FinishedComponents):
-        settings["function"] = function
-        return averages("observe", scene, None, settings, cores, progress, resume_from)
-    if function is None and resume_from is not None:
+    if isinstance(asked.get("resume_from"), FinishedComponents):
+        return _averages("observe", scene, {"function": function}, asked, None)
+    if function is None and "resume_from" in asked:
         raise InputError(
             "function must be given again to go on from a file, which does not hold it: "
             "more(replicas, function=…)"
@@ -347,108 +247,19 @@ def run_observe(
     def called(start, now):
         return {name: one(start, now) for name, one in functions.items()}
 
-    settings["function"] = ", ".join(map(str, functions))
-    taken = called if by_name else function
-    found = averages("observe", scene, taken, settings, cores, progress, resume_from)
-    return replace(found, function=function)
+    own, taken = {"function": ", ".join(map(str, functions))}, called if by_name else function
+    return replace(_averages("observe", scene, own, asked, taken), function=function)
 
 
-def averages(
-    kind, scene, function, settings, cores, progress, resume_from, names=(), over_times=None
-):
-    """Return the averages of a user's ``function`` as ``Observed``.
-
-    ``over_times(values, before, steps)``, if given, is applied to the values of the replicas of a
-    block at some of the times, (replicas, times, …), before they are averaged. ``before`` are the
-    values at the time before these, None at first. ``steps`` are the times since the time before
-    each. ``names`` are then the names of the averages. The components ``resume_from`` are not done
-    again: their sums are the mean and the sum of squared deviations over the first blocks.
-    """
-    stream = job_seed(check_scene(scene), "observe", settings["seed"], settings["name"])
-    times = _times(settings["times"])
-    asked = check_count("replicas", settings["replicas"], most=10**9)
-    engine = find_engine(scene)
-    each = BLOCK if scene.discs < LARGE else engine.block_replicas(scene)
-    blocks = -(-asked // each)
-    rate = engine.expected_event_rate(scene) + scene.friction
-    if times[-1] * rate > MOST_PATH_EVENTS:
-        raise InputError(
-            f"times must be below {format_number(MOST_PATH_EVENTS / rate, '.3g')}, where "
-            f"{format_number(MOST_PATH_EVENTS, 'g')} events are due, not "
-            f"{format_number(times[-1], 'g')}"
-        )
-
-    steps = np.diff(times, prepend=0.0)
-
-    def snapshots(block):
-        """Yield (states at time 0, states at a time) of a block, for all ``times``."""
-        filled, wraps = states(scene, each, stream, block), engine.new_wraps(scene, each)
-        kicks = open_block_kicks(engine.new_kicks(scene, each), stream, block)
-        start = make_records(scene, filled)
-        for step in steps:
-            if step:
-                engine.advance_all(scene, filled, wraps, step, kicks)
-            now = make_records(scene, filled)
-            engine.unwrap(scene, now, wraps)
-            yield start, now
-
-    def moments(block, first, pairs, before):
-        """Return the last values of a block, and the means and sums of squares at some times."""
-        found = [_values(function, start, now) for start, now in pairs]
-        forms.update((own, values.shape[1:]) for own, values in found)
-        if len(forms) > 1:
-            raise InputError(
-                "function must return as many numbers each time, with the same names, not "
-                f"{' and '.join(map(quote, forms))}"
-            )
-        values = np.stack([values for _, values in found], axis=1)
-        _check_finite(values, times[first:], block * each)
-        last = values[:, -1]
-        if over_times:
-            values = over_times(values, before, steps[first : first + len(pairs)])
-        return last, values.mean(axis=0), ((values - values.mean(axis=0)) ** 2).sum(axis=0)
-
-    # If the states of a block at all times are too many, one block a core goes on piece by piece.
-    together = max(1, KEPT // (each * len(components(scene))))
-    in_pieces = times.size > together
-    abreast = cores if in_pieces else blocks
-    old = {"names": [], "sums": {}} if resume_from is None else resume_from["all"]
-    sums, done = reached(old["sums"], blocks)
-    mean, square = sums or (0.0, 0.0)
-    total = done * each
-    forms = {(tuple(old["names"]), mean.shape[1:])} if done and not over_times else set()
-    if isinstance(resume_from, FinishedComponents):
-        _check_names(old["names"])
-        shape = times.shape + (mean.shape[1:] if not old["names"] else (len(old["names"]),))
-        if done < blocks or not shape == mean.shape == square.shape or not np.all(square >= 0):
-            raise InputError("sums must be those of all replicas, times and names")
-    with progress_bar(progress, f"observe r = {scene.radius:g}") as progress:
-        for low in range(done, blocks, abreast):
-            numbers = range(low, min(low + abreast, blocks))
-            series = [*map(snapshots, numbers)] if in_pieces else map(snapshots, numbers)
-            parts = {}
-            for first in range(0, times.size, together):
-                calls = ((of_block,) for of_block in series)
-                every = map_in_threads(lambda of_block: [*islice(of_block, together)], calls, cores)
-                for block, pairs in zip(numbers, every, strict=True):
-                    before = parts[block][-1][0] if first else None
-                    part = moments(block, first, pairs, before)
-                    parts.setdefault(block, []).append(part)
-                    if first + together < times.size:
-                        continue
-                    _, own, spread = map(np.concatenate, zip(*parts.pop(block), strict=True))
-                    # The mean and the sum of squares of two samples together (Chan et al., 1979).
-                    n, apart = total + each, own - mean
-                    square = square + spread + apart**2 * (total * each / n)
-                    mean, total = mean + apart * (each / n), n
-                    if progress is not None:
-                        progress(block + 1, blocks)
-    names = names or next(iter(forms))[0]
-    stderr = np.sqrt(square / (total - 1) / total)
-    settings |= {"times": times.tolist(), "replicas": asked, "seed": int(settings["seed"])}
-    made = {"names": [*names], "stream": stream, "sums": {(0, blocks): [mean, square]}}
-    note = note_of_number("replicas", asked, total)
-    return Observed(kind, scene, times, mean, stderr, total, settings, {"all": made}, note, names)
+def _averages(kind, scene, own, asked, *given):
+    """Return the ``Observed`` of a ``kind``, with its ``own`` settings; see ``ObserveRun``."""
+    seed = job_seed(check_scene(scene), "observe", asked["seed"], asked["name"])
+    times, replicas = check_times(asked["times"]), asked["replicas"]
+    replicas = check_count("replicas", replicas, most=10**9)
+    found = work(kind, ObserveRun(scene, seed, times, replicas, *given), asked)
+    settings = own | {"times": times.tolist(), "replicas": replicas, "seed": int(asked["seed"])}
+    settings["name"], note = asked["name"], note_of_number("replicas", replicas, found["replicas"])
+    return Observed(kind, scene, times, **found, settings=settings, note=note)
 
 
 @checked_call
@@ -509,13 +320,11 @@ def diffusion(
     >>> bool(0.02 < found.frame()["diffusion"].iloc[-1] < 0.05)
     True
     """
-    return run_diffusion(scene, times, replicas, axis, seed, name, cores, progress)
+    return make_diffusion(**locals())
 
 
-def run_diffusion(
-    scene, times, replicas, axis, seed, name, cores=1, progress=None, resume_from=None
-):
-    """Return the ``Observed`` of ``diffusion``, which goes on from ``resume_from``."""
+def make_diffusion(scene, axis, **asked):
+    """Return the ``Observed`` of the arguments that are ``asked``, see ``Result``."""
     periodic = check_scene(scene).periodic
     if not periodic or (axis is not None and not (isinstance(axis, str) and axis in [*periodic])):
         allowed = f"one of {', '.join(periodic)}" if periodic else "periodic in the scene"
@@ -523,8 +332,8 @@ def run_diffusion(
             f"axis must be {allowed} for diffusion, not {quote(axis)}: displacements between walls "
             "have a bound"
         )
-    axis, times = axis or periodic[0], _times(times)
-    if times[0] == 0:
+    axis = axis or periodic[0]
+    if check_times(asked["times"])[0] == 0:
         raise InputError("times must be above 0 for diffusion, not 0")
     discs = range(1, scene.discs + 1 if scene.identical else 2)
 
@@ -536,6 +345,8 @@ def run_diffusion(
         slopes = np.diff(values, axis=1, prepend=before[:, None]) / (2 * steps)
         return np.stack([values, slopes], axis=2)
 
-    settings = {"times": times, "replicas": replicas, "axis": axis, "seed": seed, "name": name}
-    names, more = ("squared_displacement", "diffusion"), (cores, progress, resume_from)
-    return averages("diffusion", scene, squared, settings, *more, names, with_slopes)
+    given = squared, ("squared_displacement", "diffusion"), with_slopes
+    return _averages("diffusion", scene, {"axis": axis}, asked, *given)
+
+
+Observed.makers = {"observe": make_observed, "diffusion": make_diffusion}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from contextlib import contextmanager
 from copy import deepcopy
 from html import escape
@@ -66,15 +67,20 @@ class Result(Printed):
 
     ``settings`` are its arguments beside the scene, {name: value}, with the seed and the error that
     was asked for; ``version`` is the version of the package. ``components`` are those of its run
-    (see ``points.base``), from which it goes on. A class has a method ``_again(settings, options)``
-    that returns the result of these ``settings`` and uses the sums of this one.
+    (see ``points.base``), from which it goes on. ``makers`` are the functions that make a result,
+    {kind: function}: each takes the arguments of its call, and the components ``resume_from``.
     """
 
     kind: ClassVar[str]
+    makers: ClassVar[dict[str, Callable]]
     components: dict[str, dict]
     version: str = twodiscs.__version__
     #: The difference between the work that was asked for and the work that was done, None if none.
     note: str | None = None
+
+    def _again(self, **asked):
+        """Return the result of the arguments that are ``asked``, which goes on from this one."""
+        return self.makers[self.kind](self.scene, **asked, resume_from=self.components)
 
     def __eq__(self, other):
         """Return whether the other result has the same kind, scene, settings and rows."""
@@ -131,7 +137,7 @@ class Result(Printed):
                 f"{unknown[0]} must be left out for a result of {self.kind}: to go on, give "
                 f"{' or '.join(f'{name}=' for name in names)}"
             )
-        return self._again(self.settings | larger, {"cores": cores, "progress": progress})
+        return self._again(**self.settings | larger, cores=cores, progress=progress)
 
     def to_dict(self) -> dict[str, object]:
         """Return the result as ``save`` writes it.
@@ -170,6 +176,16 @@ class Result(Printed):
         True
         """
         write_json(path, self.to_dict())
+
+
+def work(kind, run, asked):
+    """Return the point of a ``run`` of a ``kind`` of result, with a progress bar.
+
+    The arguments that are ``asked`` may have ``cores``, ``progress``, and ``resume_from``, the
+    components of an earlier run, which are not done again.
+    """
+    with progress_bar(asked.get("progress"), f"{kind} r = {run.scene.radius:g}") as progress:
+        return run.run(progress, asked.get("cores", 1), asked.get("resume_from"))
 
 
 def note_of_number(what, asked, done, fewer="within the budget"):

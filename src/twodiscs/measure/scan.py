@@ -8,7 +8,7 @@ from itertools import product
 from typing import TYPE_CHECKING, Any, Unpack
 
 from twodiscs.measure.exact_values import as_list, fitting_scenes
-from twodiscs.measure.measurements import run_simulation
+from twodiscs.measure.measurements import make_simulation
 from twodiscs.measure.result import Result
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import InputError
@@ -72,9 +72,10 @@ class Scan(Result, Sequence[Result]):
     def __hash__(self):
         return hash(tuple(result.scene for result in self))
 
-    def _again(self, settings, options):
-        new = {name: value for name, value in settings.items() if value != self.settings[name]}
-        results = [result._again(result.settings | new, options) for result in self]
+    def _again(self, **asked):
+        known = self.settings
+        new = {name: value for name, value in asked.items() if value != known.get(name, asked)}
+        results = [result._again(**result.settings | new) for result in self]
         return Scan(results, self.refused, self.parameters)
 
     def to_dict(self) -> dict[str, object]:
@@ -211,17 +212,18 @@ def scan(
             f"one radius, has the same random numbers each time, not {' and '.join(values)}; to "
             "repeat one, give another seed"
         )
-    asked = error, duration, seed, budget, events, name, cores, progress
+    asked = {"error": error, "duration": duration, "budget": budget, "events": events}
+    asked |= {"seed": seed, "name": name, "cores": cores, "progress": progress}
     if measure is None:
-        asked = 1e-2 if error is None and duration is None else error, *asked[1:]
-    elif asked != (None, None, 1, None, None, None, 1, None) or not callable(measure):
+        asked["error"] = 1e-2 if error is None and duration is None else error
+    elif [*asked.values()] != [None, None, None, None, 1, None, 1, None] or not callable(measure):
         raise InputError(
             "measure must be a function of a scene, without error, duration, seed, budget, events, "
             f"name, cores and progress, which it gives to what it calls, not {quote(measure)}"
         )
     results = []
     for scene in scenes:
-        result = measure(scene) if measure else run_simulation(scene, *asked)
+        result = measure(scene) if measure else make_simulation(scene, **asked)
         known = isinstance(result, Result) and not isinstance(result, Scan)
         if not known or (result.scene, result.kind) != (scene, (results or [result])[0].kind):
             raise InputError(

@@ -41,7 +41,10 @@ STEPS = 16
 class SequentialRun:
     """Work in blocks until the errors are small enough or a budget is spent.
 
-    ``work(first, stop)`` returns the sums of a range of blocks, a tuple of integer arrays.
+    ``work(first, stop)`` returns the sums of a range of blocks, a tuple of integer arrays. If sums
+    are floats, there is a function ``join(sums, more)``, which adds those of a block; sums are None
+    at first. ``work(first, stop, cores, waiting)`` then yields the sums of one block after the
+    other (see ``threads.map_in_threads``).
     ``error_over_target(sums, blocks)`` returns the array of their errors over the errors asked for;
     if it is empty, one round is enough. ``simulated_in(sums)`` returns the number of events; it is
     None if all blocks have the same number.
@@ -59,6 +62,7 @@ class SequentialRun:
     planned: int
     cost_ratio: float = 1.0
     first_round: int = FIRST_ROUND
+    join: Callable | None = None
 
     @property
     def block_work(self):
@@ -66,11 +70,11 @@ class SequentialRun:
         return self.block_events * self.cost_ratio
 
 
-def fixed(work, blocks, block_events, cost_ratio=1.0):
+def fixed(work, blocks, block_events, cost_ratio=1.0, join=None):
     """Return the ``SequentialRun`` of exactly this number of ``blocks``."""
     return SequentialRun(
         work, lambda sums, done: np.array([]), None, block_events, math.inf, blocks,
-        cost_ratio, blocks,
+        cost_ratio, blocks, join,
     )  # fmt: skip
 
 
@@ -81,6 +85,14 @@ def _done(run, stop, ranges, cores, progress):
     """
     sums, first = reached(ranges, stop)
     if first == stop:
+        return sums
+    if run.join:  # sums of floats depend on the order, so those of all blocks are one range
+        blocks = run.work(first, stop, cores, lambda: progress(None))
+        for done, more in enumerate(blocks, first + 1):
+            sums = run.join(sums, more)
+            progress(done)
+        ranges.clear()
+        ranges[0, stop] = sums
         return sums
     step, new = max(1, int(EVENTS_PER_CALL / run.block_work)), None
     calls = ((start, min(start + step, stop)) for start in range(first, stop, step))

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from twodiscs.analysis.columns import NUMBER, TEXT, Table
 from twodiscs.dynamics.runs import RETURNS
+from twodiscs.dynamics.transmission import QUIET
 from twodiscs.figures.scene_figures import FIGURES
-from twodiscs.measure.transmission import QUIET
 from twodiscs.model.scene import Box
 from twodiscs.sampling.montecarlo import PROPOSAL_TIME
 from twodiscs_paper.catalogue import STUDY_FIGURES

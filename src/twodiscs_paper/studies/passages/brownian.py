@@ -19,7 +19,7 @@ from itertools import groupby, pairwise
 import numpy as np
 from scipy.integrate import quad
 
-from twodiscs.measure.transmission import cluster_coefficient
+from twodiscs.dynamics.transmission import cluster_coefficient
 from twodiscs.model.seeds import stream_seed
 from twodiscs.points.estimates import Estimate
 from twodiscs_paper.studies.estimates import LinearFit

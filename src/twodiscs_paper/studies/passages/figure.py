@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from twodiscs.dynamics.transmission import box_time
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import BLACK, BLUE, GREEN, PURPLE, SIZES, SKY, VERMILLION, event_name
-from twodiscs.measure.transmission import box_time
 from twodiscs.model.scene import Box
 from twodiscs.theory import exact, laws
 from twodiscs_paper.studies.passages.near import ONE_INERTIA, thresholds

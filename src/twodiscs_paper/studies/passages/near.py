@@ -11,9 +11,7 @@ import numpy as np
 
 from twodiscs.analysis.scores import student_deviate
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.two import strip
-from twodiscs.dynamics.two.hop_clusters import HOPS_PER_BLOCK, cluster_sizes, hop_sums
-from twodiscs.measure.transmission import (
+from twodiscs.dynamics.transmission import (
     TIMES,
     are_rare,
     box_time,
@@ -24,6 +22,8 @@ from twodiscs.measure.transmission import (
     plateau,
     quiet_time,
 )
+from twodiscs.dynamics.two import strip
+from twodiscs.dynamics.two.hop_clusters import HOPS_PER_BLOCK, cluster_sizes, hop_sums
 from twodiscs.model.events import EVENT_AXES, HOPS
 from twodiscs.model.scene import Box
 from twodiscs.points import estimates

@@ -2,7 +2,7 @@
 
 import math
 
-from twodiscs.measure.transmission import hop_seed
+from twodiscs.dynamics.transmission import hop_seed
 from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import Estimate
 from twodiscs_paper.studies.estimates import sample_mean

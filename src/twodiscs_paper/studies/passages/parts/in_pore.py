@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from twodiscs.measure.transmission import cluster_coefficient
+from twodiscs.dynamics.transmission import cluster_coefficient
 from twodiscs.model.seeds import stream_seed
 from twodiscs.points.estimates import Estimate
 from twodiscs_paper.studies.estimates import sample_mean

@@ -8,7 +8,7 @@ not once the time is longer than a flight through the neck, from h over the ther
 
 import numpy as np
 
-from twodiscs.measure.transmission import hop_seed
+from twodiscs.dynamics.transmission import hop_seed
 from twodiscs.model.scene import Box
 from twodiscs_paper.studies.estimates import sample_mean
 from twodiscs_paper.studies.passages.models import file

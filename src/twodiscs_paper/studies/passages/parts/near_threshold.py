@@ -1,7 +1,7 @@
 """κ of smooth and of rough discs without friction, near the radius where their hop is blocked."""
 
+from twodiscs.dynamics.transmission import quiet_time
 from twodiscs.dynamics.two.hop_clusters import HOPS_PER_BLOCK
-from twodiscs.measure.transmission import quiet_time
 from twodiscs_paper.studies.passages.near import (
     FEWEST_HOPS,
     MOST_HOPS,

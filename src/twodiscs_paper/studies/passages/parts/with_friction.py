@@ -8,8 +8,8 @@ import math
 
 import numpy as np
 
+from twodiscs.dynamics.transmission import quiet_time
 from twodiscs.dynamics.two.hop_clusters import HOPS_PER_BLOCK, cluster_sizes
-from twodiscs.measure.transmission import quiet_time
 from twodiscs.model.events import EVENT_AXES
 from twodiscs.model.scene import Box
 from twodiscs.points.estimates import Estimate
