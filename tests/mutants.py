@@ -117,7 +117,7 @@ MUTANTS = [
     ("sign of a score", "(expected - count) / error", "(count - expected) / error"),
     ("two tails", "ndtri(alarm / (2 * comparisons))", "ndtri(alarm / comparisons)"),
     ("half of the alarm", "judged(rows, alarm / 2)", "judged(rows, alarm)"),
-    ("a larger work is lost", "result._again(result.settings | new, options)", "result._again(result.settings, options)"),
+    ("a larger work is lost", "result._again(**result.settings | new)", "result._again(**result.settings)"),
     ("radii that do not fit are lost", "return Scan(results, self.refused, self.parameters)", "return Scan(results, {}, self.parameters)"),
     ("numbers with errors that are not known", "n in self and self[n].stderr is not None]", "n in self and self[n].value is not None]"),
     ("finished work counts twice", "bar.update(done - bar.n)", "bar.update(done)"),
