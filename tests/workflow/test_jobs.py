@@ -64,7 +64,11 @@ SPAWNED = {"src/twodiscs_paper/studies/effects/engine_without_effects.py"}
 
 #: The sources that no job with a group of code imports; ``needless`` and ``lacking`` are the proof.
 NO_JOB = {
-    *(f"twodiscs/measure/{n}.py" for n in ("intervals", "load", "observe", "pressure", "scan")),
+    *(
+        f"twodiscs/measure/{name}.py"
+        for name in ("intervals", "load", "observe", "pressure", "scan", "transmission")
+    ),
+    "twodiscs/dynamics/averages.py",
     "twodiscs/figures/plot.py",
     "twodiscs_paper/pipeline/build.py",
     "twodiscs_paper/pipeline/results/verify.py",

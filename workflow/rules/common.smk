@@ -123,8 +123,9 @@ for name, study in STUDIES.items():
 FACE = modules(
     *(
         f"twodiscs/measure/{name}.py"
-        for name in ("intervals", "load", "observe", "pressure", "scan")
+        for name in ("intervals", "load", "observe", "pressure", "scan", "transmission")
     ),
+    "twodiscs/dynamics/averages.py",
     "twodiscs/figures/plot.py",
     "twodiscs_paper/pipeline/build.py",
     "twodiscs_paper/pipeline/results/verify.py",
