@@ -82,6 +82,11 @@ def test_a_time_is_c_over_the_square_of_the_error_between_the_smallest_run_and_t
     assert price.seconds(0.99e-3) is None
 
 
+def test_a_share_of_all_samples_prints_with_a_rounding_too_much(blocks):
+    """The volume over that of the prism is 1 + 2e-16."""
+    assert "volume" in str(td.cost(td.Scene(1.0, 1.0, 1e-9), 1e-3))
+
+
 @pytest.mark.parametrize("shell", [0.02, 0.1])
 def test_the_floor_of_an_area_is_the_bias_of_its_shell(blocks, shell):
     measured, prices = td.sample(SCENE, 1, shell=shell).frame(), td.cost(SCENE, shell=shell)

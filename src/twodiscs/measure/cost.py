@@ -272,7 +272,8 @@ def _variances_of_hits(scene, sampled, samples):
     areas = {"volume": exact.volume(scene)}
     areas |= {f"{event}_area": area for event, area in exact.areas(scene).items()}
     return {
-        quantity: (variance / samples, abs(value / areas[quantity] - 1))
+        # A share of all samples is 1 to a rounding, or a rounding more.
+        quantity: (max(variance, 0.0) / samples, abs(value / areas[quantity] - 1))
         for quantity, (variance, value) in expected.items()
         if areas[quantity]
     }
