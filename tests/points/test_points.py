@@ -53,6 +53,8 @@ def test_a_saved_result_is_a_point_and_no_other_point(tmp_path, stage, make):
     for other in STAGES.keys() - {stage}:
         with pytest.raises(InputError, match=r"has kind '\w+', but its job asks for '\w+'; delete"):
             read_point(path, STAGES[other], result.scene, result.settings)
+    with pytest.raises(InputError, match="must be a file, not a folder; delete it"):
+        read_point(tmp_path, STAGES[stage], result.scene, result.settings)
 
 
 def inserted(samples, unit, weights, products):

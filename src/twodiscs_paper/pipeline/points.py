@@ -17,7 +17,10 @@ def read_components(path, stage, scene, settings):
     Raises ``InputError`` if the file was changed, or if it is not of this ``Stage``, this ``Scene``
     and these ``settings`` of its call; ``OSError`` if it cannot be read.
     """
-    content = read_json(path)
+    try:
+        content = read_json(path)
+    except IsADirectoryError:
+        raise InputError(f"{path} must be a file, not a folder; {REMEDY}") from None
     try:
         found = {"kind": content["kind"]} | content["scene"] | content["settings"]
         components = restore_arrays(content["parts"])
