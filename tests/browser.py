@@ -8,6 +8,9 @@ import shutil
 import subprocess
 from contextlib import contextmanager
 from itertools import takewhile
+from pathlib import Path
+
+import axe_core_python
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 BROWSER = next(filter(None, map(shutil.which, BROWSERS)), None)
@@ -73,6 +76,13 @@ class Page:
         )
         assert "exceptionDetails" not in answer, answer["exceptionDetails"]
         return answer["result"].get("value")
+
+    def violations(self):
+        """Return what axe-core finds on the page: [[rule, impact, first element], …]."""
+        axe = Path(axe_core_python.__file__).with_name("axe.min.js").read_text(encoding="utf-8")
+        self.look(f"{axe}; 1")
+        found = "violations.map(one => [one.id, one.impact, one.nodes[0].html])"
+        return self.look(f"axe.run().then(result => result.{found})")
 
     def until(self, condition, milliseconds=60000):
         """Wait until an expression is true; raise ``AssertionError`` after so long."""

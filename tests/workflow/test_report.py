@@ -47,14 +47,14 @@ LOOK = """
 """
 
 
-@pytest.fixture(scope="module", params=[1280, 390])
+@pytest.fixture(scope="module", params=[1280, 768, 390])
 def front(request, complete, tmp_path_factory):
     """A browser shows the report in a wide window and in a narrow one."""
     with browser(tmp_path_factory.mktemp("browser")) as page:
         page.open((complete.path / "results" / "report.html").as_uri(), width=request.param)
         seen = page.look(LOOK)
         assert page.problems == []
-        return seen | {"width": request.param}
+        return seen | {"width": request.param, "violations": page.violations()}
 
 
 def plain(text):
@@ -108,6 +108,10 @@ def test_every_section_is_there_and_nothing_is_wider_than_the_window(front):
     assert front["sections"] == [*scenes, "Studies, over all scenes", "How it was made"]
     assert front["right"] <= front["width"]
     assert front["cut"] <= 0
+
+
+def test_keyboards_and_readers_of_screens_reach_everything(front):
+    assert front["violations"] == []
 
 
 def test_it_has_all_mean_times_and_its_links_lead_to_files_and_sections(front, complete):
