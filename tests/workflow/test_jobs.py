@@ -59,7 +59,7 @@ def test_one_more_radius_runs_one_job_of_each_kind(built):
 #: Sources that no result depends on, or only through the parameters of jobs.
 NO_CODE = {"__init__", "__main__", "catalogue", "cli", "configuration"}
 
-#: What a job runs in another process.
+#: The modules that a job runs in another process.
 SPAWNED = {"src/twodiscs_paper/studies/effects/engine_without_effects.py"}
 
 #: The sources that no job with a group of code imports; ``needless`` and ``lacking`` are the proof.

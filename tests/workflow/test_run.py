@@ -127,7 +127,7 @@ def test_results_are_where_the_run_is_and_a_build_beside_the_file_is_named(place
 
 @pytest.mark.slow
 def test_every_command_of_a_report_runs_where_the_report_was_made(built):
-    """That of the folder's configuration, and that of the reader's own in the same folder."""
+    """One report is of the folder's configuration, the other of the reader's own file there."""
     scene = one_scene("own", radii=[0.3], accuracy=1e-2, watch={"mean_times": ["right_wall"]})
     built.edit("my.yaml", yaml.safe_dump(scene | {"results": "results-my"}))
     built.twodiscs_run("my.yaml")

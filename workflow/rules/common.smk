@@ -44,7 +44,7 @@ SCENES = CONFIGURATION.folders
 RESULTS = CONFIGURATION.results
 CONFIGURED = [scene.name for scene in CONFIGURATION.scenes]
 
-# What a page calls: this configuration if it is complete, or that of this folder.
+# The command that pages name: it builds this configuration if it is complete, else that of this folder.
 RUN = f"twodiscs run {shlex.quote(str(workflow.configfiles[-1]))}" if workflow.configfiles else ""
 if not RUN or RUN.endswith(" config/config.yaml"):
     RUN = "snakemake --cores 1"
@@ -100,7 +100,7 @@ CODE = {
     "documents": modules("twodiscs/figures/scene_figures.py", "twodiscs_paper/pipeline/**/*.py"),
     "benchmark": modules("twodiscs_paper/benchmark.py"),
 }
-# What several studies import.
+# Modules that several studies import.
 SHARED = modules(
     "twodiscs_paper/study.py", "twodiscs_paper/studies/*.py", "twodiscs_paper/reference.py"
 )
