@@ -30,6 +30,7 @@ LARGEST = 1e140
 
 
 def check_times(times):
+    """Return ``times`` as an array of doubles; raise ``InputError`` unless they ascend from 0."""
     times = make_list(times)
     try:
         checked = np.atleast_1d(np.asarray(times, float))
