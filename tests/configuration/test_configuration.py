@@ -197,6 +197,17 @@ def test_an_edit_concerns_the_jobs_that_depend_on_it(edit, concerned):
     assert {job[0] for job in before if repr(before[job]) != repr(after[job])} == concerned
 
 
+@pytest.mark.parametrize(
+    "watched", [{}, {"hop_histogram": {"intervals": 9}}, {"hop_histogram": {"event_budget": 10**6}}]
+)
+def test_a_shard_depends_on_no_accuracy_and_no_budget(watched):
+    edit = {"accuracy": 1e-2, "event_budget": 10, "monte_carlo": {"samples": 10}}
+    before, after = one(**BASE), one(**{**BASE, **edit, "watch": BASE["watch"] | watched})
+    for stage in STAGES:
+        assert before.arguments(stage) != after.arguments(stage) or not watched
+        assert before.shard_arguments(stage) == after.shard_arguments(stage)
+
+
 def test_seeds_differ_between_scenes_methods_and_radii_and_follow_the_root():
     every = []
     for seed in (1, 2):

@@ -17,6 +17,7 @@ from twodiscs.dynamics.runs import DAY_OF_EVENTS, DynamicsRun
 from twodiscs.measure import cost
 from twodiscs.model.formats import format_seconds
 from twodiscs.model.seeds import job_seed
+from twodiscs.sampling import montecarlo
 from twodiscs.sampling.many import insertions
 from twodiscs.sampling.rounds import ROUND_MARGIN
 from twodiscs.theory import exact
@@ -87,13 +88,17 @@ def test_a_share_of_all_samples_prints_with_a_rounding_too_much(blocks):
     assert "volume" in str(td.cost(td.Scene(1.0, 1.0, 1e-9), 1e-3))
 
 
-@pytest.mark.parametrize("shell", [0.02, 0.1])
-def test_the_floor_of_an_area_is_the_bias_of_its_shell(blocks, shell):
+@pytest.mark.parametrize("shell", [0.02, 0.3])
+def test_a_price_of_samples_has_their_error_and_the_bias_of_their_shell(blocks, shell):
+    """An error from n hits is known to 1/√n. Five times that is allowed."""
     measured, prices = td.sample(SCENE, 1, shell=shell).frame(), td.cost(SCENE, shell=shell)
     for name, row in measured.iterrows():
         floor = 0 if name == "volume" else abs(row["bias"] / row["exact"])
         method = "rejection" if name == "volume" else "shells, rejection"
         assert prices[name, method].floor == pytest.approx(floor, abs=1e-12)
+        relative, samples = row["stderr"] / row["estimate"], montecarlo.SAMPLES_PER_BLOCK
+        error = math.sqrt(prices[name, method].c / 1e-3 * samples / row["samples"])
+        assert error == pytest.approx(relative, rel=5 * relative)
 
 
 def test_a_budget_ends_a_run_at_the_error_that_the_forecast_says(blocks):

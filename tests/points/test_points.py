@@ -7,7 +7,7 @@ import json
 import math
 import re
 from dataclasses import replace
-from itertools import combinations
+from itertools import combinations, combinations_with_replacement
 
 import numpy as np
 import pytest
@@ -20,6 +20,7 @@ from twodiscs.points.base import digest_line, file_content, read_json, require_l
 from twodiscs.points.dynamics_point import StripCount
 from twodiscs.points.intervals_point import Bins
 from twodiscs.points.monte_carlo_point import Hits, InsertionPoint, MonteCarloPoint, Weights
+from twodiscs.theory.exact import corner_variance
 from twodiscs_paper.pipeline.points import read_point
 
 LAW = Laws(BOX.scene(0.1))
@@ -55,6 +56,20 @@ def test_a_saved_result_is_a_point_and_no_other_point(tmp_path, stage, make):
             read_point(path, STAGES[other], result.scene, result.settings)
     with pytest.raises(InputError, match="must be a file, not a folder; delete it"):
         read_point(tmp_path, STAGES[stage], result.scene, result.settings)
+
+
+def test_bursts_of_rough_discs_are_in_the_squares_and_products_of_counts():
+    """Bursts of two walls are the same, so their product has the geometric mean of variances."""
+    walls = "right_wall", "top_wall"
+    pairs = [f"{a}*{b}" for a, b in combinations_with_replacement(walls, 2)]
+    point = counts_point(
+        scene=td.Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5), replicas=10**6,
+        counts=dict.fromkeys(walls, 0), products=dict.fromkeys(pairs, 7),
+    )  # fmt: skip
+    right, top = (10**6 * corner_variance(point.scene, wall, 10.0) for wall in walls)
+    due = [round(x) + 7 for x in (right, math.sqrt(right * top), top)]
+    assert [*point.spread_products.values()] == due
+    assert point.everywhere("top_wall").squares == due[2]
 
 
 def inserted(samples, unit, weights, products):

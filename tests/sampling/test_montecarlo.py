@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from effect_scenes import SCENES, exchanged
+from effect_scenes import ALL, SCENES, exchanged
 from factory import sample_point
 from marks import slow
 from sampling.uniformity import FALSE_ALARM
@@ -137,6 +137,16 @@ def test_shells_at_the_ends_of_a_long_box_keep_to_the_room_along_it():
 
 
 # Scenes with effects ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("scene", [*SCENES.values(), ALL, PAPER, PLAIN[-2]], ids=repr)
+def test_the_bias_of_a_shell_is_below_its_fraction(scene):
+    """Whatever thickness: an expectation that knows it would hide a shell that is too thick."""
+    events = SHELL_EVENTS if scene.is_plain else scene.events
+    for event in filter(scene.is_possible, events):
+        thick = montecarlo.shell_thickness(scene, event, 0.02)
+        area = exact.areas(scene)[event]
+        assert abs(exact.shell_expectation(scene, event, thick) / area - 1) < 0.02
 
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
