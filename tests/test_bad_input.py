@@ -14,6 +14,7 @@ from copy import deepcopy
 from pathlib import Path
 
 import numpy as np
+import pandas as pd  # noqa: F401 - for a line of CALLS
 import pytest
 import yaml
 from commands import command, python
@@ -182,6 +183,13 @@ observe(times={1: 0, 0: 0}) → times must be ascending numbers from 0 on, not [
 observe(times=np.ma.masked_array([1, 2], [0, 1])) → from 0 on, not a MaskedArray object
 observe(lambda a, b: np.ma.masked_less(b['x1'], 0)) → 4096 replicas, not an array with masked values
 observe(lambda a, b: [np.ma.masked_less(b['x1'], 0)] * 2) → not an array with masked values
+observe(times=np.array([10], 'm8[ms]')) → not a ndarray object: give numbers without units
+observe(times=pd.to_timedelta([1], 's')) → not a TimedeltaIndex object: give numbers without units
+observe(times=[0.5, True]) → times must be ascending numbers from 0 on, not [0.5, True]
+observe(lambda a, b: [pd.to_timedelta(b['x1'])] * 2) → units would be lost: return plain numbers
+td.trajectory(PAPER).positions(1j) → times must be numbers from 0.0 to … not 1j
+td.trajectory(PAPER, np.timedelta64(10, 'ms')) → duration must be a positive number, not np.timedel
+td.diffusion(RING, ['1'], 1) → times must be ascending numbers from 0 on, not ['1']
 observe(times=[1e9]) → where 1e7 events are due, not 1e9
 observe(lambda a, b: 1.0) → function must return a real number, or the same
 observe(lambda a, b: None) → 4096 replicas, not None: is its return missing?

@@ -10,6 +10,7 @@ import re
 import resource
 import stat
 import sys
+from collections import namedtuple
 from copy import copy, deepcopy
 from dataclasses import replace
 from types import SimpleNamespace
@@ -372,9 +373,10 @@ def test_averages_over_states_have_honest_errors():
 
 
 def test_what_is_observed_has_names():
-    """A dict of functions, and what returns a dict, are the columns of an array; as a tuple is."""
+    """A dict of functions, and what returns names, are the columns of an array; as a tuple is."""
     parts = {"x": lambda start, now: now["x1"], "u²": lambda start, now: now["u1"] ** 2}
-    columns, listed, packed, made, named = (
+    labelled = namedtuple("Labelled", ["x", "u"])
+    columns, listed, packed, made, named, table, fields = (
         td.observe(SCENE, form, [0, 1], 1)
         for form in (
             lambda *of: np.stack([part(*of) for part in parts.values()], axis=1),
@@ -382,9 +384,12 @@ def test_what_is_observed_has_names():
             lambda *of: tuple(part(*of) for part in parts.values()),
             lambda *of: {name: part(*of) for name, part in parts.items()},
             parts,
+            lambda *of: pd.DataFrame({name: part(*of) for name, part in parts.items()}),
+            lambda *of: labelled(*(part(*of) for part in parts.values())),
         )
     )
-    for found, names in ((listed, ()), (packed, ()), (made, (*parts,)), (named, (*parts,))):
+    named_forms = ((found, (*parts,)) for found in (made, named, table))
+    for found, names in ((listed, ()), (packed, ()), *named_forms, (fields, ("x", "u"))):
         assert np.array_equal(found.mean, columns.mean)
         assert np.array_equal(found.stderr, columns.stderr)
         assert found.names == names
@@ -394,6 +399,8 @@ def test_what_is_observed_has_names():
     texts = [text for pair in pairs for text in texts_with_error(*pair)]
     assert str(named).splitlines()[3].split() == ["0", *texts]
     assert "± error" in named._repr_html_()
+    small = td.observe(SCENE, lambda start, now: now["x1"] * 1e-203, [0, 1], 1)
+    assert np.all(small.stderr > np.abs(small.mean))
 
 
 @pytest.mark.parametrize(

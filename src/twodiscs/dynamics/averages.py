@@ -10,7 +10,7 @@ import numpy as np
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import open_block_kicks
 from twodiscs.dynamics.paths import MOST_PATH_EVENTS
-from twodiscs.model.checks import InputError, make_list
+from twodiscs.model.checks import InputError, check_numbers, has_units
 from twodiscs.model.formats import format_number, quote
 from twodiscs.model.many_geometry import LARGE
 from twodiscs.model.scene import Scene
@@ -28,38 +28,43 @@ KEPT = 2**22
 #: Values of a function are smaller, so that their squares can be added.
 LARGEST = 1e140
 
+#: A smaller sum of squares of deviations that are not all 0 has lost digits, and this bound takes
+#: its place: the error of values below 1e-145 is an upper bound, which is not 0.
+LEAST_SQUARES = 1e-290
+
 
 def check_times(times):
     """Return ``times`` as an array of doubles; raise ``InputError`` unless they ascend from 0."""
-    times = make_list(times)
-    try:
-        checked = np.atleast_1d(np.asarray(times, float))
-        ascending = checked.ndim == 1 and checked.size and np.all(np.diff(checked) > 0)
-        ascending = ascending and not np.ma.is_masked(times)
-        if ascending and checked[0] >= 0 and np.isfinite(checked[-1]):
-            return checked
-    except (TypeError, ValueError):
-        pass
-    raise InputError(f"times must be ascending numbers from 0 on, not {quote(times)}")
+
+    def ascend(array):
+        rising = array.size and array[0] >= 0 and np.all(np.diff(array) > 0)
+        return rising and np.isfinite(array[-1])
+
+    return check_numbers("times", times, "ascending numbers from 0 on", ascend)
 
 
 def _values(function, start, now):
     """Return (names, values) of the ``function``: an array with a row for each replica.
 
-    A dict has names; its values, and those of a tuple or list of arrays, are columns.
+    A dict, a namedtuple and a ``DataFrame`` have names; their values, and those of a tuple or list
+    of arrays, are columns.
     """
     # The same start is used for all times. A function that changes it would spoil later times.
     start.flags.writeable = now.flags.writeable = False
     returned = function(start, now)
-    names = tuple(returned) if isinstance(returned, Mapping) else ()
-    columns = [*returned.values()] if names else returned
+    two_axes = getattr(returned, "ndim", 0) == 2
+    is_table = isinstance(returned, Mapping) or (two_axes and hasattr(returned, "keys"))
+    names = tuple(returned.keys() if is_table else getattr(returned, "_fields", ()))
+    columns = [column for _, column in returned.items()] if is_table else returned
+    parts = [*columns] if isinstance(columns, list | tuple) else [columns]
+    in_units = has_units(parts)
     try:
         if isinstance(columns, list | tuple) and all(np.shape(c) == start.shape for c in columns):
             columns = np.ma.stack(columns, axis=1)
         values = np.ma.asarray(columns)  # a list may hold masked arrays
     except (TypeError, ValueError):  # lists of several lengths
         values = None
-    is_real = values is not None and values.dtype.kind in "biuf"
+    is_real = values is not None and values.dtype.kind in "biuf" and not in_units
     masked = is_real and np.ma.is_masked(values)
     shape = start.shape + ((len(names),) if names else ())
     if not is_real or masked or values.shape[: len(shape)] != shape:
@@ -69,6 +74,8 @@ def _values(function, start, now):
         )
         if returned is None:
             what = "None: is its return missing?"
+        elif in_units:
+            what = "quantities, whose units would be lost: return plain numbers"
         elif masked:
             what = "an array with masked values, which have to be filled or left out of the average"
         elif values is None or not values.shape or names:
@@ -223,7 +230,9 @@ class ObserveRun(Run):
         last, steps = values[:, -1], np.diff(self.times, prepend=0.0)[at : at + len(pairs)]
         if self.over_times:
             values = self.over_times(values, before, steps)
-        return last, values.mean(axis=0), ((values - values.mean(axis=0)) ** 2).sum(axis=0)
+        mean, differ = values.mean(axis=0), (values != values[0]).any(axis=0)
+        squares = ((values - mean) ** 2).sum(axis=0)
+        return last, mean, np.where(differ, np.maximum(squares, LEAST_SQUARES), squares)
 
     def run(self, progress=None, cores=1, resume_from=None):
         """Return averages; values have the form of those of ``resume_from``."""

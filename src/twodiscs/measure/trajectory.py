@@ -13,8 +13,7 @@ from twodiscs.dynamics.paths import follow_trajectory
 from twodiscs.dynamics.rows import event_names
 from twodiscs.measure.result import progress_bar
 from twodiscs.model.calls import checked_call
-from twodiscs.model.checks import InputError, make_list, writing_to
-from twodiscs.model.formats import quote
+from twodiscs.model.checks import InputError, check_numbers, make_list, writing_to
 from twodiscs.model.scene import Scene
 from twodiscs.model.seeds import job_seed
 from twodiscs.sampling.initial_states import components
@@ -91,16 +90,11 @@ class Trajectory(pd.DataFrame):
         scene = self.scene
         names = components(scene)
         require_all_rows(self, scene)
-        known, times = self["time"].to_numpy(), make_list(times)
-        try:
-            at = np.atleast_1d(np.asarray(times, float))
-        except (TypeError, ValueError):
-            raise InputError(f"times must be a list of numbers, not {quote(times)}") from None
-        is_plain = at.ndim == 1 and not np.ma.is_masked(times)
-        if not is_plain or not np.all((at >= known[0]) & (at <= known[-1])):
-            raise InputError(
-                f"times must be numbers from {known[0]!s} to {known[-1]!s}, not {quote(times)}"
-            )
+        known = self["time"].to_numpy()
+        allowed = f"numbers from {known[0]!s} to {known[-1]!s}"
+        at = check_numbers(
+            "times", times, allowed, lambda at: np.all((at >= known[0]) & (at <= known[-1]))
+        )
         row = np.searchsorted(known, at, side="right") - 1
         states = np.empty(at.size, [(name, float) for name in names])
         for name in names:

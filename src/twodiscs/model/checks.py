@@ -9,6 +9,8 @@ from decimal import Decimal
 from shutil import copymode
 from tempfile import TemporaryDirectory
 
+import numpy as np
+
 from twodiscs.model.formats import decimal_hint, did_you_mean, format_number, quote
 
 #: Products of four lengths outside this range would overflow or underflow.
@@ -102,12 +104,18 @@ def writing_to(path):
         raise InputError(f"{refused}: {getattr(error, 'strerror', None) or error}") from None
 
 
+def is_real(value, kind=numbers.Real):
+    """Return whether a value is a real number, or of another ``kind`` of the module numbers."""
+    # NumPy's durations are integers for Python, whatever their unit.
+    return isinstance(value, kind) and not isinstance(value, bool | np.timedelta64)
+
+
 def check_number(name, value, low, high, kind="number"):
     """Return ``value`` as a float in [``low``, ``high``], or raise ``InputError`` naming ``name``.
 
     ``low`` is positive: the value must be a real number, finite and positive.
     """
-    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+    if not is_real(value):
         wrong = f"{quote(value)}{decimal_hint(value)}"
         raise InputError(f"{name} must be a positive {kind}, not {wrong}")
     try:
@@ -132,7 +140,7 @@ def check_length(name, value):
 
 def check_integer(name, value, least=1, most=LARGEST_INTEGER):
     """Return ``value`` as an int; raise ``InputError`` unless it is an integer in the range."""
-    if isinstance(value, bool) or not isinstance(value, numbers.Integral):
+    if not is_real(value, numbers.Integral):
         raise InputError(f"{name} must be an integer of at least {least}, not {quote(value)}")
     if not least <= value <= most:
         end = "2^63 - 1" if most == LARGEST_INTEGER else most
@@ -142,7 +150,7 @@ def check_integer(name, value, least=1, most=LARGEST_INTEGER):
 
 def check_fraction(name, value, low=0):
     """Return ``value`` as a float; raise ``InputError`` unless it is between ``low`` and 1."""
-    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+    if not is_real(value):
         wrong = f"{quote(value)}{decimal_hint(value)}"
         raise InputError(f"{name} must be a number between 0 and 1, not {wrong}")
     if not low < value < 1:
@@ -156,7 +164,7 @@ def check_error(name, value):
 
     Raises ``InputError`` for anything else.
     """
-    real = isinstance(value, numbers.Real) and not isinstance(value, bool)
+    real = is_real(value)
     if not real and isinstance(value, str) and value in NAMED_ERRORS:
         return NAMED_ERRORS[value]
     if not real or not 0 < value <= 1:
@@ -186,6 +194,33 @@ def make_list(values):
     if isinstance(values, str | bytes) or hasattr(values, "__array__"):
         return values
     return [*values] if isinstance(values, Iterable) else values
+
+
+def has_units(values):
+    """Return whether one of the values, or of these types, is a quantity with a unit."""
+    return any(hasattr(value, "unit") or hasattr(value, "units") for value in values)
+
+
+def check_numbers(name, values, allowed, is_allowed):
+    """Return ``values`` as an array of doubles in one dimension.
+
+    Raises ``InputError`` for anything but real numbers without units, and if ``is_allowed(array)``
+    is false. ``allowed`` says in words which ones are allowed.
+    """
+    given = make_list(values)
+    kinds = {type(value) for value in (given if isinstance(given, list) else [given])}
+    in_units = has_units((given, *kinds)) or getattr(given, "dtype", np.dtype(float)).kind in "mM"
+    if not in_units and kinds.isdisjoint((bool, np.bool_)) and not np.ma.is_masked(given):
+        try:
+            found = np.atleast_1d(np.asarray(given))
+            if found.dtype.kind in "iuf" or all(map(is_real, found.flat)):
+                array = found.astype(float)
+                if array.ndim == 1 and is_allowed(array):
+                    return array
+        except (TypeError, ValueError, OverflowError):
+            pass
+    hint = ": give numbers without units" if in_units else ""
+    raise InputError(f"{name} must be {allowed}, not {quote(given)}{hint}")
 
 
 def check_choice(name, value, allowed):
