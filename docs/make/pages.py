@@ -3,21 +3,29 @@
     python docs/make/pages.py
 
 writes, in the folder where it is called: config/schema.json, the names that editors complete
-in src/twodiscs/__init__.pyi, and the output of `twodiscs` in the pages of docs.
+in src/twodiscs/__init__.pyi, and in the pages of docs the output of `twodiscs`, the targets of
+studies, the lists that 1.x promises and the costs of changes. It ends with a sentence if the code
+lacks a name that is promised.
 """
 
 import json
 import re
 import shlex
+import sys
+from collections import Counter
 from contextlib import redirect_stdout
 from io import StringIO
 from pathlib import Path
 from textwrap import fill
 from unittest.mock import patch
 
+import twodiscs
 from twodiscs import cli
+from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.model.events import EVENTS, HOPS
-from twodiscs_paper.configuration.schema import schema
+from twodiscs_paper.catalogue import STUDIES
+from twodiscs_paper.configuration.schema import keys, schema
+from twodiscs_paper.pipeline.build import TARGETS
 
 #: The names for checkers of types in the face, between their marks.
 NAMES = re.compile(
@@ -39,6 +47,72 @@ def literals():
     return text
 
 
+def described_targets(text):
+    """Return the page of targets with a row for each study."""
+    rows = "".join(f"| `{name}` | {study.builds} |\n" for name, study in STUDIES.items())
+    return re.sub(r"(^\| `volume`.*\n)(?:.*\n)*?(?=\| `manifest`)", rf"\1{rows}", text, flags=re.M)
+
+
+# What 1.x promises --------------------------------------------------------------------------------
+
+
+def _keys_below(node, path=""):
+    """Yield the keys of a configuration with those above them: "scenes.box.width"."""
+    for name, child in node.get("properties", {}).items():
+        yield path + name
+        yield from _keys_below(child, f"{path}{name}.")
+        yield from _keys_below(child.get("items", {}), f"{path}{name}.")
+
+
+def promises(text):
+    """Return the page of promises with the names, keys, columns and targets of the code.
+
+    Raises ``LookupError`` if one is promised that the code has no more.
+    """
+    names = sorted(twodiscs.__all__, key=lambda name: (name.lower(), name))
+    columns = [[f"{name}.csv:", *table.columns] for name, table in SCENE_TABLES.items()]
+    parts = iter([[names], [[*dict.fromkeys(_keys_below(keys()))]], columns, [[*TARGETS]]])
+
+    def renewed(block):
+        lists = next(parts)
+        if lost := Counter(block[1].split()) - Counter(word for one in lists for word in one):
+            raise LookupError(f"{', '.join(sorted(lost))}: promised, and not in the code")
+        lines = (
+            fill(" ".join(one), 110, subsequent_indent="  " * (len(lists) > 1)) for one in lists
+        )
+        return "```text\n" + "\n".join(lines) + "\n```\n"
+
+    return re.sub(r"^```text\n(.*?)```\n", renewed, text, flags=re.DOTALL | re.MULTILINE)
+
+
+# The costs of changes -----------------------------------------------------------------------------
+
+#: A table of the files of a change: what it is for, and its rows.
+CHANGE = re.compile(r"^\| for (.+) \| content \|\n\|---\|---\|\n((?:\|.*\n)+)", re.MULTILINE)
+
+
+def changes(page):
+    """Return {change: (edited files, files that a command renews)} of the tables of a page."""
+    found = {}
+    for change, rows in CHANGE.findall(page):
+        files = [], []
+        for row in rows.splitlines():
+            names, content = row.strip("|").split("|", 1)
+            files[content.startswith(" renewed by ")].extend(re.findall(r"`([^`]+)`", names))
+        found[change] = files
+    return found
+
+
+def costs(text, page):
+    """Return the page with the table of the costs of the changes of another ``page``."""
+    rows = (f"| {c} | {len(e)} | {len(r)} |\n" for c, (e, r) in changes(page).items())
+    head = "| change | edited | renewed |\n|---|---|---|\n"
+    return re.sub(rf"(?<={re.escape(head)})(?:\|.*\n)+", lambda _: "".join(rows), text)
+
+
+# Pages --------------------------------------------------------------------------------------------
+
+
 def _tried(example):
     """Return a command with what it prints."""
     with patch("sys.argv", shlex.split(example[1])), redirect_stdout(StringIO()) as printed:
@@ -53,13 +127,20 @@ def pages(folder):
         "src/twodiscs/__init__.pyi": NAMES.sub(lambda _: literals(), face),
         "config/schema.json": json.dumps(schema(), ensure_ascii=False, indent=1) + "\n",
     }
-    for path in (Path(folder, "README.md"), *sorted(Path(folder, "docs").glob("*.md"))):
-        text = path.read_text(encoding="utf-8")
-        if COMMAND.search(text):
-            renewed[path.relative_to(folder).as_posix()] = COMMAND.sub(_tried, text)
-    return renewed
+    paths = Path(folder, "README.md"), *sorted(Path(folder, "docs").glob("*.md"))
+    known = {p.relative_to(folder).as_posix(): p.read_text(encoding="utf-8") for p in paths}
+    made = {
+        "docs/architecture.md": lambda text: costs(text, known["docs/change-it.md"]),
+        "docs/pipeline.md": described_targets,
+        "docs/promises.md": promises,
+    }
+    renewed |= {name: COMMAND.sub(_tried, text) for name, text in known.items()}
+    return renewed | {name: make(renewed[name]) for name, make in made.items()}
 
 
 if __name__ == "__main__":
-    for name, text in pages(".").items():
-        Path(name).write_text(text, encoding="utf-8", newline="\n")
+    try:
+        for name, text in pages(".").items():
+            Path(name).write_text(text, encoding="utf-8", newline="\n")
+    except LookupError as error:
+        sys.exit(str(error))
