@@ -115,7 +115,7 @@ def test_a_result_for_scripts_has_its_note_beside_it(monkeypatch, capsys):
     words = "simulate", *BOX, "--radius", "0.2", "--events", "any_wall", "--error", "1e-4"
     assert command(monkeypatch, cli, *words, "--budget", "1e6", "--csv") == 0
     shown = capsys.readouterr()
-    assert shown.err.startswith("0.0001 asked for; the budget of 1e6 events ended it at ")
+    assert shown.err.startswith("You asked for an error of 0.0001, but the budget of 1e6 events")
     assert shown.out.startswith("radius,")
 
 

@@ -367,9 +367,7 @@ def test_samples_are_drawn_until_their_errors_are_reached(scene, error, method):
     again = td.sample(scene, drawn * each, quantities=[*found], **same)
     columns = ["estimate", "stderr", "hits", "samples"]
     pd.testing.assert_frame_equal(again.frame()[columns], frame[columns])
-    with pytest.warns(
-        td.AccuracyWarning, match=r"of 1 samples ended it .*; a budget of .* is enou"
-    ):
+    with pytest.warns(td.AccuracyWarning, match=r"of 1 samples ended the run .* A budget of .* is"):
         short = td.sample(scene, error=1e-5, budget=1, quantities="volume", method=method)
     assert short["volume"].status == "budget"
 
@@ -390,21 +388,21 @@ def test_a_method_whose_price_was_printed_can_be_taken():
 
 
 NOTES = """
-td.sample(SCENE, 10) → 10 samples asked for, 1048576 done: whole blocks
+td.sample(SCENE, 10) → You asked for 10 samples and got 1048576, because work is done in
 td.sample(SCENE, 2**20) →
-td.sample(td.Scene(1.5, 1, 0.38), 1e7) → 10000000 samples asked for, 196608 done: conditioned ones
-td.sample(SCENE, error=0.5) → error 0.5 asked for, 0.01 reached: the first round is 3.4e7 samples
-td.sample(SCENE, error=0.01, budget=1e6, shell=2e-5, quantities="top_wall_area") → 0.01 asked for
+td.sample(td.Scene(1.5, 1, 0.38), 1e7) → You asked for 10000000 samples and got 196608
+td.sample(SCENE, error=0.5) → You asked for an error of 0.5 and got 0.01, because the
+td.sample(SCENE, error=0.01, budget=1e6, shell=2e-5, quantities="top_wall_area") → You asked
 td.sample(SCENE.with_radius(1e-3), error=0.01, budget=1e6, quantities="volume") →
-td.sample(SCENE, error=0.5, budget=10) → budget 10 asked for: the minimum, one block, is 1.1e6 sam
-td.intervals(SCENE, "vertical_hop", 10) → 10 intervals asked for, 65536 done
-td.observe(SCENE, lambda a, b: b["x1"], [1], 10) → 10 replicas asked for, 4096
+td.sample(SCENE, error=0.5, budget=10) → You asked for a budget of 10, but the smallest
+td.intervals(SCENE, "vertical_hop", 10) → You asked for 10 intervals and got 65536
+td.observe(SCENE, lambda a, b: b["x1"], [1], 10) → You asked for 10 replicas and
 td.observe(SCENE, lambda a, b: b["x1"], [1], 8192) →
-td.simulate(SCENE, 0.5) → error 0.5 asked for, 0.0028 reached: the first round is 7.8e6 wall hits
-td.simulate(SCENE, 0.5, budget=2e5) → error 0.5 asked for
-td.simulate(SCENE, 0.5, budget=1) → budget 1 asked for: the minimum, one block, is 250000
-td.simulate(SCENE, duration=100) → duration 100 asked for, 65536 simulated: 1024
-td.transmission(td.Scene(1.5, 1, 0.249), "horizontal_hop", 10) → 10 hops asked for, 64 done
+td.simulate(SCENE, 0.5) → You asked for an error of 0.5 and got 0.0028, because the smallest run
+td.simulate(SCENE, 0.5, budget=2e5) → You asked for an error of 0.5
+td.simulate(SCENE, 0.5, budget=1) → You asked for a budget of 1, but the smallest run has 250000
+td.simulate(SCENE, duration=100) → You asked for a duration of 100 and got 65536: 1024
+td.transmission(td.Scene(1.5, 1, 0.249), "horizontal_hop", 10) → You asked for 10
 td.transmission(td.Scene(1.5, 1, 0.249), "horizontal_hop", 128) →
 """
 
@@ -428,7 +426,7 @@ def test_a_result_says_what_was_done_instead(line):
 def test_a_budget_that_ends_a_run_is_a_warning_and_the_budget_that_it_names_is_enough(
     scene, error, budget, recwarn
 ):
-    sentence = f"{error:g} asked for; the budget of .* events ended it at .* a budget of (.*) is en"
+    sentence = f"You asked for an error of {error:g}, but the budget .* A budget of (.*) is enough"
     with pytest.warns(td.AccuracyWarning, match=sentence):
         found = td.simulate(scene, error, budget=budget)
     assert str(found).endswith(found.note)

@@ -112,7 +112,7 @@ def test_a_budget_ends_a_run_at_the_error_that_the_forecast_says(blocks):
             # Half a block more or less, and the noise of two errors from 32 blocks.
             assert error == pytest.approx(one.relative_stderr, rel=0.2)
         assert found.events == pytest.approx(1e7, rel=0.3)
-        assert "budget of 1e7 events ends it at" in found.shortfall(run)
+        assert "budget of 1e7 events ends the run at" in found.shortfall(run)
         one = replace(run, target=dict.fromkeys(scene.events, 1.0) | {"top_wall": 1e-5})
         assert "(top_wall_time)" in found.shortfall(one)
 
@@ -156,18 +156,18 @@ def row(event, error, status="budget", target=1e-5):
         ([row("any_wall", None, "counted", None)], None),
         (
             [row("any_wall", 2e-5), row("top_wall", 9e-5), row("right_wall", 8e-4, target=1e-4)],
-            "1e-5 asked for; the budget of 2e9 events ended it at 9e-5 (top_wall_time); "
-            "a budget of 2e11 is enough, 27 min",
+            "You asked for an error of 1e-5, but the budget of 2e9 events ended the run at 9e-5 "
+            "(top_wall_time). A budget of 2e11 is enough; it takes 27 min.",
         ),
         (
             [row("any_wall", 9e-5), row("top_wall", None, "too-few", 0.01)],
-            "0.01 asked for; the budget of 2e9 events ended it before there are enough events "
-            "top_wall for an error",
+            "You asked for an error of 0.01, but the budget of 2e9 events ended the run with "
+            "too few events top_wall for an error.",
         ),
         (
             [row("any_wall", None, "none-seen")],
-            "1e-5 asked for; the budget of 2e9 events ended it before there are enough events "
-            "any_wall for an error",
+            "You asked for an error of 1e-5, but the budget of 2e9 events ended the run with "
+            "too few events any_wall for an error.",
         ),
     ],
 )
@@ -175,9 +175,9 @@ def test_a_sentence_says_what_was_not_reached(rows, said):
     """And if a component had too small a share of the budget, or no budget was given."""
     assert shortfall(rows, 2 * 10**9, 2e9, 20.0) == said
     found = shortfall([row("any_wall", 2e-5)], 10**9, 1e8)
-    assert found.endswith("ended it at 2e-5 (any_wall_time); a budget of 4.8e9 is enough")
+    assert found.endswith("ended the run at 2e-5 (any_wall_time). A budget of 4.8e9 is enough.")
     found = shortfall([row("any_wall", 2e-5)], None)
-    assert found == "1e-5 asked for; the limit of a day ended it at 2e-5 (any_wall_time)"
+    assert found.endswith(", but the limit of a day ended the run at 2e-5 (any_wall_time).")
 
 
 @pytest.mark.parametrize(
@@ -239,9 +239,7 @@ def test_an_event_that_no_pilot_counted_has_no_price_and_no_forecast():
     run = DynamicsRun(SCENE, dict.fromkeys(errors, 1e-3), 10**7, 1)
     found = forecast_dynamics(run, {"all": pilot})
     assert found.events == pytest.approx(run.components["all"].budget)
-    assert found.shortfall(run).endswith(
-        "before there are enough events horizontal_hop for an error"
-    )
+    assert found.shortfall(run).endswith("with too few events horizontal_hop for an error.")
 
 
 @pytest.mark.parametrize(

@@ -143,8 +143,8 @@ def test_a_dry_run_says_which_accuracies_are_not_reached(blocks, monkeypatch, tm
     configuration = replace(load({"scenes": [BLOCK]}), scenes=(short, *others))
     lines = job_cost.shortfalls(configuration)
     assert [line.partition(":")[0] for line in lines] == ["a, radius 0.2", "a, radius 0.3"]
-    assert all("1e-5 asked for; the budget of 2e9 events ends it at" in line for line in lines)
-    assert "(horizontal_hop_time); a budget of" in lines[0]
+    assert all("of 1e-5, but the budget of 2e9 events ends the run at" in line for line in lines)
+    assert "(horizontal_hop_time). A budget of" in lines[0]
     monkeypatch.setattr(job_cost, "SENTENCES", 1)
     more = "1 more radii may stop early: see the target forecast"
     assert job_cost.shortfalls(configuration) == [lines[0], more]
@@ -156,11 +156,10 @@ def test_a_dry_run_says_which_accuracies_are_not_reached(blocks, monkeypatch, tm
         write(point, path, short.arguments("dynamics"))
     changed = scene(accuracy=2e-5, event_budget=2e9, radii=[0.2])
     (line,) = job_cost.shortfalls(replace(configuration, scenes=(changed,)))
-    assert "2e-5 asked for; the budget of 2e9 events ends it" in line
+    assert "of 2e-5, but the budget of 2e9 events ends the run" in line
     monkeypatch.setattr(job_cost, "run_at", None)
     (line,) = job_cost.shortfalls(replace(configuration, scenes=(short,)))
-    said = "a, radius 0.2: 1e-5 asked for; the budget of 2e9 events ended it at"
-    assert line.startswith(said)
+    assert line.startswith("a, radius 0.2: You asked for an error of 1e-5, but the budget")
 
 
 def test_a_forecast_has_a_row_for_each_job_and_their_sum(blocks):
@@ -194,10 +193,11 @@ def test_a_build_says_which_accuracies_it_did_not_reach(tmp_path):
     write_rows(folder, MeanTimesTable, names, rows, target=1e-5)
     (line,) = job_cost.missed(tmp_path, DESCRIBED)
     assert line == (
-        "a, radius 0.3: 1e-5 asked for; the budget of 2e9 events ended it at 3e-5 (top_wall_time)"
+        "a, radius 0.3: You asked for an error of 1e-5, but the budget of 2e9 events ended the run "
+        "at 3e-5 (top_wall_time)."
     )
     # The speed is that of the fastest job: the first ones compile.
     jobs = (0.2, 10**9, 10.0), (0.3, 2 * 10**9, 99.0)
     write_rows(folder, CostTable, ("radius", "events", "seconds"), jobs, stage="dynamics")
     (line,) = job_cost.missed(tmp_path, DESCRIBED)
-    assert line.endswith("at 3e-5 (top_wall_time); a budget of 2.2e10 is enough, 3 min")
+    assert line.endswith("(top_wall_time). A budget of 2.2e10 is enough; it takes 3 min.")

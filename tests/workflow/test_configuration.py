@@ -59,7 +59,7 @@ def test_a_dry_run_names_the_closest_target_the_days_and_accuracies_not_reached(
     assert "'mean_wall_times' is no target; did you mean 'mean_wall_time'?" in run.stdout
     assert run.stdout.count("is no target") == 1
     assert "This configuration takes about 1.2 days of processor time." in run.stdout
-    assert "a, radius 0.2: 1e-7 asked for; the budget of 1e13 events ends it at" in run.stdout
+    assert "a, radius 0.2: You asked for an error of 1e-7, but the budget of 1e13" in run.stdout
 
 
 def test_the_code_beside_the_workflow_is_the_code_that_runs(unbuilt, tmp_path):

@@ -388,24 +388,25 @@ def shortfall(rows, budget, events=None, seconds=None, ends="ended", what="event
     worst = max(missed, key=lambda row: (row["relative_stderr"] or math.inf) / row["target"])
     limit = f"budget of {format_number(budget, '.3g')} {what}" if budget else "limit of a day"
     more = ((worst["relative_stderr"] or math.inf) / worst["target"]) ** 2
-    text = f"{format_number(worst['target'], 'g')} asked for; the {limit} {ends} it "
+    asked = format_number(worst["target"], "g")
+    text = f"You asked for an error of {asked}, but the {limit} {ends} the run "
     if not math.isfinite(more):
         replicas = worst.get("replicas", LEAST_EVENTS)
         if events and replicas < LEAST_EVENTS:
             # Half more, because replicas come in whole blocks.
             enough = 1.5 * LEAST_EVENTS / replicas * events
             text += f"after {replicas} of the {LEAST_EVENTS} replicas that an error needs"
-            return f"{text}; a budget of {round_up(enough)} is enough"
+            return f"{text}. A budget of {round_up(enough)} is enough."
         seen = f"events {worst['event']}" if "event" in worst else f"hits for {worst['quantity']}"
-        return f"{text}before there are enough {seen} for an error"
+        return f"{text}with too few {seen} for an error."
     reached = format_number(worst["relative_stderr"], ".2g")
-    text = f"{text}at {reached} ({row_quantity(worst)})"
+    text = f"{text}at {reached} ({row_quantity(worst)})."
     if not events:
         return text
     # Other components may not use their shares of a budget. An error has an error: a fifth more.
     enough = 1.2 * max(events, budget or 0) * more
-    text += f"; a budget of {round_up(enough)} is enough"
-    return f"{text}, {format_seconds(seconds * more)}" if seconds else text
+    text += f" A budget of {round_up(enough)} is enough"
+    return f"{text}; it takes {format_seconds(seconds * more)}." if seconds else f"{text}."
 
 
 class HopHistogramTable(Table):

@@ -472,8 +472,8 @@ def make_simulation(scene, **asked):
     rows = MeanTimesTable.rows([point])
     if timed:
         note = (
-            f"duration {duration:g} asked for, {point.replicas * point.duration:g} simulated: "
-            f"{point.replicas} trajectories of {point.duration:g} each"
+            f"You asked for a duration of {duration:g} and got {point.replicas * point.duration:g}:"
+            f" {point.replicas} trajectories of {point.duration:g} each."
         )
     else:
         note = _note_of_error(
@@ -509,14 +509,14 @@ def _note_of_error(rows, short, budget, work, what, named):
     minimum, note = f"{round_up(work)} {named}", None
     possible = [row for row in rows if row["status"] != "impossible"]
     if budget and work > 2 * budget:
-        note = f"budget {budget:g} asked for: the minimum, one block, is {minimum}"
+        note = f"You asked for a budget of {budget:g}, but the smallest run has {minimum}."
     elif possible and all(
         row["relative_stderr"] and row["relative_stderr"] < row["target"] / 2 for row in possible
     ):
         reached = max(row["relative_stderr"] for row in possible)
         asked = min(row["target"] for row in possible)
-        done = f"error {asked:g} asked for, {reached:.2g} reached"
-        note = f"{done}: the first round is {minimum}; a smaller budget shortens it"
+        done = f"You asked for an error of {asked:g} and got {reached:.2g}, because"
+        note = f"{done} the smallest run has {minimum}. For a shorter run pass a smaller budget."
     if missed := shortfall(short, budget, work, what=what):
         warnings.warn(missed, AccuracyWarning, stacklevel=5)
     return note or missed
@@ -624,7 +624,7 @@ def make_sampling(scene, **asked):
     # Insertions always have the volume.
     rows = [row for row in rows if row["quantity"] in quantities]
     if error is None:
-        fewer = f"conditioned ones, each as much work as {PROPOSAL_TIME} of the prism"
+        fewer = f"a conditioned sample is as much work as {PROPOSAL_TIME} ordinary ones"
         note = note_of_number("samples", samples, point.samples, fewer)
     else:
         for row in rows:

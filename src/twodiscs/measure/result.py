@@ -188,10 +188,10 @@ def work(kind, run, asked):
         return run.run(progress, asked.get("cores", 1), asked.get("resume_from"))
 
 
-def note_of_number(what, asked, done, fewer="within the budget"):
+def note_of_number(what, asked, done, fewer="the budget ended the run"):
     """Return the note that a number was rounded up, or why ``fewer`` were done; None if neither."""
-    why = "whole blocks" if done > asked else fewer
-    return None if done == asked else f"{asked} {what} asked for, {done} done: {why}"
+    why = "work is done in whole blocks" if done > asked else fewer
+    return None if done == asked else f"You asked for {asked} {what} and got {done}, because {why}."
 
 
 #: Settings that can grow when a result goes on; the first one of a kind is its amount.
