@@ -150,6 +150,9 @@ def test_weights_below_their_resolution_have_no_error():
         estimate, effective = estimates.weighted_estimate(total, squares, unit, samples, 2.0)
         assert estimate.value == pytest.approx(2e-3 * weight)
         assert effective == (pytest.approx(1000) if known else 0.0)
+        if known:  # a share of 1e-3 of all samples has this weight, the others have none
+            spread = weight * math.sqrt(1e-3 * (1 - 1e-3) / samples)
+            assert estimate.stderr == pytest.approx(2 * spread)
     # All of one weight, and none of a hundred without any.
     assert estimates.effective_misses(unit * samples, unit * samples, unit, samples) == 0
     hits = samples - 90
