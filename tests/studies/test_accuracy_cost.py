@@ -249,15 +249,6 @@ def test_symbols_are_errors_and_times_and_lines_are_c_over_the_square(
         assert any(np.allclose(c / y, x**2 - floor**2, rtol=1e-9) for x, y in far)
 
 
-def test_the_textbook_near_the_threshold_is_slower_by_the_factor_of_its_engine(long, panels):
-    c = {(row["method"], row["radius"]): row["c"] for row in long}
-    easy, hard = RADII
-    lines = {line.get_label(): line for line in panels["a"].lines}
-    x, y = lines["one by one, near $h/4$"].get_data()
-    expected = c["lockstep", hard] * c["scalar", easy] / c["lockstep", easy]
-    np.testing.assert_allclose(y * x**2, expected, rtol=1e-9)
-
-
 def test_exact_values_are_at_the_bottom(rows, panels):
     for panel, quantity in (("a", "volume"), ("b", costs.AREA)):
         (row,) = of(rows, part="exact", radius=costs.EASY.radius, quantity=quantity)

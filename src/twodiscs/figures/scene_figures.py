@@ -62,14 +62,15 @@ class Caption:
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure: title and category in a report, its ``own`` ``Caption``, and its content.
+    """A figure: title and category in a report, its ``own`` caption, and its content.
 
-    ``note`` is a caption that several figures have in common. ``tables`` are the names of the
-    tables that it reads. ``needs`` are quantities, named as in theory.csv, or ``hop_histogram`` or
-    ``trajectory``. The figure shows those needs that the scene computes, and is made if there is at
-    least one. A drawing needs nothing: it takes only the sides of the box, and shows equal discs
-    between walls. A figure over the radius has ``curves``. The figure is not made for scenes with
-    an effect in ``without``; ``discs`` counts as an effect if there are more than two.
+    ``own`` is a ``Caption``, or a text that is the same for all scenes. ``note`` is a caption that
+    several figures have in common. ``tables`` are the names of the tables that it reads. ``needs``
+    are quantities, named as in theory.csv, or ``hop_histogram`` or ``trajectory``. The figure shows
+    those needs that the scene computes, and is made if there is at least one. A drawing needs
+    nothing: it takes only the sides of the box, and shows equal discs between walls. A figure over
+    the radius has ``curves``. The figure is not made for scenes with an effect in ``without``;
+    ``discs`` counts as an effect if there are more than two.
 
     A figure of a study, of no scene, also reads the ``main_tables`` of the first scene without
     effects, if there are any. ``long_runs`` are the long runs that it reads, {name: path of a table
@@ -78,7 +79,7 @@ class Figure:
 
     title: str
     category: str
-    own: Caption
+    own: Caption | str
     note: Caption | None = None
     tables: tuple = ()
     needs: frozenset = frozenset()
@@ -96,9 +97,14 @@ class Figure:
             return False
         return not self.needs or not self.needs.isdisjoint(quantities)
 
+    def captions(self, box=None):
+        """Return (own caption, note or "") for the scenes in a ``Box``, for plain ones if None."""
+        own = Caption(self.own) if isinstance(self.own, str) else self.own
+        return own.full_text(box), self.note.full_text(box) if self.note else ""
+
     def caption(self, box=None):
         """Return the whole caption for the scenes in a ``Box``, for plain ones if it is None."""
-        return " ".join(part.full_text(box) for part in (self.own, self.note) if part)
+        return " ".join(filter(None, self.captions(box)))
 
 
 # The notes of figures over the radius -------------------------------------------------------------
@@ -182,14 +188,12 @@ FIGURES = {
     "model": Figure(
         "The billiard",
         GEOMETRY,
-        Caption(
-            """
-            Two hard discs of radius r in a box of width w and height h. The origin of the
-            coordinates is the centre of the box. The centres of the discs stay in the dashed
-            rectangle, of half-sides a = w/2 − r and b = h/2 − r. Boxes longer than 4:1 are drawn
-            shorter.
-            """
-        ),
+        """
+        Two hard discs of radius r in a box of width w and height h. The origin of the
+        coordinates is the centre of the box. The centres of the discs stay in the dashed
+        rectangle, of half-sides a = w/2 − r and b = h/2 − r. Boxes longer than 4:1 are drawn
+        shorter.
+        """,
     ),
     "hopping_trajectory": Figure(
         "Hopping dynamics",
@@ -215,28 +219,24 @@ FIGURES = {
     "configuration_space": Figure(
         "Configuration space",
         GEOMETRY,
-        Caption(
-            """
-            Configuration space. Let x = (x1 − x2)/√2, X = (x1 + x2)/√2 and likewise y and Y; the
-            discs overlap if x² + y² < 2r². (a) The section Y = 0, in which the centres are as far
-            above the middle as below it. It is a prism without a cylinder, whose axis is the
-            diagonal of x1 and x2. (b) The whole is a product of two squares, one for x1 and x2 and
-            one for y1 and y2, without the overlaps. The dotted band of each square is excluded by
-            the point shown in the other one; dashed lines are its widest bounds, at ±√2 r. The
-            hatched quarters, in which all four coordinates are positive, hold a sixteenth of the
-            volume. Each square is drawn to its own scale.
-            """
-        ),
+        """
+        Configuration space. Let x = (x1 − x2)/√2, X = (x1 + x2)/√2 and likewise y and Y; the
+        discs overlap if x² + y² < 2r². (a) The section Y = 0, in which the centres are as far
+        above the middle as below it. It is a prism without a cylinder, whose axis is the
+        diagonal of x1 and x2. (b) The whole is a product of two squares, one for x1 and x2 and
+        one for y1 and y2, without the overlaps. The dotted band of each square is excluded by
+        the point shown in the other one; dashed lines are its widest bounds, at ±√2 r. The
+        hatched quarters, in which all four coordinates are positive, hold a sixteenth of the
+        volume. Each square is drawn to its own scale.
+        """,
     ),
     "volume": Figure(
         "Volume of configuration space",
         SPACE,
-        Caption(
-            """
-            Volume of configuration space against the radius of the discs: exact (line) and by Monte
-            Carlo sampling (symbols).
-            """
-        ),
+        """
+        Volume of configuration space against the radius of the discs: exact (line) and by Monte
+        Carlo sampling (symbols).
+        """,
         SAMPLED,
         **_radius_fields("volume", {"volume": "volume"}, "volume $V$", single=SAMPLING),
     ),
@@ -281,14 +281,12 @@ FIGURES = {
     "all_areas": Figure(
         "Areas of all events",
         SPACE,
-        Caption(
-            """
-            Areas of surfaces in configuration space: exact (lines) and from thin shells (symbols).
-            (a) Collisions of the discs. (b) Hits of walls. (c), (d) Square roots of the areas of
-            hops: if an area ends quadratically, its root ends as a straight line. A symbol at zero
-            means that no sample was in the shell of a blocked hop.
-            """
-        ),
+        """
+        Areas of surfaces in configuration space: exact (lines) and from thin shells (symbols).
+        (a) Collisions of the discs. (b) Hits of walls. (c), (d) Square roots of the areas of
+        hops: if an area ends quadratically, its root ends as a straight line. A symbol at zero
+        means that no sample was in the shell of a blocked hop.
+        """,
         SHELLS,
         tables=("areas",),
         needs=frozenset(f"{e}_area" for e in (*HOPS, "disc_collision", "right_wall", "top_wall")),
@@ -415,41 +413,35 @@ FIGURES = {
     "largest_radius": Figure(
         "The largest radius",
         GEOMETRY,
-        Caption(
-            """
-            (a) The largest discs that fit the box. They jam along a diagonal, where w − 2r, h − 2r
-            and 2r are the sides of a right triangle. If one side of the box is at least twice the
-            other, each disc spans the shorter one instead. (b) The hops that are possible in boxes
-            of any shape; this box is marked.
-            """
-        ),
+        """
+        (a) The largest discs that fit the box. They jam along a diagonal, where w − 2r, h − 2r
+        and 2r are the sides of a right triangle. If one side of the box is at least twice the
+        other, each disc spans the shorter one instead. (b) The hops that are possible in boxes
+        of any shape; this box is marked.
+        """,
     ),
     "integration_regimes": Figure(
         "Regimes of the integration",
         GEOMETRY,
-        Caption(
-            """
-            The separations u = |x1 − x2| and v = |y1 − y2| fill a rectangle of sides A = w − 2r and
-            B = h − 2r. The discs overlap in the quarter circle of radius σ = 2r, which is left out.
-            The arc is the surface of collisions; the coloured parts of the axes are the surfaces of
-            vertical hops (below) and horizontal hops (on the left). If σ exceeds B, horizontal hops
-            are blocked; if it exceeds A, vertical hops are. The overlaps are then a sector
-            (hatched) and triangles (dotted). Boxes longer than 2.5:1 are drawn shorter.
-            """
-        ),
+        """
+        The separations u = |x1 − x2| and v = |y1 − y2| fill a rectangle of sides A = w − 2r and
+        B = h − 2r. The discs overlap in the quarter circle of radius σ = 2r, which is left out.
+        The arc is the surface of collisions; the coloured parts of the axes are the surfaces of
+        vertical hops (below) and horizontal hops (on the left). If σ exceeds B, horizontal hops
+        are blocked; if it exceeds A, vertical hops are. The overlaps are then a sector
+        (hatched) and triangles (dotted). Boxes longer than 2.5:1 are drawn shorter.
+        """,
     ),
     "surface_shell": Figure(
         "Shells around surfaces",
         GEOMETRY,
-        Caption(
-            """
-            The area of a surface is estimated from the samples within a distance ε of it. (a) The
-            surface of vertical hops can be crossed from both sides: its shell is 2ε thick, and
-            extends √2 ε to either side along y1. (b) The surface of collisions, with
-            x = |x1 − x2|/√2 and y = |y1 − y2|/√2, has a shell on its outer side only. Boxes longer
-            than 1.5:1 are drawn shorter.
-            """
-        ),
+        """
+        The area of a surface is estimated from the samples within a distance ε of it. (a) The
+        surface of vertical hops can be crossed from both sides: its shell is 2ε thick, and
+        extends √2 ε to either side along y1. (b) The surface of collisions, with
+        x = |x1 − x2|/√2 and y = |y1 − y2|/√2, has a shell on its outer side only. Boxes longer
+        than 1.5:1 are drawn shorter.
+        """,
     ),
 }
 

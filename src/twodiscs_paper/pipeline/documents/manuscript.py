@@ -33,10 +33,7 @@ def captions(scene):
     ``scene`` is the scene that the manuscript is about, with its "width" and "height".
     """
     box = Box(scene["width"], scene["height"])
-    return {
-        name: (entry.own.full_text(box), entry.note.full_text(box) if entry.note else "")
-        for name, entry in (FIGURES | STUDY_FIGURES).items()
-    }
+    return {name: entry.captions(box) for name, entry in (FIGURES | STUDY_FIGURES).items()}
 
 
 def typeset(template, output, scenes, figures, seed, configuration):

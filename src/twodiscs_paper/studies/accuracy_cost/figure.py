@@ -27,9 +27,6 @@ ERRORS, SECONDS = (1.0, 1e-6), (1e-7, 1e6)
 
 GUIDES = {"1 s": 1.0, "1 min": 60.0, "1 h": 3600.0, "1 day": 86400.0}
 
-#: The errors at which one trajectory after another is compared with the engine: easy, hard.
-GAINED = 4e-6, 10**-2.5
-
 #: The number of doublings of the time from one symbol to the next; the longest run has one, too.
 THINNED = 2
 
@@ -90,8 +87,6 @@ def draw(box, tables):
             place = {"ha": "left", "va": "bottom", "color": GREY, "fontsize": 6.8}
             drawing.label(axes, name, (ERRORS[0], seconds), (3, 1), **place)
         lines = [line for one in series for line in _draw_series(axes, kept, rows, one, radii)]
-        if series is TIMES:
-            lines += _draw_textbook(axes, kept, radii)
         _name_lines(axes, lines)
         _draw_exact(axes, rows, radii[0], "volume" if series is TIMES else AREA)
     figure.axes[0].set_ylabel("processor time on one core (s)")
@@ -181,34 +176,6 @@ def _draw_law(axes, c, floor, one, setting, is_first):
         text = rf"{'shell' if is_first else ''} $\varepsilon={setting:.2g}$".strip()
         style = {"rotation": 90, "ha": "left", "va": "top", "fontsize": 6.8, "color": one.colour}
         drawing.label(axes, text, (floor, SECONDS[1]), (2, -3), **style)
-
-
-def _draw_textbook(axes, rows, radii):
-    """Draw the line of trajectories one by one near h/4, where no run is long enough; return it.
-
-    Its counts are those of the engine, replica for replica, and each takes longer by a factor. Two
-    arrows are what the engine gains, and what the engine and strips gain.
-    """
-    c = {(row["method"], row["radius"]): row["c"] for row in rows}
-    easy, hard = radii
-    slower = c["scalar", easy] / c["lockstep", easy]
-    _draw_gain(axes, c["scalar", easy], c["lockstep", easy], GAINED[0])
-    if ("lockstep", hard) not in c:
-        return []
-    textbook, name = slower * c["lockstep", hard], "one by one, near $h/4$"
-    style = {"color": ORANGE, "lw": 0.8, "ls": (0, (4, 2)), "zorder": 1}
-    axes.plot(*_law(textbook, 0.0), label=name, **style)
-    _draw_gain(axes, textbook, c["strip", hard], GAINED[1])
-    return [(textbook, name, ORANGE)]
-
-
-def _draw_gain(axes, slow, fast, error):
-    """Draw an arrow between the times of two methods to an ``error``, with their ratio."""
-    ends = (error, slow / error**2), (error, fast / error**2)
-    drawing.arrow(axes, *ends, "<|-|>", width=0.6, size=6)
-    middle = error, slow**0.65 * fast**0.35 / error**2  # where most space is between the lines
-    text = rf"$\times{panels.powers(f'{slow / fast:.1g}')}$"
-    drawing.label(axes, text, middle, (3, 0), ha="left", fontsize=7.5, zorder=5)
 
 
 def _draw_exact(axes, rows, radius, quantity):

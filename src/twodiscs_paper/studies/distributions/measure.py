@@ -63,9 +63,6 @@ GROWTH, FEWEST_IN_BIN = 0.08, 100
 #: A hazard is a plateau if the probabilities of its χ² and of its trend exceed this level.
 LEVEL = 1e-3
 
-#: A hazard that ends below this fraction of its fitted rate is compared with 3/t.
-FALLEN = 0.75
-
 #: Late bins begin beyond this fraction of the time that the data reach.
 LATE = 0.6
 
@@ -318,14 +315,6 @@ def late_hazard(late):
     return Estimate(hazard, hazard / math.sqrt(hops), hops)
 
 
-def cubic_ratio(late):
-    """Return the hops in the bins ``late`` over those expected from 3/t, as for a cubic tail."""
-    expected = sum(
-        6 * one["count"] / one["estimate"] / (one["first"] + one["last"]) for one in late
-    )
-    return sum(one["count"] for one in late) / expected
-
-
 def shape(case):
     """Yield the rows on the shape of a hazard; ``case`` are the rows of one hop at one radius.
 
@@ -347,6 +336,4 @@ def shape(case):
         return
     found = late_hazard(late)
     ends = {"first": late[0]["first"], "last": late[-1]["last"], "count": found.n}
-    if found.value < FALLEN * rate["estimate"]:
-        yield row(start, quantity="over_cubic", estimate=cubic_ratio(late), **ends)
     yield row(start, found, quantity=falling, **ends)

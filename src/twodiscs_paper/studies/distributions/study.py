@@ -1,7 +1,7 @@
 """How intervals between hops are distributed."""
 
 from twodiscs.analysis.columns import COUNT, HEIGHT, NUMBER, RADIUS, SCENE, TEXT, TIME, WIDTH, Table
-from twodiscs.figures.scene_figures import DYNAMICS, Caption, Figure
+from twodiscs.figures.scene_figures import DYNAMICS, Figure
 from twodiscs_paper.study import AS_ESTIMATE, SEE_QUANTITY, Study, scaled
 
 
@@ -27,9 +27,7 @@ class DistributionsTable(Table):
             "times on, with longer intervals censored; trend: β of a hazard ∝ t^β in these bins; "
             "plateau: the rate again, if the hazard is constant within the errors; falling, "
             "falling_without_drift: if it is not constant, the hazard in the last two fifths of "
-            "the time that the data reach, for hops that drifting discs avoid and for other hops; "
-            "over_cubic: hops in this time over those expected from the hazard 3/t of a cubic "
-            "tail, if the hazard falls below three quarters of the rate"
+            "the time that the data reach, for hops that drifting discs avoid and for other hops"
         ),
         "first": TIME("where the bin or the fit begins"),
         "last": TIME("where it ends; for first_passage the cut c"),
@@ -91,20 +89,18 @@ STUDY = Study(
         "distributions": Figure(
             "Rate of hops since the last one",
             DYNAMICS,
-            Caption(
-                """
-                (a) Rate of hops at a time t after the last hop, in units of the exact mean time τ.
-                An exponential distribution would have the dashed line. The rate starts from the
-                exact density at 0 (thick dashes), of hops that one bounce undoes. It jumps at the
-                time from which both discs may have bounced, t = √2 (h − 2r) for vertical hops.
-                Thick lines are constant rates fitted to all intervals after four mean times. They
-                are dotted if the rate is not constant there (by χ² or by a trend, at the level of
-                1e-3). The rates of small discs go on falling, towards the rate of a cubic tail,
-                3τ/t (dash-dotted). (b) Mean time from a random moment to the next hop (open
-                symbols), and its value from the intervals, τ(1 + CV²)/2 (dots), with CV their
-                coefficient of variation. Error bars are one standard error.
-                """
-            ),
+            """
+            (a) Rate of hops at a time t after the last hop, in units of the exact mean time τ. An
+            exponential distribution would have the dashed line. The rate starts from the exact
+            density at 0 (thick dashes), of hops that one bounce undoes. It jumps at the time from
+            which both discs may have bounced, t = √2 (h − 2r) for vertical hops. Thick lines are
+            constant rates fitted to all intervals after four mean times. They are dotted if the
+            rate is not constant there (by χ² or by a trend, at the level of 1e-3). The rates of
+            small discs go on falling, towards the rate of a cubic tail, 3τ/t (dash-dotted). (b)
+            Mean time from a random moment to the next hop (open symbols), and its value from the
+            intervals, τ(1 + CV²)/2 (dots), with CV their coefficient of variation. Error bars are
+            one standard error.
+            """,
             tables=("distributions",),
         ),
     },

@@ -13,7 +13,7 @@ from twodiscs.analysis.columns import (
     Table,
     Z,
 )
-from twodiscs.figures.scene_figures import DYNAMICS, Caption, Figure
+from twodiscs.figures.scene_figures import DYNAMICS, Figure
 from twodiscs_paper.study import AS_EXACT, Study
 
 
@@ -119,22 +119,20 @@ STUDY = Study(
         "effects": Figure(
             "Mean times with effects",
             DYNAMICS,
-            Caption(
-                """
-                Mean times of scenes with one effect or two, divided by the mean times of plain
-                discs in the same box at the same radius (of disc 1) and total energy: exact (lines)
-                and by event-driven molecular dynamics (symbols). The events are (a) vertical hops,
-                (b) disc collisions and (c) hits of any disc on any wall, up to the largest radius
-                of plain discs. Error bars are one standard error; they are hidden if they are
-                smaller than the symbols. Vertical lines mark h/4 and w/4, where hops of plain discs
-                become blocked, and their largest radius. The torus has neither hops nor walls.
-                Residuals z beneath are in standard errors, with guide lines at ±2 and ±5. (d)
-                Processor time per wall hit or disc collision at r = 0.2, divided by the time in a
-                copy of the package from which all effects are removed (numbers beside the symbols),
-                and the number of machine instructions of the compiled kernel. Leaving a periodic
-                cell, or a kick of friction, takes time but is not counted.
-                """
-            ),
+            """
+            Mean times of scenes with one effect or two, divided by the mean times of plain discs in
+            the same box at the same radius (of disc 1) and total energy: exact (lines) and by
+            event-driven molecular dynamics (symbols). The events are (a) vertical hops, (b) disc
+            collisions and (c) hits of any disc on any wall, up to the largest radius of plain
+            discs. Error bars are one standard error; they are hidden if they are smaller than the
+            symbols. Vertical lines mark h/4 and w/4, where hops of plain discs become blocked, and
+            their largest radius. The torus has neither hops nor walls. Residuals z beneath are in
+            standard errors, with guide lines at ±2 and ±5. (d) Processor time per wall hit or disc
+            collision at r = 0.2, divided by the time in a copy of the package from which all
+            effects are removed (numbers beside the symbols), and the number of machine instructions
+            of the compiled kernel. Leaving a periodic cell, or a kick of friction, takes time but
+            is not counted.
+            """,
             tables=("effects", "effects_cost"),
         ),
     },

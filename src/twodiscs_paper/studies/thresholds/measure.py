@@ -28,9 +28,8 @@ WIDTH = 0.2
 #: The fewest points for a fit.
 FEWEST = 3
 
-#: The columns that a fit uses, and those that tell one fit from another.
+#: The columns that a fit uses.
 COLUMNS = ("radius", "estimate", "stderr", "exact")
-OF_FIT = ("scene", "width", "height", "event", "quantity", "form", "points")
 
 
 class PowerLaw(NamedTuple):
@@ -143,9 +142,4 @@ def rows(tables, scenes):
             for quantity, found in measured.items():
                 kept = near(box, law, found)
                 values = [[one[c] for one in kept] for c in COLUMNS]
-                fitted = [*fits(start | {"event": event}, law, quantity, *values)]
-                yield from fitted
-                if fitted and quantity == "mean_time":
-                    strips = sum(one["starts"] == "strip" for one in kept) / len(kept)
-                    same = {name: fitted[0][name] for name in OF_FIT}
-                    yield row(same, parameter="strips", estimate=strips)
+                yield from fits(start | {"event": event}, law, quantity, *values)

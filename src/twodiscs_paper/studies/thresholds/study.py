@@ -1,7 +1,7 @@
 """The laws where a hop becomes blocked."""
 
 from twodiscs.analysis.columns import COUNT, HEIGHT, NUMBER, SCENE, TEXT, WIDTH, Column, Table
-from twodiscs.figures.scene_figures import DYNAMICS, Caption, Figure
+from twodiscs.figures.scene_figures import DYNAMICS, Figure
 from twodiscs_paper.study import AS_ESTIMATE, Study
 
 
@@ -22,10 +22,7 @@ class ThresholdsTable(Table):
             "tends to 1 at r_c"
         ),
         "points": COUNT("radii fitted: all within 0.2 r_c and beyond other limits"),
-        "parameter": TEXT(
-            "exponent p, or coefficient C at the exact exponent; strips: the share of the fitted "
-            "mean times whose initial states lie in strips"
-        ),
+        "parameter": TEXT("exponent p, or coefficient C at the exact exponent"),
         "estimate": Column(float, "of C: time/length^p", "fitted value"),
         "stderr": AS_ESTIMATE("its standard error"),
         "curve": AS_ESTIMATE(
@@ -65,19 +62,17 @@ STUDY = Study(
         "thresholds": Figure(
             "Power laws where events die out",
             DYNAMICS,
-            Caption(
-                """
-                Mean times near the radius at which their event ends, r = r_c − δ. For vertical hops
-                r_c = w/4, for horizontal ones h/4, and for all other events the largest radius. (a)
-                Times between hops by event-driven molecular dynamics (circles and squares), exact
-                (lines) and by their limiting laws ∝ δ⁻² (dashed), and mean first passages from a
-                random moment (crosses). Grey lines have the slopes of inertial and of diffusive
-                motion. (b) Times divided by their limiting laws, which have the exponent −2 for
-                hops that become blocked and 1 for events that end with the largest radius. Full
-                symbols come from initial states in a strip around the surface of the hop, where the
-                flux is measured and not the waiting time. Error bars are one standard error.
-                """
-            ),
+            """
+            Mean times near the radius at which their event ends, r = r_c − δ. For vertical hops r_c
+            = w/4, for horizontal ones h/4, and for all other events the largest radius. (a) Times
+            between hops by event-driven molecular dynamics (circles and squares), exact (lines) and
+            by their limiting laws ∝ δ⁻² (dashed), and mean first passages from a random moment
+            (crosses). Grey lines have the slopes of inertial and of diffusive motion. (b) Times
+            divided by their limiting laws, which have the exponent −2 for hops that become blocked
+            and 1 for events that end with the largest radius. Full symbols come from initial states
+            in a strip around the surface of the hop, where the flux is measured and not the waiting
+            time. Error bars are one standard error.
+            """,
             tables=("distributions", "thresholds"),
             main_tables=("mean_times",),
         ),
