@@ -1,6 +1,7 @@
 """The cost of accuracy: error against processor time for every method, and errors that stay."""
 
 import math
+from statistics import median
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from twodiscs.figures.style import (
     GREY,
     ORANGE,
     PURPLE,
+    SIZES,
     SKY,
     VERMILLION,
     new_figure,
@@ -50,6 +52,7 @@ class MethodCurve(NamedTuple):
 
 HOP, AREA = "horizontal_hop_time", "disc_collision_area"
 TIMES = (
+    MethodCurve("time_step", HOP, False, "time steps", VERMILLION, "s"),
     MethodCurve("scalar", HOP, False, "one by one", ORANGE, "D"),
     MethodCurve("lockstep", HOP, False, "dynamics", BLUE, "o"),
     MethodCurve("lockstep", HOP, True, "dynamics", SKY, "o"),
@@ -57,11 +60,15 @@ TIMES = (
 )
 SAMPLES = (
     MethodCurve("shell", AREA, False, "area, shells", VERMILLION, "s"),
+    MethodCurve("surface", AREA, False, "area, surface", GREEN, "^"),
     MethodCurve("conditioned", "volume", False, "volume, conditioned", PURPLE, "v"),
     MethodCurve("rejection", "volume", False, "volume, rejection", BLUE, "o"),
     MethodCurve("shell", AREA, True, "area, shells", ORANGE, "D"),
     MethodCurve("rejection", "volume", True, "rejection", SKY, "o"),
 )
+
+#: The name and the symbol of the setting of a method.
+SETTINGS = {"time_step": ("step", r"\Delta t"), "shell": ("shell", r"\varepsilon")}
 
 
 def draw(box, tables):
@@ -172,16 +179,30 @@ def _draw_law(axes, c, floor, one, setting, is_first):
     errors, seconds = _law(c, floor)
     dashes = (0, (4, 2)) if one.is_hard else "-"
     axes.plot(errors, seconds, color=one.colour, lw=0.8, ls=dashes, zorder=1)
-    if floor:
-        text = rf"{'shell' if is_first else ''} $\varepsilon={setting:.2g}$".strip()
+    if floor and one.method in SETTINGS:
+        number = f"{setting:.2g}"
+        if one.method == "time_step":
+            number = f"2^{{{round(math.log2(setting))}}}"
+        name, symbol = SETTINGS[one.method]
+        text = rf"{name if is_first else ''} ${symbol}={number}$".strip()
         style = {"rotation": 90, "ha": "left", "va": "top", "fontsize": 6.8, "color": one.colour}
         drawing.label(axes, text, (floor, SECONDS[1]), (2, -3), **style)
 
 
 def _draw_exact(axes, rows, radius, quantity):
-    """Draw the time of the exact value, which has no error to speak of."""
+    """Draw the time of the exact value, which has no error to speak of, and Gauss quadrature."""
     own = [row for row in rows if row["part"] == "exact" and row["radius"] == radius]
-    (seconds,) = [row["seconds"] for row in own if row["quantity"] == quantity]
+    own = [row for row in own if row["quantity"] == quantity]
+    seconds = median(row["seconds"] for row in own if row["method"] == "exact")
     axes.axhline(seconds, color=BLACK, lw=1.0, zorder=2)
+    end = {"ha": "right", "va": "top"}
     text = f"exact: {1e3 * seconds:.2g} ms, error $10^{{-15}}$"
-    drawing.label(axes, text, (ERRORS[1], seconds), (-3, -2), ha="right", va="top")
+    drawing.label(axes, text, (ERRORS[1], seconds), (-3, -2), **end)
+    if quantity == AREA:
+        nodes = [row for row in own if row["method"] == "quadrature"]
+        seconds = median(row["seconds"] for row in nodes)
+        shown = [row for row in nodes if row["error"] > ERRORS[1]]
+        error = [row["error"] for row in shown]
+        axes.plot(error, [seconds] * len(error), "P", color=BLACK, ms=SIZES["P"])
+        text = f"quadrature, 1 to {len(error)} nodes: ${1e6 * seconds:.1g}\\,\\mu$s"
+        drawing.label(axes, text, (ERRORS[1], seconds), (-3, -4), **end)

@@ -12,6 +12,7 @@ The part ``radius`` has c at many distances from the radius at which the horizon
 import math
 import time
 from collections.abc import Callable
+from functools import cache, partial
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -20,16 +21,19 @@ from mpmath import mp
 
 import twodiscs
 from twodiscs.dynamics.engine import find_engine
-from twodiscs.dynamics.ensemble import REPLICAS
+from twodiscs.dynamics.ensemble import LANES, REPLICAS
 from twodiscs.dynamics.two import strip
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import stratified_mean
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.conditioned import conditioned_sampler
+from twodiscs.sampling.jit import compiled
+from twodiscs.sampling.streams import open_stream, signed_uniform
 from twodiscs.theory import exact, plain
+from twodiscs.theory.quadrature import gauss_legendre
 from twodiscs_paper.reference import DIGITS, MpScene, disc_collision_area, volume
-from twodiscs_paper.studies.accuracy_cost import scalar
+from twodiscs_paper.studies.accuracy_cost import scalar, timestepping
 from twodiscs_paper.study import row
 
 #: The hop of all mean times, and the relative distance of the hard radius from where it is blocked.
@@ -39,17 +43,18 @@ HARD = EASY.with_radius(EASY.threshold(HOP) * (1 - NEAR))
 
 AREA = "disc_collision_area"
 
-#: Fractions for ``montecarlo.shell_thickness``: a thick shell, and the usual one.
+#: Time steps, and fractions for ``montecarlo.shell_thickness``: a thick shell, and the usual one.
+STEPS = (2.0**-4, 2.0**-6, 2.0**-7)
 SHELLS = (0.3, 0.02)
 
-#: Replicas of a block of the method for comparison.
-FEW_REPLICAS = 64
+#: Replicas of a block of the methods for comparison, samples of a block on the surface.
+FEW_REPLICAS, ON_SURFACE = 64, 1 << 16
 
 #: Relative distances from the radius where the hop is blocked at which c is measured.
 DISTANCES = (0.6, 0.2, 0.05, 1e-2, 1e-4, 1e-6)
 
-#: Calls of the exact evaluation, which takes microseconds.
-CALLS = 100
+#: Calls of methods that are deterministic and take microseconds, and the nodes of quadrature.
+CALLS, NODES = 100, range(1, 17)
 
 #: Larger errors are left out. A power is fitted to errors above this multiple of the floor, of at
 #: least this number of runs.
@@ -63,8 +68,8 @@ class Method(NamedTuple):
     """A method that measures a ``quantity`` of a ``scene`` in blocks.
 
     ``block(i)`` returns the sums of block i, an array, and ``estimate(sums, blocks)`` the estimate
-    over its exact value from the sums of some ``blocks``. ``bias`` is the relative error that
-    stays. ``setting`` is ε of a shell, T of a strip, or None.
+    over its exact value from the sums of some ``blocks``. ``bias`` is the relative error that stays
+    if it is known exactly. ``setting`` is ε of a shell, Δt of time steps, T of a strip, or None.
     """
 
     name: str
@@ -72,7 +77,7 @@ class Method(NamedTuple):
     scene: Scene
     block: Callable
     estimate: Callable
-    bias: float = 0.0
+    bias: float | None = 0.0
     setting: float | None = None
 
 
@@ -110,6 +115,18 @@ def scalar_method(scene, seed):
         return scalar.count_blocks(np.uint64(seed), i, i + 1, *given)[0]
 
     return _by_counts("scalar", scene, scalar.COUNTED, FEW_REPLICAS, block)
+
+
+def steps_method(scene, seed, step):
+    """Return the ``Method`` of looking for overlaps every ``step``, a power of two."""
+    steps = round(find_engine(scene).replica_duration(scene) / step)
+    given = FEW_REPLICAS, LANES, steps, step, scene.contact_distance, conditioned_sampler(scene)
+
+    def block(i):
+        return timestepping.step_blocks(np.uint64(seed), i, i + 1, *given)
+
+    more = {"bias": None, "setting": step}
+    return _by_counts("time_step", scene, scalar.COUNTED, FEW_REPLICAS, block, **more)
 
 
 def strip_method(scene, seed, blocks=8):
@@ -162,22 +179,89 @@ def _sampled(name, maker, scene, seed, quantity, fraction):
     )
 
 
+@compiled
+def surface_hits(seed, block, samples, half_x, half_y, sigma):
+    """Place disc 1 anywhere and disc 2 at contact in a random direction; count pairs that fit."""
+    state = open_stream(seed, block)
+    hits = 0
+    for _ in range(samples):
+        x, y = half_x * signed_uniform(state), half_y * signed_uniform(state)
+        p, q = signed_uniform(state), signed_uniform(state)
+        square = p * p + q * q
+        while square >= 1.0 or square == 0.0:
+            p, q = signed_uniform(state), signed_uniform(state)
+            square = p * p + q * q
+        reach = sigma / math.sqrt(square)
+        hits += (abs(x + reach * p) <= half_x) & (abs(y + reach * q) <= half_y)
+    return hits
+
+
+def surface_method(scene, seed):
+    """Return the ``Method`` of samples on the surface of disc collisions itself.
+
+    Disc 1 is anywhere in the box and disc 2 at contact: an area of A B · 2πσ · √2.
+    """
+    sides, sigma = (scene.range_x, scene.range_y), scene.contact_distance
+    measure = 2 * math.pi * sigma * math.prod(sides) * math.sqrt(2)
+    share = exact.areas(scene)["disc_collision"] / measure
+    given = ON_SURFACE, *(side / 2 for side in sides), sigma
+
+    def block(i):
+        return np.array(surface_hits(np.uint64(seed), i, *given))
+
+    return Method(
+        "surface", AREA, scene, block, lambda hits, n: float(hits) / (n * ON_SURFACE * share)
+    )
+
+
 def methods(seed):
     """Return all methods that are measured, with random numbers of ``seed``."""
     return [
         lockstep_method(EASY, seed),
         scalar_method(EASY, seed),
+        *(steps_method(EASY, seed, step) for step in STEPS),
         strip_method(HARD, seed),
         lockstep_method(HARD, seed, blocks=4),
         samples_method(EASY, seed, "volume"),
         draws_method(EASY, seed),
         *(samples_method(EASY, seed, AREA, fraction) for fraction in SHELLS),
+        surface_method(EASY, seed),
         samples_method(HARD, seed, "volume"),
         samples_method(HARD, seed, AREA, SHELLS[-1]),
     ]
 
 
 # Exact values -------------------------------------------------------------------------------------
+
+
+@compiled
+def arc_sums(range_x, range_y, sigma, nodes, weights):
+    """Return (volume, area of disc collisions) by a rule on [0, 1], in plain doubles."""
+    start = math.acos(min(range_x / sigma, 1.0))
+    turn = math.asin(min(range_y / sigma, 1.0)) - start
+    beyond_y = max(range_y - sigma, 0.0)
+    volume, disc = range_x * range_x * beyond_y * beyond_y, 0.0
+    for i in range(nodes.size):
+        angle = start + turn * nodes[i]
+        cos = math.cos(angle)
+        x, y = range_x - sigma * cos, range_y - sigma * math.sin(angle)
+        area = 2.0 * turn * weights[i] * sigma * x * y
+        disc += area
+        volume += area * x * cos
+    return volume, 2.0 * math.sqrt(2.0) * disc
+
+
+@cache
+def rule(order):
+    """Return (nodes, weights) of the Gauss–Legendre rule on [0, 1] as arrays."""
+    nodes, _, weights = zip(*gauss_legendre(order), strict=True)
+    return np.array(nodes), np.array(weights)
+
+
+def quadrature(scene, nodes):
+    """Return {quantity: value} of the volume and the area by a Gauss rule along the arc."""
+    sides = scene.range_x, scene.range_y, scene.contact_distance
+    return dict(zip(("volume", AREA), arc_sums(*sides, *rule(nodes)), strict=True))
 
 
 def evaluated(scene):
@@ -193,18 +277,22 @@ def reference(scene):
 
 
 def exact_rows():
-    """Yield the rows of the exact evaluation at both radii."""
+    """Yield the rows of quadrature and of the exact evaluation at both radii."""
+    works = [("quadrature", partial(quadrature, nodes=n), n) for n in NODES]
+    works.append(("exact", evaluated, None))
     for scene in (EASY, HARD):
         true = reference(scene)
-        evaluated(scene)
-        start = time.process_time()
-        for _ in range(CALLS):
-            found = evaluated(scene)
-        seconds = (time.process_time() - start) / CALLS
-        for quantity, value in found.items():
-            with mp.workdps(DIGITS):
-                error = abs(float(value / true[quantity] - 1))
-            yield cost_row(scene, "exact", quantity, "exact", seconds=seconds, error=error)
+        for name, work, nodes in works:
+            work(scene)
+            start = time.process_time()
+            for _ in range(CALLS):
+                found = work(scene)
+            seconds = (time.process_time() - start) / CALLS
+            for quantity, value in found.items():
+                with mp.workdps(DIGITS):
+                    error = abs(float(value / true[quantity] - 1))
+                cells = {"setting": nodes, "seconds": seconds, "error": error}
+                yield cost_row(scene, "exact", quantity, name, **cells)
 
 
 # True errors over time ----------------------------------------------------------------------------
@@ -269,7 +357,13 @@ def error_rows(method, seconds, most, **cells):
     """Yield the rows of a ``Method``: its true error at 1, 2, 4, … blocks."""
     sums, times = measured(method, seconds, most)
     joined, each = dict(doublings(method, sums)), float(times.mean())
-    noise, floor = float(joined[1].std(ddof=1)), abs(method.bias)
+    errors = joined[1]
+    noise = float(errors.std(ddof=1))
+    floor, floor_error = method.bias, 0.0
+    if floor is None:
+        floor, floor_error = float(errors.mean()), noise / math.sqrt(errors.size)
+    # A floor within its noise counts as none.
+    floor = abs(floor) if abs(floor) > 3 * floor_error else 0.0
     slope, slope_error = power(joined, floor)
     for blocks, errors in joined.items():
         error = root_mean_square(errors)

@@ -23,8 +23,8 @@ class AccuracyCostTable(Table):
 
     columns = {
         "part": TEXT(
-            "error: the true error after some time; exact: of the exact evaluation; radius: c at a "
-            "distance from the radius where horizontal hops are blocked"
+            "error: the true error after some time; exact: of quadrature and of the exact "
+            "evaluation; radius: c at a distance from the radius where horizontal hops are blocked"
         ),
         "quantity": TEXT("volume, <event>_area or <event>_time"),
         "width": WIDTH,
@@ -33,15 +33,18 @@ class AccuracyCostTable(Table):
         "distance": NUMBER("part radius: 1 − radius/(h/4), h/4 where horizontal hops are blocked"),
         "method": TEXT(
             "lockstep: the engine; strip: from initial states next to the hop; scalar: one "
-            "trajectory after another; rejection: samples of the prism; shell: the same, for an "
-            "area; conditioned; exact. radius: as in td.cost"
+            "trajectory after another; time_step; rejection: samples of the prism; shell: the "
+            "same, for an area; conditioned; surface: samples on the surface; quadrature; exact. "
+            "radius: as in td.cost"
         ),
-        "setting": Column(float, "see method", "ε of a shell, T of a strip"),
+        "setting": Column(
+            float, "see method", "ε of a shell, Δt of time steps, T of a strip, nodes of quadrature"
+        ),
         "seconds": SECONDS("processor time of a run, or of an evaluation"),
         "error": NUMBER("root mean square of the relative error against the exact value"),
         "repetitions": COUNT("independent runs behind it"),
         "c": SECONDS("time × error² of this method, above its floor"),
-        "floor": NUMBER("error that no work removes"),
+        "floor": NUMBER("error that no work removes; 0 if it is within the noise"),
         "slope": NUMBER("power of the time by which errors fall, above the floor"),
         "slope_stderr": NUMBER("its standard error"),
     }
@@ -77,10 +80,12 @@ STUDY = Study(
             h/4 (dashed), where the hop becomes blocked. Symbols are true errors against the exact
             value, root mean square over independent runs: full symbols are from a long run, open
             symbols from this build on this machine. Lines are c/error², for a method with a bias
-            c/(error² − bias²): no time removes the error of thick shells ε. Error bars are one
-            standard error, where runs are few. "Dynamics" follows trajectories in lock step from
-            ordinary initial states, "strips" from initial states next to the hop; "one by one" is
-            the same dynamics, one trajectory after another. The exact value is at the bottom.
+            c/(error² − bias²): no time removes the error of time steps Δt or of thick shells ε.
+            Error bars are one standard error, where runs are few. "Dynamics" follows trajectories
+            in lock step from ordinary initial states, "strips" from initial states next to the hop;
+            "one by one" is the same dynamics, one trajectory after another. Near h/4 this is a line
+            without symbols, because its counts are the same. The exact value is at the bottom, and
+            crosses are Gauss quadrature with 1, 2, … nodes.
             """,
             tables=("accuracy_cost",),
             long_runs={"kept": "paper/long_run/accuracy_cost/accuracy_cost.csv"},
