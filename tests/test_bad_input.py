@@ -149,6 +149,7 @@ td.trajectory(Scene(1.5, 1, 0.2, periodic='xy'), start=ROUND_THE_RING) → must 
 td.trajectory(PAPER, start=td.starts(PAPER, 2)) → numbers x1, …; start[0] is one of these states
 td.trajectory(PAPER, start=td.trajectory(PAPER, 1)) → …; states_at(times)[0] is a state of a traj…
 td.trajectory(PAPER, start=td.trajectory(PAPER, 1).iloc[-1]) → …; states_at(times)[0] is a state of
+td.trajectory(PAPER, hops='no') → hops must be True or False, not 'no'
 td.trajectory(PAPER, 1e9) → must be below 2.71e6, where 1e7 events are due and fill 0.98 GB
 td.intervals(Scene(1.5, 1, 0.3), 'horizontal_hop') → has no intervals: it is blocked at radius 0.3
 td.intervals(Scene(1.6, 0.6, 0.18, discs=4), 'horizontal_hop') → is blocked

@@ -53,7 +53,7 @@ def test_two_discs_are_those_of_the_engine_of_two(periodic, inertia):
     start = many_initial_states.states(scene, 1, 5)[:, 0]
     # x1, x2, y1, y2, u1, u2, v1, v2, s1, s2 and x1, y1, x2, y2, u1, v1, u2, v2, s1, s2.
     order = [0, 2, 1, 3, 4, 6, 5, 7, 8, 9][: start.size]
-    found = [*Rows.joined(many_paths.path_rows(scene, start, 12.0)).events()]
+    found = [*Rows.joined([*many_paths.path_rows(scene, start, 12.0)]).events()]
     other = [*paths.path_events(scene, tuple(start[order]), 12.0)]
     assert len(found) > 30
     for (time, *event, state), (due, *same, known) in zip(found, other, strict=True):

@@ -3,6 +3,8 @@
 Without it another program could read other positions, cells or masses.
 """
 
+import tracemalloc
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -35,6 +37,20 @@ def test_positions_and_velocities_are_arrays(path):
         assert np.allclose(moved, path.velocities([1.0]), atol=1e-3)
     with pytest.raises(td.InputError, match="must have all of its columns, but has no x1"):
         path[["time", "event"]].positions()
+
+
+def test_hops_can_be_left_out(path):
+    bare = td.trajectory(path.scene, 6, seed=2, hops=False)
+    kept = path[~path["event"].str.endswith("_hop")].reset_index(drop=True)
+    pd.testing.assert_frame_equal(pd.DataFrame(bare), pd.DataFrame(kept))
+
+
+def test_memory_holds_two_tables():
+    tracemalloc.start()
+    table = td.trajectory(td.Scene(1.5, 1.0, 0.2), 1e5)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 2.1 * table.memory_usage().sum()
 
 
 def test_ase_reads_it(path, tmp_path):

@@ -37,8 +37,8 @@ class Engine(NamedTuple):
     record_intervals: Callable  # (hop, seed, first, stop, chains, bins, sums, going): times
 
     # Paths: one event by event, or all columns of an array of states at a time.
-    path_rows: Callable  # (state, duration, seed): an iterator of ``Rows``
-    trajectory_rate: Callable  # the rows of a trajectory, in 1/time
+    path_rows: Callable  # (state, duration, seed, hops): an iterator of ``Rows``
+    trajectory_rate: Callable  # (hops): the rows of a trajectory, in 1/time; of two discs no hops
     usual_duration: Callable  # the time of a trajectory, a power of two
     new_kicks: Callable  # (number): ``Kicks`` of friction that no state has begun, or None
     new_wraps: Callable  # (number): an array that counts jumps along periodic axes, zeros

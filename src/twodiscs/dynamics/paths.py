@@ -102,8 +102,8 @@ def require_bounces(scene, rows):
             )
 
 
-def follow_trajectory(scene, seed, start=None, duration=None, progress=None):
-    """Return the ``Rows`` of one trajectory of a ``Scene``.
+def follow_trajectory(scene, seed, start=None, duration=None, progress=None, hops=True):
+    """Return the ``Rows`` of one trajectory of a ``Scene``, with or without those of ``hops``.
 
     It starts from the invariant measure, with the random stream of ``seed``, unless a ``start`` is
     given (see ``check_start``). Without a ``duration`` it has the ``usual_duration``. Raises
@@ -114,7 +114,7 @@ def follow_trajectory(scene, seed, start=None, duration=None, progress=None):
     time that it has reached, and the ``duration``.
     """
     engine, most = find_engine(scene), most_rows(scene)
-    rate = engine.trajectory_rate(scene)
+    rate = engine.trajectory_rate(scene, hops)
 
     def too_long(time, due):
         return InputError(
@@ -132,12 +132,12 @@ def follow_trajectory(scene, seed, start=None, duration=None, progress=None):
         start = tuple(map(float, drawn))
     else:
         start, left = check_start(scene, start), int(most)
-    found, rows = [], engine.path_rows(scene, start, float(duration), seed)
+    found, rows = [], engine.path_rows(scene, start, float(duration), seed, hops)
     for some in map_in_threads(lambda: next(rows, None), repeat(())):
         if some is None:
             return Rows.joined(found)
         require_bounces(scene, some)
-        found.append(some)
+        found.append(some.copy())
         left -= some.times.size
         if left < 0:
             # Rounded down: a user who types the number has fewer rows.

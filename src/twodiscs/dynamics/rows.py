@@ -28,12 +28,24 @@ class Rows(NamedTuple):
 
     @classmethod
     def joined(cls, parts):
-        """Return all rows of some ``Rows``."""
-        return cls(*(np.concatenate(arrays, axis=-1) for arrays in zip(*parts, strict=True)))
+        """Return all rows of a list of ``Rows``, which is emptied: memory has no row twice."""
+        end = sum(part.times.size for part in parts)
+        whole = cls(*(np.empty((*array.shape[:-1], end), array.dtype) for array in parts[0]))
+        while parts:
+            last = parts.pop()
+            start = end - last.times.size
+            for array, some in zip(whole, last, strict=True):
+                array[..., start:end] = some
+            end = start
+        return whole
 
     def first(self, number):
         """Return the first rows."""
         return Rows(*(array[..., :number] for array in self))
+
+    def copy(self):
+        """Return a copy, without the memory of arrays of which these are the first rows."""
+        return Rows(*(array.copy() for array in self))
 
     def events(self):
         """Yield (time, name of the event, first disc, second disc, state) of each row."""

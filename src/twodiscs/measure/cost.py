@@ -304,7 +304,7 @@ def _price_of_trajectory(scene):
 
     def work(first, stop):
         rows = engine.path_rows(scene, start, duration * (stop - first), 0)
-        return len(trajectory_table(scene, Rows.joined(rows)))
+        return len(trajectory_table(scene, Rows.joined([*rows])))
 
     made, blocks, each = timed(work, OF_SPEED)
     rows = min(ROWS, most_rows(scene))

@@ -10,10 +10,11 @@ import pandas as pd
 
 from twodiscs.analysis.tables import trajectory_columns
 from twodiscs.dynamics.paths import follow_trajectory
-from twodiscs.dynamics.rows import event_names
+from twodiscs.dynamics.rows import CHUNK_NUMBERS, event_names
 from twodiscs.measure.result import progress_bar
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import InputError, check_numbers, make_list, writing_to
+from twodiscs.model.formats import quote
 from twodiscs.model.scene import Scene
 from twodiscs.model.seeds import job_seed
 from twodiscs.sampling.initial_states import components
@@ -277,12 +278,14 @@ def trajectory(
     *,
     seed: int = 1,
     start: Sequence[float] | np.ndarray | np.void | None = None,
+    hops: bool = True,
     name: str | None = None,
     progress: bool | None = None,
 ) -> Trajectory:
     """Follow one trajectory: a table with one row per event, its time, name and the state after it.
 
-    Hops are among the events. On periodic axes positions go on beyond the cell.
+    Hops are events too, unless you leave them out. On periodic axes positions go on beyond the
+    cell.
 
     Parameters
     ----------
@@ -291,7 +294,7 @@ def trajectory(
     duration : float, optional
         The duration, in time, at most 10⁷ events, and for many discs at most 1.2e8 numbers of
         states: 29,000 events of 1024 discs. The table of N discs takes 32 N + 34 bytes a row, and
-        as much while it is made. If left out, it is some eight mean times of the
+        at most as much again while it is made. If left out, it is some eight mean times of the
         rarest open hop or some 6000 events, for more than two discs 1500.
     seed : int, default 1
         Seed of the random numbers, from 0 to 2⁶³ − 1. The initial state is the first one of
@@ -300,6 +303,9 @@ def trajectory(
         An initial state in the form of ``starts``, or its numbers, in this order or by their names
         (a dict, a ``Series``, a namedtuple): discs inside the box, without overlap, with the energy
         1/2.
+    hops : bool, default True
+        Whether hops are rows. For many discs most rows are hops, which change no state: a table
+        without them is shorter and ``states_at`` gives the same states.
     name, progress : optional
         See ``help(twodiscs)``.
 
@@ -324,20 +330,34 @@ def trajectory(
     >>> path.positions([1, 2.5]).shape  # time, disc, axis
     (2, 2, 2)
     """
+    if not isinstance(hops, bool):
+        raise InputError(f"hops must be True or False, not {quote(hops)}")
     seed = job_seed(scene, "trajectory", seed, name)
     with progress_bar(progress, f"trajectory r = {scene.radius:g}") as progress:
-        return trajectory_table(scene, follow_trajectory(scene, seed, start, duration, progress))
+        rows = follow_trajectory(scene, seed, start, duration, progress, hops)
+        return trajectory_table(scene, rows)
 
 
 def trajectory_table(scene, rows):
-    """Return the ``Trajectory`` of a ``Scene`` with these ``Rows``."""
-    known = dict(zip(components(scene), rows.states, strict=True))
-    names = pd.Series(event_names(scene.discs)).array
-    known |= {"time": rows.times, "event": names.take(rows.kinds)}
+    """Return the ``Trajectory`` of a ``Scene`` with these ``Rows``, whose memory it takes over."""
+    others = {
+        "time": rows.times,
+        "event": pd.Series(event_names(scene.discs)).array.take(rows.kinds),
+    }
     for name, discs in zip(("first", "second"), rows.discs, strict=True):
-        known[name] = pd.arrays.IntegerArray(discs, discs == 0)
-    by_disc = sorted(components(scene), key=lambda name: int(name[1:]))
-    names = dict.fromkeys((*trajectory_columns(scene.discs), *by_disc))
-    frame = Trajectory({name: known[name] for name in names if name in known})
+        others[name] = pd.arrays.IntegerArray(discs, discs == 0)
+    row_of = {name: row for row, name in enumerate(components(scene))}
+    by_disc = sorted(row_of, key=lambda name: int(name[1:]))
+    known = row_of | others
+    names = [n for n in dict.fromkeys((*trajectory_columns(scene.discs), *by_disc)) if n in known]
+    states = [name for name in names if name in row_of]
+    order = [row_of[name] for name in states]
+    step = max(1, CHUNK_NUMBERS // len(order))
+    for at in range(0, rows.times.size, step):  # not all in one: that would be a copy of the table
+        some = rows.states[:, at : at + step]
+        some[:] = some[order]
+    frame = Trajectory(rows.states.T, columns=states, copy=False)
+    for name, column in others.items():
+        frame.insert(names.index(name), name, pd.Series(column, copy=False))
     frame.attrs["scene"] = scene.parameters()
     return frame

@@ -92,11 +92,11 @@ def whole_rounds(scene, state):
     return rounds
 
 
-def trajectory_rate(scene):
-    """Return the rows of a trajectory per time: wall hits, collisions, hops and kicks."""
+def trajectory_rate(scene, hops=True):
+    """Return the rows of a trajectory per time: wall hits, collisions, kicks and maybe ``hops``."""
     known = expected_rates(scene)
-    hops = sum(known.get(hop, 0.0) for hop in HOPS)
-    return expected_event_rate(scene) + hops + scene.friction
+    rate = sum(known.get(hop, 0.0) for hop in HOPS) if hops else 0.0
+    return expected_event_rate(scene) + rate + scene.friction
 
 
 def usual_duration(scene):
@@ -105,10 +105,10 @@ def usual_duration(scene):
     return ensemble.nearest_power_of_two(min(times))
 
 
-def path_rows(scene, state, duration, seed=0):
+def path_rows(scene, state, duration, seed=0, hops=True):
     """Yield the ``Rows`` of a trajectory of more than two discs, see ``paths.path_events``."""
     follow = _follow_few if large_grid(scene) is None else _follow_large
-    yield from follow(scene, np.array(state), float(duration), seed)
+    yield from follow(scene, np.array(state), float(duration), seed, scene.events if hops else ())
 
 
 @compiled
@@ -218,7 +218,7 @@ def record_rows(lanes, beyond, clock, duration, law, kicks, hops, rows):
     return n
 
 
-def _follow_few(scene, state, duration, seed):
+def _follow_few(scene, state, duration, seed, counted):
     law, clock = many_disc_law(scene), np.zeros(1)
     kicks = ensemble.open_block_kicks(new_kicks(scene, 1), seed)
     # The distance of centres beyond the cell in which the kernel keeps them.
@@ -228,7 +228,7 @@ def _follow_few(scene, state, duration, seed):
     state[places] = inside[places] + beyond.ravel()
     yield start_row(state)
     lanes = all_pairs.new_lanes(inside[:, None], np.full(1, duration), law)
-    hops, rows = tuple(hop in scene.events for hop in ("vertical_hop", "horizontal_hop")), None
+    hops, rows = tuple(hop in counted for hop in HOPS), None
     while rows is None or rows.kinds[-1] != kinds.END:
         rows = new_rows(state.size, scene.discs**2)
         number = record_rows(lanes, beyond, clock, duration, law, kicks, hops, rows)
@@ -275,9 +275,9 @@ def read_log(log, order, entry, at, since, rows):
     return entry, n
 
 
-def _follow_large(scene, state, duration, seed):
+def _follow_large(scene, state, duration, seed, counted):
     yield start_row(state)
-    path = Followed(scene, scene.events)
+    path = Followed(scene, counted)
     rounds, inside = whole_rounds(scene, state), state.copy()
     inside[: 2 * scene.discs] -= (rounds * np.array([[scene.width], [scene.height]])).ravel()
     path.start(inside[:, None], seed)

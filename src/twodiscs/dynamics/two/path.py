@@ -145,7 +145,7 @@ def record_rows(now, clock, duration, law, kicks, hops, wraps, jumps, rows):
     return n
 
 
-def path_rows(scene, state, duration, seed=0):
+def path_rows(scene, state, duration, seed=0, hops=True):
     """Yield the ``Rows`` of a trajectory, see ``paths.path_events``.
 
     Hops are at their times within a flight. Along periodic axes centres go on beyond the cell.
@@ -156,7 +156,7 @@ def path_rows(scene, state, duration, seed=0):
     now, clock, wraps = np.zeros((STATE_ROWS, 1)), np.zeros(1), np.zeros((3, 1))
     image, periods = nearest_image(scene, state)
     now[: len(names), 0] = image
-    hops, rows = tuple(hop in scene.events for hop in HOPS), None
+    hops, rows = tuple(hops and hop in scene.events for hop in HOPS), None
     while rows is None or rows.kinds[-1] != kinds.END:
         rows = new_rows(len(names))
         jumps = np.empty((3, rows.times.size))
@@ -169,7 +169,7 @@ def path_rows(scene, state, duration, seed=0):
         yield rows
 
 
-def trajectory_rate(scene):
+def trajectory_rate(scene, hops=True):
     """Return the wall and disc events and kicks per time, and what jumps cost in their unit."""
     work = exact.work_per_event(replace(scene, friction=0.0))
     return exact.event_rate(scene) * work + scene.friction
