@@ -179,9 +179,44 @@ def test_python_runs(names, tmp_path):
     assert done.returncode == 0, done.stderr
 
 
+#: Lines that a strict type checker accepts.
+USER = """\
+from collections.abc import Callable
+
+import numpy as np
+
+import twodiscs as td
+
+SCENE = td.Scene(1.5, 1.0, 0.2, friction=0.5, periodic=["x"])
+radii = [0.5 * SCENE.box.largest_radius, SCENE.box.threshold("vertical_hop") or 0.2]
+exact: float = td.mean_times(SCENE)["vertical_hop_time"] - td.volume(SCENE)
+md = td.simulate(SCENE, {event: 0.05 for event in SCENE.events}, seed=2)
+one: td.Measurement = md["vertical_hop_time"]
+low, high = one.interval() or (0.0, exact)
+text = f"{one:.3f} of {high - low}, {one.value + (one.relative_stderr or 0.0)}, {one.u}"
+kept: list[td.Measurements] = [td.sample(SCENE.with_radius(r), 1e6) for r in radii]
+scan = td.scan([1.5, 2], 1.0, radii, friction=[0, 0.5], events=["right_wall"])
+for result in [*kept, *scan, td.load_result("md.json").more(error=1e-3)]:
+    result.save(f"{result.scene.radius}.json")
+path = td.trajectory(SCENE, 10, start=td.starts(SCENE, 1)[0])
+speeds: np.ndarray = path.velocities(np.linspace(0, 10, 100))
+function: Callable[[np.ndarray, np.ndarray], np.ndarray] = lambda start, now: now["x1"]
+seen = td.observe(SCENE, {"x": function}, range(10), seed=1).more(2**17)
+late = path[path["time"] > 5].groupby("event").size()
+td.plot(seen, "seen.pdf").axes[0].set_title(text)
+td.animate(path, "two.gif")
+found = td.transmission(SCENE, "vertical_hop", 1e4)
+kappa = found.coefficient.value if found.coefficient else 0.0
+z: float | None = td.pressure(md)["virial_pressure"].z
+cost = td.cost(SCENE, [1e-3])["volume", "rejection"].seconds(1e-4)
+hop = td.intervals(SCENE, "vertical_hop", seed=3).mean
+energy: td.Measurement = td.free_energy(kept[0])
+"""
+
+
 @pytest.mark.slow
 def test_python_has_the_types_that_are_declared(tmp_path):
-    """As a type checker reads the pages, each one program, and calls with misspelt words.
+    """As a type checker reads the pages, each one program, a user, and calls with misspelt words.
 
     Pages use figures that exist in their scenes, so None is not checked in them.
     """
@@ -194,11 +229,14 @@ def test_python_has_the_types_that_are_declared(tmp_path):
         "td.Scene(1.5, 1.0, 0.2, frictoin=1.0)": 'did you mean "friction"?',
         "td.simulate(SCENE, 0.01, sed=3)": 'did you mean "seed"?',
         'td.intervals(SCENE, "vertical_hopp")': "Literal['vertical_hop', 'horizontal_hop']",
+        'td.simulate(SCENE, events="any_wal")': "Iterable[Literal['vertical_hop', ",
+        'td.sample(SCENE, quantities="volum")': "Literal['volume', 'vertical_hop_area', ",
+        'SCENE.is_possible("top")': "Literal['vertical_hop', ",
+        "td.scan(1.5, 1.0, 0.2, fild=[0, 1])": 'did you mean "field"?',
         "td.simulate(SCENE, 0.01).framee()": 'has no attribute "framee"',
     }
-    begin = "import twodiscs as td\nSCENE = td.Scene(1.5, 1.0, 0.2)\n"
-    (tmp_path / "wrong.py").write_text(begin + "\n".join(wrong), encoding="utf-8")
-    checked = python("-m", "mypy", "--strict", "wrong.py", cwd=tmp_path)
+    (tmp_path / "user.py").write_text("\n".join([USER, *wrong]), encoding="utf-8")
+    checked = python("-m", "mypy", "--strict", "user.py", cwd=tmp_path)
     errors = [line for line in checked.stdout.splitlines() if "error:" in line]
     assert all(map(str.__contains__, errors, wrong.values())), checked.stdout
     assert len(errors) == len(wrong), checked.stdout

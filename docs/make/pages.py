@@ -2,9 +2,9 @@
 
     python docs/make/pages.py
 
-writes, in the folder where it is called: config/schema.json, the names that editors complete
-in src/twodiscs/__init__.pyi, and in the pages of docs the output of `twodiscs`, the targets of
-studies, the lists that 1.x promises and the costs of changes. It ends with a sentence if the code
+writes, in the folder where it is called: config/schema.json, the keywords and names that editors
+complete in src/twodiscs/__init__.pyi, and in the pages of docs the output of `twodiscs`, the targets
+of studies, the lists that 1.x promises and the costs of changes. It ends with a sentence if the code
 lacks a name that is promised.
 """
 
@@ -23,11 +23,12 @@ import twodiscs
 from twodiscs import cli
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.model.events import EVENTS, HOPS
+from twodiscs.model.scene import USUAL_VALUES, Box
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.schema import keys, schema
 from twodiscs_paper.pipeline.build import TARGETS
 
-#: The names for checkers of types in the face, between their marks.
+#: The keywords and names for checkers of types in the face, between their marks.
 NAMES = re.compile(
     r"(?<=python docs/make/pages.py renews them.\n).*?(?=# end of names\n)", re.DOTALL
 )
@@ -37,9 +38,26 @@ COMMAND = re.compile(r"^\$ (twodiscs .+)\n(?:(?!```|\$ ).*\n)+", re.MULTILINE)
 
 
 def literals():
-    """Return the types of the names of events, hops and quantities, for the face."""
-    quantities = ("volume", *(f"{event}_area" for event in EVENTS))
+    """Return the types of keywords, and of the names of events, hops and quantities, for the face.
+
+    Keywords are the fields of ``Box``. Where ``scan`` takes a number, it takes several.
+    """
+    kinds = {
+        name: Box.__annotations__[name].replace("Sequence", "collections.abc.Sequence")
+        for name in USUAL_VALUES
+    }
+    lists = {
+        name: re.sub("float|int", r"\g<0> | collections.abc.Iterable[\g<0>]", kind)
+        for name, kind in kinds.items()
+    }
     text = ""
+    for title, meaning, keywords in (
+        ("Effects", "The effects and ``discs`` as optional keywords.", kinds),
+        ("Scanned", "The same for ``scan``, which takes lists of numbers.", lists),
+    ):
+        lines = "".join(f"    {name}: {kind}\n" for name, kind in keywords.items())
+        text += f'class {title}(typing.TypedDict, total=False):\n    """{meaning}"""\n\n{lines}\n'
+    quantities = ("volume", *(f"{event}_area" for event in EVENTS))
     for name, values in {"Event": EVENTS, "Hop": HOPS, "Quantity": quantities}.items():
         names, indent = "".join(f'"{value}", ' for value in values), " " * 4
         lines = fill(names, 100, initial_indent=indent, subsequent_indent=indent)

@@ -35,6 +35,7 @@ from .model.checks import AccuracyWarning as AccuracyWarning, InputError as Inpu
 
 __version__: str
 
+# Keywords and names that an editor completes; python docs/make/pages.py renews them.
 class Effects(typing.TypedDict, total=False):
     """The effects and ``discs`` as optional keywords."""
 
@@ -47,21 +48,18 @@ class Effects(typing.TypedDict, total=False):
     friction: float
     discs: int
 
-Some = float | collections.abc.Iterable[float]
-
 class Scanned(typing.TypedDict, total=False):
     """The same for ``scan``, which takes lists of numbers."""
 
-    depth: Some | None
-    radius_ratio: Some
-    mass_ratio: Some
+    depth: float | collections.abc.Iterable[float] | None
+    radius_ratio: float | collections.abc.Iterable[float]
+    mass_ratio: float | collections.abc.Iterable[float]
     periodic: str | collections.abc.Sequence[Axis]
-    field: Some
-    moment_of_inertia: Some | None
-    friction: Some
+    field: float | collections.abc.Iterable[float]
+    moment_of_inertia: float | collections.abc.Iterable[float] | None
+    friction: float | collections.abc.Iterable[float]
     discs: int | collections.abc.Iterable[int]
 
-# Names that an editor completes; python docs/make/pages.py renews them.
 Event = typing.Literal[
     "vertical_hop", "horizontal_hop", "disc_collision", "right_wall", "top_wall", "any_wall",
 ]  # fmt: skip

@@ -438,7 +438,10 @@ class Cost(Printed):
 
 @checked_call
 def cost(
-    scene: Scene, errors: float | Iterable[float] | None = None, *, shell: float = 0.02
+    scene: Scene,
+    errors: float | str | Iterable[float | str] | None = None,
+    *,
+    shell: float = 0.02,
 ) -> Cost:
     """Measure what an accuracy costs: processor times for relative errors, by each method.
 

@@ -144,7 +144,7 @@ def scan(
     duration: float | None = None,
     seed: int = 1,
     budget: float | None = None,
-    events: Event | Iterable[Event] | Iterable[str] | None = None,
+    events: Event | Iterable[Event] | list[str] | None = None,
     name: str | None = None,
     cores: int = 1,
     progress: bool | None = None,

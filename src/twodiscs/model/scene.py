@@ -41,6 +41,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Self
 
+    from twodiscs import Axis, Event
+
 #: The regimes, named by the hops that are open.
 REGIMES = ("all-hops", "vertical-hops", "horizontal-hops", "no-hops")
 
@@ -82,7 +84,7 @@ class Box:
     depth: float | None = None
     radius_ratio: float = 1.0
     mass_ratio: float = 1.0
-    periodic: str | Sequence[str] = ""
+    periodic: str | Sequence[Axis] = ""
     field: float = 0.0
     moment_of_inertia: float | None = None
     friction: float = 0.0
@@ -321,7 +323,7 @@ class Box:
         return self.radius_ratio == self.mass_ratio == 1
 
     @cached_property
-    def events(self) -> tuple[str, ...]:
+    def events(self) -> tuple[Event, ...]:
         """The ``EVENTS`` that exist in the box: hops and walls need walls along their axis.
 
         They include events that are impossible at some radii.
@@ -415,7 +417,7 @@ class Box:
             low, high = (middle, high) if fits else (low, middle)
         return high
 
-    def threshold(self, event: str) -> float | None:
+    def threshold(self, event: Event) -> float | None:
         """Return the radius from which on an event is impossible.
 
         For hops of equal discs it is w/4 (vertical) or h/4 (horizontal), unless the discs jam
@@ -686,7 +688,7 @@ class Scene(Box):
         """
         return self._geometry.multiplicity(self, event)
 
-    def is_possible(self, event: str) -> bool:
+    def is_possible(self, event: Event) -> bool:
         """Return whether an event ever happens; hops can be blocked, and a field keeps discs down.
 
         Parameters

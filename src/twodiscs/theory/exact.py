@@ -12,12 +12,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TypedDict
+from typing import TYPE_CHECKING, TypedDict
 
 from twodiscs.model.checks import check_choice
 from twodiscs.model.events import EVENTS, WALL_HITS
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.theory import clusters, n_discs, plain, weighted
+
+if TYPE_CHECKING:
+    from twodiscs import Event
 
 
 class Exact(TypedDict):
@@ -92,7 +95,7 @@ def areas(scene: Scene) -> dict[str, float]:
     return dict(find_theory(scene).areas(scene))
 
 
-def rate(scene: Scene, event: str) -> float:
+def rate(scene: Scene, event: Event) -> float:
     """Return the mean number of an event per unit of time, over all initial conditions.
 
     This is the mean over the whole configuration space. If disc 1 reaches the right (top) wall from
