@@ -27,6 +27,7 @@ import twodiscs
 from twodiscs import cli
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.figures.scene_figures import FIGURES
+from twodiscs.measure.measurements import STATUSES
 from twodiscs.points.base import restore_arrays
 from twodiscs.points.dynamics_point import DynamicsPoint
 from twodiscs_paper.configuration import yaml_files
@@ -141,6 +142,10 @@ def test_citation_agrees_with_the_package():
     for name in ("title", "version", "license", "keywords"):
         assert deposit[name] == citation[name]
     assert deposit["creators"] == citation["authors"]
+
+
+def test_the_glossary_has_every_status():
+    assert [one for one in STATUSES if f"`{one}`" not in page("docs/glossary.md")] == []
 
 
 def test_what_pages_repeat_of_declarations_is_up_to_date():

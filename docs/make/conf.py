@@ -28,7 +28,8 @@ exclude_patterns = [".*", "build", "src", "tests", "workflow", "results/[!R]*"]
 
 html_theme = "furo"
 html_title = f"{project} {release}"
-html_css_files = html_static_path = ["site.css"]
+html_css_files, html_js_files = ["site.css"], [("site.js", {"defer": "defer"})]
+html_static_path = ["site.css", "site.js"]
 html_copy_source = False
 html_math_renderer = "mathml"
 pygments_dark_style = "monokai"

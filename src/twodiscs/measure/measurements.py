@@ -28,6 +28,7 @@ from twodiscs.model.checks import (
     THINNEST_SHELL,
     AccuracyWarning,
     InputError,
+    check_choice,
     check_count,
     check_error,
     check_fraction,
@@ -48,6 +49,12 @@ if TYPE_CHECKING:
 
 #: The columns that people read.
 COLUMNS = ("quantity", "estimate", "± error", "exact", "unit", "z", "count", "status")
+
+#: How a measurement ends; docs/glossary.md says what each word means.
+STATUSES = (
+    *("reached", "budget", "sampled", "counted", "too-few", "none-seen", "impossible"),
+    *("exact", "derived", "extrapolated", "not-resolved"),
+)
 
 
 @dataclass(frozen=True)
@@ -76,8 +83,7 @@ class Measurement(Immutable):
     count : int
         The number of events, or hits.
     status : str
-        As in the tables; "derived" for a pressure or free energy, "too-few" if there is no error,
-        see Notes.
+        How the measurement ended, a word of the glossary; "too-few" if it has no error, see Notes.
     unit : str
         The unit of value, stderr, exact, expectation and bound.
     expectation : float, optional
@@ -125,6 +131,7 @@ class Measurement(Immutable):
     source: Measurements | UFloat | None = field(default=None, compare=False)
 
     def __post_init__(self):
+        check_choice("status", self.status, STATUSES)
         if self.value is None or self.exact is None:
             # The tables then have z = 0 if no event was expected, which compares nothing.
             object.__setattr__(self, "z", None)
@@ -393,7 +400,7 @@ def simulate(
     Work comes in whole blocks of 1024 trajectories, 2.4e5 events each for a radius of 0.2 in a box
     of 1.5 × 1. Without a ``duration`` the minimum is 32 blocks, 7.7e6 events there, or fewer within
     the ``budget``, but at least one block. If this is more than asked for, the ``note`` of the
-    result says so. For quick results with many discs give ``budget=1e6``.
+    result has the number. For quick results with many discs give ``budget=1e6``.
 
     Parameters
     ----------

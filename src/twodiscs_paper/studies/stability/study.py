@@ -66,7 +66,7 @@ class StabilityTable(Table):
 
 
 class CalibrationTable(Table):
-    """One row per scene, call, size and quantity: what errors say, counted over seeds."""
+    """One row per scene, call, size and quantity: the scatter over seeds beside the printed errors."""
 
     columns = {
         "case": TEXT("the scene, by its name in ``calibration.SCENES``; of a study the kind"),
@@ -146,7 +146,7 @@ STUDY = Study(
             tables=("stability",),
         ),
         "calibration": Figure(
-            "Error bars, counted",
+            "Error bars, tested",
             "5 Numerical stability",
             """
             Mean square of scores over seeds, for each quantity with an error, of each call in each
