@@ -30,6 +30,7 @@ from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.measure.measurements import STATUSES
 from twodiscs.points.base import restore_arrays
 from twodiscs.points.dynamics_point import DynamicsPoint
+from twodiscs_paper.catalogue import TABLES
 from twodiscs_paper.configuration import yaml_files
 from twodiscs_paper.configuration.yaml_files import read
 from twodiscs_paper.pipeline import job_cost
@@ -335,6 +336,8 @@ def test_table_of_agreement_is_that_of_the_expected_results():
     assert shown.splitlines() == found
     events = found[0].split("|")[-2].strip()
     assert f"| `paper` | 3e-4 | {events} |" in page("docs/accuracy-and-cost.md")
+    effects = [abs(row["z"]) for row in TABLES["effects"].read(EXPECTED / "effects.csv") if row["z"]]
+    assert f"largest |z| of the mean times is {max(effects):.3g}." in page("docs/results.md")
 
 
 # Configurations -----------------------------------------------------------------------------------

@@ -6,7 +6,7 @@
     td.mean_times(scene)["vertical_hop_time"]     # exact
     td.simulate(scene, error=1e-3, seed=1)        # by molecular dynamics, with errors, beside it
 
-Lengths are in any one unit. Disc 1 has mass 1 and the total energy is 1/2, so times are lengths
+Use any unit of length. Mass 1 of disc 1 and a total energy of 1/2 set the speed to 1, so a time
 over a speed of 1. A wrong argument raises an ``InputError``, a ``ValueError``, with one sentence.
 
 A scene and the amount of work may be positional arguments, all others are keywords:
