@@ -336,7 +336,9 @@ def test_table_of_agreement_is_that_of_the_expected_results():
     assert shown.splitlines() == found
     events = found[0].split("|")[-2].strip()
     assert f"| `paper` | 3e-4 | {events} |" in page("docs/accuracy-and-cost.md")
-    effects = [abs(row["z"]) for row in TABLES["effects"].read(EXPECTED / "effects.csv") if row["z"]]
+    effects = [
+        abs(row["z"]) for row in TABLES["effects"].read(EXPECTED / "effects.csv") if row["z"]
+    ]
     assert f"largest |z| of the mean times is {max(effects):.3g}." in page("docs/results.md")
 
 

@@ -7,7 +7,8 @@
     td.simulate(scene, error=1e-3, seed=1)        # by molecular dynamics, with errors, beside it
 
 Use any unit of length. Mass 1 of disc 1 and a total energy of 1/2 set the speed to 1, so a time
-over a speed of 1. A wrong argument raises an ``InputError``, a ``ValueError``, with one sentence.
+has the same number as a length. A wrong argument raises an ``InputError``, a ``ValueError``, with
+one sentence.
 
 A scene and the amount of work may be positional arguments, all others are keywords:
 ``td.sample(scene, 1e6, seed=7)``. A quantity has one name, in print, as a key and as a column:

@@ -17,8 +17,8 @@ NEW = """\
 # RUN tails       a study; twodiscs run --help lists all targets
 # RUN all         the report, with the origin of every file
 
-# Lengths are in any one unit. Disc 1 has mass 1 and the total energy is 1/2, so times are lengths
-# over a speed of one.
+# Use any unit of length. Mass 1 of disc 1 and a total energy of 1/2 set the speed to 1, so a time
+# has the same number as a length.
 
 results: FOLDER # the folder of everything that is built
 # Another seed repeats every simulation independently.

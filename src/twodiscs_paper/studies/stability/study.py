@@ -66,7 +66,7 @@ class StabilityTable(Table):
 
 
 class CalibrationTable(Table):
-    """One row per scene, call, size and quantity: the scatter over seeds beside the printed errors."""
+    """One row per scene, call, size and quantity: scatter over seeds beside printed errors."""
 
     columns = {
         "case": TEXT("the scene, by its name in ``calibration.SCENES``; of a study the kind"),
