@@ -30,6 +30,7 @@ from twodiscs_paper.studies.passages import figure_diffusion as diffusion
 from twodiscs_paper.studies.passages import figure_files as files
 from twodiscs_paper.studies.passages import figure_friction as friction
 from twodiscs_paper.studies.passages import figure_transmission as transmission
+from twodiscs_paper.studies.passages.parts import with_friction
 from twodiscs_paper.studies.stability import figure_calibration
 from twodiscs_paper.studies.stability.figure_runs import rounded
 from twodiscs_paper.studies.tails import figure as tails
@@ -315,7 +316,11 @@ def test_the_laws_of_passages_with_friction_are_one_and_three_quarters_over_x():
     (row,) = select(long_run("passages"), quantity="scaling_constant")
     lines = {line.get_label(): line for line in drawn("friction")["kappa"].lines}
     x, kappa = lines[friction.FORMULA].get_data()
-    np.testing.assert_allclose(1 / kappa, 4 * x / 3 + 1 / (1 + row["estimate"] * x), rtol=1e-12)
+    due = 4 * x / 3 + 1 / (1 + row["estimate"] * x + with_friction.SECOND * x**2)
+    np.testing.assert_allclose(1 / kappa, due, rtol=1e-12)
+    limit = select(long_run("passages"), method="limit", quantity="coefficient")
+    due = {(row["friction"], row["estimate"]) for row in limit}
+    assert points(drawn("friction")["kappa"], style.BLACK, "x") == due
 
 
 def test_residuals_are_those_of_the_table():

@@ -18,7 +18,12 @@ from twodiscs_paper.pipeline.results.verify import long_run_tables
 from twodiscs_paper.studies.more_discs import tori
 from twodiscs_paper.studies.more_discs.study import ToriTable
 from twodiscs_paper.studies.passages import brownian, measure
-from twodiscs_paper.studies.passages.parts import long_files, long_run
+from twodiscs_paper.studies.passages.parts import (
+    in_the_limit,
+    long_files,
+    long_run,
+    with_friction,
+)
 from twodiscs_paper.studies.passages.study import BrownianTable, PassagesTable
 from twodiscs_paper.studies.tails import measure as tails
 from twodiscs_paper.studies.tails.study import TailsTable
@@ -84,7 +89,7 @@ def test_a_table_is_that_of_its_counts(name):
 )
 def test_the_parameters_of_a_long_run_are_those_of_a_part(name, table, monkeypatch):
     configuration, *_ = kept(name, table)
-    monkeypatch.setitem(measure.PARTS, "long_run", lambda thresholds: (thresholds,))
+    monkeypatch.setitem(measure.PARTS, "long_run", lambda thresholds, limit: (thresholds, limit))
     monkeypatch.setattr(tails, "long_run", lambda *given: given)
     for module in (brownian, tori):
         monkeypatch.setattr(module, "counted", lambda *given: given)
@@ -207,6 +212,21 @@ def test_rejected_steps_have_their_law_without_a_parameter():
     for program, power in (("together", -3.5), ("confined", -3.5), ("singly", -2.5)):
         near, far = (brownian.diffusive(2**-16, 2**-n, program) * 4**-n for n in (24, 22))
         assert math.log(near / far) / math.log(4) == pytest.approx(power, abs=0.02)
+
+
+def test_kicks_in_a_narrow_neck_have_the_law_of_friction():
+    """A short run agrees with the long one, and both with the law within half a per cent."""
+    configuration, rows, _ = kept("passages", PassagesTable)
+    found = of(rows, method="limit", quantity="coefficient")
+    assert [row["friction"] for row in found] == configuration["limit"]["scaled"]
+    assert all(abs(row["estimate"] / row["reference"] - 1) < 0.005 for row in found)
+    assert all(row["stderr"] < 0.002 * row["estimate"] for row in found)
+    (second,) = of(rows, quantity="scaling_second")
+    assert abs(second["estimate"] - with_friction.SECOND) < second["stderr"]
+    counts = in_the_limit.kicked_counts([0.3, 1.0], 8, 5)
+    for row in [*in_the_limit.kicked_rows([0.3, 1.0], counts)][:2]:
+        (long,) = of(found, friction=row["friction"])
+        assert deviation(row, long) < 5
 
 
 def test_a_small_run_counts_every_hop_once():

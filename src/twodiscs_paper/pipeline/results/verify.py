@@ -154,8 +154,9 @@ def long_run_tables(folder):
     job = STAGES["dynamics"], far.box.scene(far.radii[0]), far.arguments("dynamics")
     point = read_point(folder / "far/dynamics.json", *job)
     yield folder / "far/mean_times.csv", MeanTimesTable, MeanTimesTable.rows([point])
-    given = yaml_files.read(folder / "passages/config.yaml")["thresholds"]
-    rows = long_run.long_run_rows(given, read_json(folder / "passages/clusters.json"))
+    given = yaml_files.read(folder / "passages/config.yaml")
+    given = given["thresholds"], given["limit"]
+    rows = long_run.long_run_rows(*given, read_json(folder / "passages/clusters.json"))
     yield folder / "passages/passages.csv", PassagesTable, rows
     given = yaml_files.read(folder / "files/config.yaml")
     counts = zip(given["files"], read_json(folder / "files/counts.json")["files"], strict=True)

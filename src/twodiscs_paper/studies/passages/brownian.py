@@ -24,7 +24,7 @@ from twodiscs.model.seeds import stream_seed
 from twodiscs.points.estimates import Estimate
 from twodiscs_paper.studies.estimates import LinearFit
 from twodiscs_paper.studies.passages.models import brownian_steps
-from twodiscs_paper.studies.passages.near import compared
+from twodiscs_paper.studies.passages.near import compared, dense, sparse
 from twodiscs_paper.study import row
 
 #: {program: its number in ``models.brownian``}.
@@ -152,8 +152,7 @@ def crossing_counts(seed, program, step, halvings, crossings):
         PROGRAMS[program], step, 2.0**-halvings, HALF, stream, 0,
         -(-crossings // brownian_steps.CROSSINGS),
     )  # fmt: skip
-    pairs = [[n, int(number)] for n, number in enumerate(sizes) if number]
-    return {"tried": int(tried), "steps": int(steps), "sizes": pairs}
+    return {"tried": int(tried), "steps": int(steps), "sizes": sparse(sizes)}
 
 
 def passage_counts(seed, program, step, halvings, pairs):
@@ -192,9 +191,7 @@ def joined(counts):
 
 def crossing_estimates(point, counts):
     """Return {quantity: ``Estimate``} from the ``counts`` of random crossings at a ``point``."""
-    sizes = np.zeros(brownian_steps.LARGEST_CLUSTER + 2, np.int64)
-    for n, number in counts["sizes"]:
-        sizes[n] = number
+    sizes = dense(counts["sizes"], brownian_steps.LARGEST_CLUSTER + 2)
     number = int(sizes.sum())
     kappa, found = cluster_coefficient(sizes), {}
     if point["program"] in REJECTING:

@@ -20,7 +20,7 @@ LOOKS = dict(zip(KICKED, SERIES, strict=True))
 SHOWN = (0.015, 45)
 
 #: The law with the exact slope at 0.
-FORMULA = r"$1/\kappa=4x/3+1/(1+bx)$"
+FORMULA = r"$1/\kappa=4x/3+1/(1+bx+cx^2)$"
 
 #: κ x for large x and smooth discs between walls, see docs/passages.md.
 DIFFUSIVE = 3 / 4
@@ -51,6 +51,8 @@ def draw(box, tables):
                 points(
                     lower, np.sqrt(scaled(steps) * scaled(before)), value, error, look, None, filled
                 )
+    limit = columns(select(kept, method="limit", quantity="coefficient"), "friction", "estimate")
+    upper.plot(*limit, "x", color=BLACK, markersize=4, label="limit of a narrow neck", zorder=6)
     x = np.geomspace(*SHOWN, 60)
     upper.plot(x, scaling_law(x), color=BLACK, lw=0.8, label=FORMULA, zorder=5)
     style = {"color": BLACK, "lw": 0.8, "ls": (0, (4, 2)), "zorder": 5}

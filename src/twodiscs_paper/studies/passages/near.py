@@ -137,6 +137,19 @@ def hop_cells(name, scene, hop, distance):
     }
 
 
+def sparse(sizes):
+    """Return pairs [n, number] of the ``sizes`` of clusters that are not zero, for JSON."""
+    return [[n, int(number)] for n, number in enumerate(sizes) if number]
+
+
+def dense(pairs, of):
+    """Return the array of ``of`` sizes from the pairs of ``sparse``."""
+    sizes = np.zeros(of, np.int64)
+    for n, number in pairs:
+        sizes[n] = number
+    return sizes
+
+
 def passing_rate(scene, hop):
     """Return the rate at which the discs pass each other in a ``hop``, in both directions together.
 

@@ -12,7 +12,7 @@ from twodiscs.analysis.columns import (
     Table,
     Z,
 )
-from twodiscs.figures.scene_figures import DYNAMICS, Caption, Figure
+from twodiscs.figures.scene_figures import DYNAMICS, Figure
 from twodiscs.model.events import HOPS
 from twodiscs_paper.study import AS_ESTIMATE, Study, scaled
 
@@ -45,7 +45,8 @@ class PassagesTable(Table):
         "friction": Column(
             float,
             "1/time",
-            "rate γ of kicks, at which all velocities are drawn anew; empty without friction",
+            "rate γ of kicks, at which all velocities are drawn anew; empty without friction; by "
+            "the method limit x = γ√(εσ)",
         ),
         "exact_mean": TIME("exact mean time τ between hops, in both directions together"),
         "quantity": TEXT(
@@ -60,7 +61,8 @@ class PassagesTable(Table):
             "with friction, from this distance and the one before, without the regular factor of "
             "τ: −2 + |d ln κ/d ln x|/2, or −5/2 in place of −2 in a pore; scaled_coefficient: κ x, "
             "x = γ√(εσ); scaling_constant: b "
-            "of 1/κ = x/c + 1/(1 + b x), with the limit c of κ x, derived; "
+            "of 1/κ = x/k + 1/(1 + b x + c x²), with the limit k of κ x, derived; scaling_second: "
+            "c, fitted to κ of the limit; "
             "scaling_chi2: its χ²; scaling_deviation: the largest κ over it, less one; rate: hops "
             "per time, of both of two discs, or of each of more discs; diffusion: D/(ν ℓ²) with "
             "ν hops of a disc per time in either direction, each by ℓ; "
@@ -88,7 +90,8 @@ class PassagesTable(Table):
         ),
         "reference": AS_ESTIMATE(
             "expected value: exact, or by the other method; for more than two discs by Monte "
-            "Carlo; of κ x the limit for large x, of discs that diffuse along the channel"
+            "Carlo; of κ x the limit for large x, of discs that diffuse along the channel; of κ of "
+            "the limit with friction the law of x"
         ),
         "reference_stderr": AS_ESTIMATE(
             "standard error of the reference; empty if the reference is exact"
@@ -224,102 +227,80 @@ STUDY = Study(
         "passages": Figure(
             "Hops that are passages",
             DYNAMICS,
-            Caption(
-                """
-                Hops near the radius r_c at which they become blocked, at distances δ = (r_c −
-                r)/r_c that are halved from one to the next. (a) Transmission coefficient κ(t): the
-                correlation between the order of the discs at a time t after a hop and the direction
-                of the hop. It is averaged over states on the surface of the hop, for smooth discs
-                (circles) and rough ones (squares). κ(t) starts with the exact slope −2p(0⁺)
-                (dashed, in the limit δ → 0). If hops are rare it has a plateau, which falls as
-                passages follow one another (lines). There κ is the fraction of odd clusters among
-                all hops, from independent or long runs. (b) Exact mean time τ between hops (lines,
-                ∝ δ⁻² close to the threshold) and mean time τ/κ between passages (symbols). Error
-                bars are one standard error.
-                """
-            ),
+            """
+            Hops near the radius r_c at which they become blocked, at distances δ = (r_c − r)/r_c.
+            (a) Transmission coefficient κ(t): the correlation between the order of the discs at a
+            time t after a hop and the direction of the hop, for smooth discs (circles) and rough
+            ones (squares). It starts with the exact slope −2p(0⁺) (dashed, in the limit δ → 0). If
+            hops are rare it has a plateau, which falls as passages follow one another (lines: by κ
+            from clusters). (b) Exact mean time τ between hops (lines) and mean time τ/κ between
+            passages (symbols). Error bars are one standard error.
+            """,
             tables=("passages",),
             long_runs={"kept": "paper/long_run/passages/passages.csv"},
         ),
         "transmission": Figure(
             "Passages near the threshold",
             DYNAMICS,
-            Caption(
-                """
-                Transmission coefficient κ near the radius r_c at which hops become blocked, w/4 or
-                h/4, at distances δ = (r_c − r)/r_c. (a) Smooth discs: 1 − κ, multiplied by the
-                range A along the hop and divided by ∛(εσ²), with σ = 2r and the room ε that the
-                discs leave in the neck. Full symbols are long runs. The star is the limit c for δ →
-                0, which is computed in that limit. The correction to it is of the relative order of
-                δ to the power 1/6, so that a straight line leads to it; the slope of the grey line
-                is fitted to the long run at h/4, from 2⁻¹² on. (b) Rough discs: κ falls, with local
-                exponents that depend on their moment of inertia I, in units of mr². Powers in the
-                legend are fitted to the last distances. (c), (d) Residuals z in standard errors: of
-                the slope of κ(t) at 0 from its exact value, and between two estimators of κ. Error
-                bars are one standard error.
-                """
-            ),
+            """
+            Transmission coefficient κ near the radius r_c at which hops become blocked, at
+            distances δ = (r_c − r)/r_c. (a) Smooth discs: 1 − κ over ∛(εσ²)/A, with the range A
+            along the hop, σ = 2r and the room ε that the discs leave in the neck. Full symbols are
+            long runs. The star is the limit c, computed for δ → 0. The grey line is fitted to the
+            long run at h/4, from 2⁻¹² on. (b) Rough discs, with moments of inertia I in units of
+            mr². Powers in the legend are fitted to the last distances. (c), (d) Residuals z in
+            standard errors: of the slope of κ(t) at 0 from its exact value, and between two
+            estimators of κ. Error bars are one standard error.
+            """,
             tables=("passages",),
             long_runs={"kept": "paper/long_run/passages/passages.csv"},
         ),
         "friction": Figure(
             "Passages with friction",
             DYNAMICS,
-            Caption(
-                """
-                Passages with friction: all velocities are drawn anew at random times of the rate γ.
-                (a) The fraction κ of hops that are passages, near the radius r_c = h/4 at which
-                hops become blocked. The abscissa is x = γ√(εσ), with the room ε = h − 4r that the
-                discs leave in the neck and σ = 2r. Dashed: the limits of ballistic discs, 1, and of
-                discs that diffuse through the neck, 3/(4x). Line: 1/κ = 4x/3 + 1/(1 + bx), with b
-                = 4/3 − √2π/5. (b) The local power of the distance r_c − r with which the
-                time τ/κ between passages grows, from one distance to the next. Dashed: the powers
-                of a pair that diffuses through the neck, and of one that crosses it in one flight.
-                Full symbols are a long run. Error bars are one standard error.
-                """
-            ),
+            """
+            Passages with friction: all velocities are drawn anew at random times of the rate γ. (a)
+            The fraction κ of hops that are passages, near the radius r_c = h/4. The abscissa is x =
+            γ√(εσ), with the room ε = h − 4r that the discs leave in the neck and σ = 2r. Crosses
+            are the limit of a narrow neck. Dashed: 1 of one flight, and 3/(4x) of diffusion. Line:
+            1/κ = 4x/3 + 1/(1 + bx + cx²), with b = 4/3 − √2π/5 and c = 0.055. (b) The local power
+            of the distance r_c − r with which the time τ/κ between passages grows. Dashed: the
+            powers of diffusion and of one flight. Full symbols are a long run. Error bars are one
+            standard error.
+            """,
             tables=("passages",),
             long_runs={"kept": "paper/long_run/passages/passages.csv"},
         ),
         "brownian": Figure(
             "Passages in Brownian dynamics",
             DYNAMICS,
-            Caption(
-                """
-                Passages of two discs in Brownian dynamics, in a channel of the height 2σ + ε that
-                is closed to a ring of the length 3σ. In a step each coordinate of a free disc moves
-                by a normal deviate of the standard deviation s. The abscissa is the length √(εσ) of
-                the neck over s. Reflected discs fly through the step and collide elastically. Steps
-                of both discs or of one disc are rejected if the discs overlap; walls reflect them,
-                or reject them too. (a) κ, the rate of passages over the rate of crossings in
-                transition state theory. Open symbols follow random crossings in both directions of
-                time, dots are first passages. Dashed: 1, and √(2/π) s/√(εσ) of a separation that
-                diffuses. (b) The local power of ε with which the mean time between passages grows,
-                divided by the volume of the allowed positions. Dashed: −3/2 of diffusion and −2 of
-                transition state theory, −5/2 and −7/2 of rejected moves of one disc and of both,
-                and 0 of a time that stays finite. Lines: the law of rejected moves, without a free
-                parameter, for necks of four steps or more. Error bars are one standard error. All
-                symbols are from a long run.
-                """
-            ),
+            """
+            Two discs in Brownian dynamics, in a channel of the height 2σ + ε that is closed to a
+            ring of the length 3σ. In a step a coordinate of a free disc moves by a normal deviate
+            of the standard deviation s. The abscissa is the length √(εσ) of the neck over s.
+            Reflected discs fly through the step and collide elastically. Steps of both discs or of
+            one are rejected if the discs overlap; walls reflect them, or reject them too. (a) κ,
+            the rate of passages over that of crossings in transition state theory: by crossings
+            that are followed both ways (open), and by first passages (dots). Dashed: 1, and √(2/π)
+            s/√(εσ) of diffusion. (b) The local power of ε with which the mean time between passages
+            over the volume grows. Dashed: −3/2 of diffusion, −2 of flight, −5/2 and −7/2 of
+            rejected moves of one disc and of both, and 0 of a time that stays finite. Lines: the
+            law of rejected moves, without a parameter. Error bars are one standard error.
+            """,
             long_runs={"brownian": "paper/long_run/brownian/brownian.csv"},
         ),
         "diffusion": Figure(
             "Diffusion by hops",
             DYNAMICS,
-            Caption(
-                """
-                Coefficient D of diffusion on a ring, divided by its value for a random walk with ν
-                hops of a disc per time in either direction, each by ℓ (dashed), at distances δ =
-                (r_c − r)/r_c from the radius r_c at which hops become blocked. (a) Two discs, by
-                correlations of hops (open symbols) and by displacements (full symbols). (b) Single
-                files in long runs, by the order of the discs: of four and eight discs (full
-                symbols), and long ones (open symbols). With friction, all velocities are drawn anew
-                at random times. (c) Residuals z in standard errors, from the exact rate, between
-                two estimators, or of F in ⟨x²⟩ = F√t from theory. Error bars are one standard
-                error.
-                """
-            ),
+            """
+            Coefficient D of diffusion on a ring over that of a random walk with ν hops of a disc
+            per time in either direction, each by ℓ (dashed), at distances δ = (r_c − r)/r_c from
+            the radius r_c at which hops become blocked. (a) Two discs, by correlations of hops
+            (open symbols) and by displacements (full symbols). (b) Single files in long runs, by
+            the order of the discs: of four and eight discs (full symbols), and long ones (open
+            symbols). (c) Residuals z in standard errors, from the exact rate, between two
+            estimators, or of F in ⟨x²⟩ = F√t from theory. Error bars are one standard error.
+            """,
             tables=("passages",),
             long_runs={
                 name: f"paper/long_run/{name}/passages.csv" for name in ("files", "displacements")
@@ -328,21 +309,16 @@ STUDY = Study(
         "files": Figure(
             "Displacements in single files",
             DYNAMICS,
-            Caption(
-                """
-                Mean square displacement of a tagged disc in a long single file on a ring. (a)
-                Single files that are blocked (r = 0.28 h, full symbols) and open (δ = 1/8, open
-                symbols), in units of ℓ², the height h and the thermal speed. Black lines are the
-                theory of blocked ones at long times, without a free parameter: sound in that of
-                smooth discs, damped sound with friction. The line of smooth discs ends when sound
-                has gone around half of the ring, because from then on it brings the discs back.
-                Rough discs (I = 1/2) lose their momentum to the walls, and have no such line.
-                Dashes are measured too: the motion of the places plus the steps of the discs from
-                place to place. (b) Open single files with friction: displacements in units of F√t×,
-                at times over t× = (F/2D)², where single file and hops contribute equally. Error
-                bars are one standard error.
-                """
-            ),
+            """
+            Mean square displacement of a tagged disc in a long single file on a ring. (a) Files
+            that are blocked (r = 0.28 h, full symbols) and open (δ = 1/8, open symbols), in units
+            of ℓ², h and the thermal speed. Black lines are the theory of blocked ones, without a
+            free parameter: sound of smooth discs, until it has gone around half of the ring, and
+            damped sound with friction. Rough discs (I = 1/2) have no such line. Dashes are measured
+            too: the motion of the places plus the steps of the discs from place to place. (b) Open
+            files with friction: displacements in units of F√t×, at times over t× = (F/2D)², where
+            single file and hops contribute equally. Error bars are one standard error.
+            """,
             long_runs={"displacements": "paper/long_run/displacements/passages.csv"},
         ),
     },

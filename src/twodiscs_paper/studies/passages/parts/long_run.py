@@ -1,10 +1,9 @@
 """A long run of κ by clusters, at distances that no build goes down to."""
 
-import numpy as np
-
 from twodiscs.dynamics.two.hop_clusters import HOPS_PER_BLOCK, cluster_sizes
 from twodiscs.model.scene import Box
-from twodiscs_paper.studies.passages.near import NearThreshold, scene_at
+from twodiscs_paper.studies.passages.near import NearThreshold, dense, scene_at, sparse
+from twodiscs_paper.studies.passages.parts.in_the_limit import kicked_counts, kicked_rows
 from twodiscs_paper.studies.passages.parts.with_friction import (
     cluster_pause,
     local_exponents,
@@ -37,8 +36,7 @@ def cluster_counts(one):
     found, blocks = [], -(-one["hops"] // HOPS_PER_BLOCK)
     for near, gap in long_run_thresholds(one):
         sizes, events = cluster_sizes(near.scene, near.hop, gap, blocks, near.cluster_seed)
-        pairs = [[n, int(hops)] for n, hops in enumerate(sizes) if hops]
-        found.append({"events": int(events), "of": len(sizes), "sizes": pairs})
+        found.append({"events": int(events), "of": len(sizes), "sizes": sparse(sizes)})
     return found
 
 
@@ -46,9 +44,7 @@ def cluster_rows(one, counts):
     """Return the rows of passages.csv on a threshold ``one`` from its ``cluster_counts``."""
     measured, found = [], []
     for (near, gap), count in zip(long_run_thresholds(one), counts, strict=True):
-        sizes = np.zeros(count["of"], np.int64)
-        for n, hops in count["sizes"]:
-            sizes[n] = hops
+        sizes = dense(count["sizes"], count["of"])
         kappa, own = near.cluster_rows(sizes, count["events"], gap)
         measured.append((near, kappa))
         found += own
@@ -60,12 +56,16 @@ def cluster_rows(one, counts):
     return [*found, *fits(found), *law]
 
 
-def long_run(thresholds):
-    """Return the rows of many hops at ``thresholds``, at distances that no build goes down to."""
-    return long_run_rows(thresholds, {one["name"]: cluster_counts(one) for one in thresholds})
+def long_run(thresholds, limit):
+    """Return the rows of many hops at ``thresholds``, at distances that no build goes down to.
+
+    The last rows are of κ with kicks in the ``limit``, the parameters of ``kicked_counts``.
+    """
+    counts = {one["name"]: cluster_counts(one) for one in thresholds}
+    return long_run_rows(thresholds, limit, counts | {"limit": kicked_counts(**limit)})
 
 
-def long_run_rows(thresholds, counts):
-    """Return the rows of passages.csv on ``thresholds`` from {name: its ``cluster_counts``}."""
+def long_run_rows(thresholds, limit, counts):
+    """Return the rows of passages.csv of a ``long_run`` from {name of a threshold: its counts}."""
     found = [row for one in thresholds for row in cluster_rows(one, counts[one["name"]])]
-    return [*found, *scaling_fits(found)]
+    return [*found, *scaling_fits(found), *kicked_rows(limit["scaled"], counts["limit"])]

@@ -37,6 +37,9 @@ LONG_NECK = 5
 #: probability. So 1 − κ = 4γ∫₀^∞ λ² P² du/⟨|u̇|⟩ = √2π x/5.
 B = 4 / 3 - math.sqrt(2) * math.pi / 5
 
+#: The next coefficient of ``scaling_law``, as κ of the limit has it: "scaling_second" of the table.
+SECOND = 0.055
+
 
 def one_friction(name, box, friction, halvings, events, seed):
     """Yield the rows of discs with ``friction`` at distances below h/4, the largest one first."""
@@ -98,11 +101,11 @@ def local_exponents(measured):
 
 
 def scaling_law(x, limit=3 / 4):
-    """Return κ of a scaled friction x: 1/κ = x/``limit`` + 1/(1 + b x), with b of ``B``.
+    """Return κ of a scaled friction x: 1/κ = x/``limit`` + 1/(1 + b x + c x²), with b of ``B``.
 
     It is 1 for small x with the exact slope, and ``limit``/x for large x, which diffusion has.
     """
-    return 1 / (x / limit + 1 / (1 + B * x))
+    return 1 / (x / limit + 1 / (1 + B * x + SECOND * x**2))
 
 
 def scaling_fits(rows):
