@@ -25,7 +25,7 @@ from twodiscs.analysis.tables import (
 )
 from twodiscs.figures.scene_figures import ANIMATION, GEOMETRY
 from twodiscs.measure.measurements import measurement
-from twodiscs.model.formats import format_number, format_seconds
+from twodiscs.model.formats import format_seconds
 from twodiscs.model.scene import Box
 from twodiscs_paper.catalogue import ALL_FIGURES
 from twodiscs_paper.pipeline.job_cost import missed, taken
@@ -53,6 +53,9 @@ DENSITY = 2
 
 #: The form of a symbol with a subscript in a caption: r_c.
 SUBSCRIPT = re.compile(r"\b([A-Za-z])_(\w+)\b")
+
+#: A number as Python prints it.
+NUMBER = re.compile(r"(?P<digits>[-+]?[\d.]+)(?:e(?P<exponent>[-+]?\d+))?")
 
 #: The first sentence of a caption: its full stop is no decimal point.
 SENTENCE = re.compile(r".*?\.(?= [A-Z(]|$)|.+", re.DOTALL)
@@ -240,7 +243,7 @@ def contents(folder, files, scenes, run):
         "accuracies": {
             scene["name"]: rows for scene in scenes if (rows := accuracies(folder, scene))
         },
-        "errors": [format_number(error, "g") for error in ERRORS],
+        "errors": ERRORS,
         "missed": [line for scene in scenes for line in missed(folder, scene)],
         "agreements": [agreed for scene in scenes if (agreed := agreement(folder, scene))],
         "commit": commit(Path(__file__).parent),
@@ -252,12 +255,25 @@ def contents(folder, files, scenes, run):
     }
 
 
+def typeset(text):
+    """Return a text as HTML, a number with a minus sign and a power of ten: −4.4 × 10⁻⁵."""
+    if not (found := NUMBER.fullmatch(text)):
+        return text
+    digits, exponent = found["digits"].replace("-", "−"), found["exponent"]
+    if exponent is None:
+        return digits
+    power = Markup(f"10<sup>{str(int(exponent)).replace('-', '−')}</sup>")
+    return power if digits == "1" else f"{digits} × " + power
+
+
 def short(number):
-    """Return a number, to two digits if it is large, as HTML: 4.4 × 10¹⁰."""
-    if number < 1000:
-        return str(number)
-    digits, exponent = f"{number:.1e}".split("e")
-    return Markup(f"{digits} × 10<sup>{int(exponent)}</sup>")
+    """Return a number of events as HTML, to two digits if it is large."""
+    return str(number) if number < 1000 else typeset(f"{number:.1e}")
+
+
+def relative_error(error):
+    """Return a relative error as HTML, to two digits; None is a dash."""
+    return "–" if error is None else typeset(f"{error:.1e}".replace(".0e", "e"))
 
 
 def page(template, shown):
@@ -268,6 +284,6 @@ def page(template, shown):
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     environment.filters["short"] = short
-    environment.filters["error"] = lambda x: "–" if x is None else format_number(x, ".2g")
+    environment.filters |= {"error": relative_error, "typeset": typeset}
     environment.filters["three_digits"] = lambda x: f"{x:.3g}"  # as in check.passed
     return environment.from_string(template).render(shown)
