@@ -59,12 +59,13 @@ class Page:
         letters = iter(lambda: self.process.stdout.read(1), b"")
         return json.loads(b"".join(takewhile(b"\0".__ne__, letters)))
 
-    def open(self, address, width=1280, height=1000, reduced=False):
-        """Go to an address, in a window of some pixels, with motion maybe reduced."""
+    def open(self, address, width=1280, height=1000, reduced=False, scheme="light"):
+        """Go to an address, in a window of some pixels and a scheme, with motion maybe reduced."""
         size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
         self.call("Emulation.setDeviceMetricsOverride", **size)
-        motion = {"name": "prefers-reduced-motion", "value": "reduce" if reduced else ""}
-        self.call("Emulation.setEmulatedMedia", features=[motion])
+        media = {"reduced-motion": "reduce" if reduced else "", "color-scheme": scheme}
+        features = [{"name": f"prefers-{name}", "value": value} for name, value in media.items()]
+        self.call("Emulation.setEmulatedMedia", features=features)
         for place in ("about:blank", address):
             self.call("Page.navigate", url=place)
         self.until("document.readyState === 'complete'")
@@ -78,11 +79,11 @@ class Page:
         return answer["result"].get("value")
 
     def violations(self):
-        """Return what axe-core finds on the page: [[rule, impact, first element], …]."""
+        """Return what axe-core finds on the page, without frames: [[rule, impact, element], …]."""
         axe = Path(axe_core_python.__file__).with_name("axe.min.js").read_text(encoding="utf-8")
         self.look(f"{axe}; 1")
         found = "violations.map(one => [one.id, one.impact, one.nodes[0].html])"
-        return self.look(f"axe.run().then(result => result.{found})")
+        return self.look(f"axe.run({{iframes: false}}).then(result => result.{found})")
 
     def until(self, condition, milliseconds=60000):
         """Wait until an expression is true; raise ``AssertionError`` after so long."""

@@ -6,9 +6,11 @@ Without these tests links could be dead, entries without a place, and lines of t
 import re
 import subprocess
 import sys
+from itertools import product
 
 import made
 import pytest
+from browser import ABSENT, BROWSER, browser
 from checkout import REPOSITORY
 
 import twodiscs as td
@@ -16,17 +18,36 @@ from twodiscs_paper.catalogue import ALL_FIGURES, TABLES
 
 pytest.importorskip("sphinx", reason="Sphinx builds the site")
 
+#: Pixels of a window of a desk, a tablet and a telephone.
+WIDTHS = 1280, 768, 390
 
-@pytest.mark.slow
-def test_the_site_is_complete(tmp_path):
-    """As ``make docs`` builds it: links, pictures, and what declarations make."""
-    site = tmp_path / "site"
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    """The folder of the site, as ``make docs`` builds it."""
+    folder = tmp_path_factory.mktemp("site")
     command = [
-        *(sys.executable, "-m", "sphinx", "--conf-dir", "docs/make", "--doctree-dir", tmp_path),
-        *("--fail-on-warning", "--keep-going", "--quiet", ".", site),
+        *(sys.executable, "-m", "sphinx", "--conf-dir", "docs/make"),
+        *("--doctree-dir", folder / "doctrees", "--fail-on-warning", "--keep-going", "--quiet"),
+        *(".", folder / "site"),
     ]
     done = subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+    return folder / "site"
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(BROWSER is None, reason=ABSENT)
+def test_keyboards_and_readers_of_screens_reach_every_page(site, tmp_path):
+    with browser(tmp_path) as page:
+        for path, width, scheme in product(site.rglob("*.html"), WIDTHS, ("light", "dark")):
+            page.open(path.as_uri(), width=width, scheme=scheme)
+            assert page.violations() == [], (path.name, width, scheme)
+
+
+@pytest.mark.slow
+def test_the_site_is_complete(site):
+    """Its links, pictures, and what declarations make."""
     pages = {p.relative_to(site).as_posix(): p.read_text("utf-8") for p in site.rglob("*.html")}
     for name, text in pages.items():
         for target in re.findall(r'(?:href|src)="([^"#?]+)', text):

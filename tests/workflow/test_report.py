@@ -50,11 +50,14 @@ LOOK = """
 @pytest.fixture(scope="module", params=[1280, 768, 390])
 def front(request, complete, tmp_path_factory):
     """A browser shows the report in a wide window and in a narrow one."""
+    address, width = (complete.path / "results" / "report.html").as_uri(), request.param
     with browser(tmp_path_factory.mktemp("browser")) as page:
-        page.open((complete.path / "results" / "report.html").as_uri(), width=request.param)
+        page.open(address, width=width, scheme="dark")
+        violations = page.violations()
+        page.open(address, width=width)
         seen = page.look(LOOK)
         assert page.problems == []
-        return seen | {"width": request.param, "violations": page.violations()}
+        return seen | {"width": width, "violations": violations + page.violations()}
 
 
 def plain(text):
