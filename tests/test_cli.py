@@ -253,7 +253,7 @@ def test_a_run_is_a_line_of_snakemake(tmp_path, monkeypatch):
     assert "--cores 2" in " ".join(build.command("my.yaml", [], Path("Snakefile"), 2))
     with pytest.raises(InputError, match="cores must be"):
         build.command("my.yaml", [], Path("Snakefile"), 0)
-    with pytest.raises(InputError, match="not 'volme'; did you mean 'volume'"):
+    with pytest.raises(InputError, match="not 'volme'; did you mean volume"):
         build.command("my.yaml", ["volme"], Path("Snakefile"))
 
 

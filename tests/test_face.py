@@ -70,8 +70,8 @@ def test_the_import_reads_no_module_of_the_package():
 
 def test_every_name_is_defined_where_an_editor_looks_for_it():
     """Others are unknown. ``__init__.pyi`` is the list of all names."""
-    with pytest.raises(AttributeError, match="No twodiscs attribute colour"):
-        td.colour  # noqa: B018
+    with pytest.raises(AttributeError, match="attribute Simulate; did you mean simulate"):
+        td.Simulate  # noqa: B018
     stub = Path(f"{td.__file__}i").read_text(encoding="utf-8")
     lines = re.findall(r"^from \.(\S+) import (.+)$", stub, re.MULTILINE)
     homes = {name: module for module, line in lines for name in re.findall(r" as (\w+)", line)}

@@ -31,4 +31,16 @@ import lazy_loader
 
 __version__ = "1.0.0"
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+_load, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+
+
+def __getattr__(name):
+    """Return an attribute at its first use; the error about an unknown one has the nearest name."""
+    try:
+        return _load(name)
+    except AttributeError as error:
+        if name.startswith("_"):
+            raise
+        from twodiscs.model.formats import did_you_mean
+
+        raise AttributeError(f"{error}{did_you_mean(name, __all__)}") from None

@@ -101,7 +101,7 @@ def test_the_hop_is_a_frame_and_the_only_one_that_stops(rows, tmp_path, monkeypa
     """A GIF, a PNG and a page show the same, ``FEW`` frames on either side of the hop."""
     monkeypatch.setattr(animation, "BEFORE", FEW)
     monkeypatch.setattr(animation, "AFTER", FEW)
-    paths = [tmp_path / f"a.{kind}" for kind in ("gif", "png", "html")]
+    paths = [tmp_path / f"a.{kind}" for kind in ("gif", "PNG", "html")]
     with style.context():
         animation.animate(BOX, RADIUS, rows, paths)
     motion = animation.MovingDiscs(BOX, RADIUS, rows)

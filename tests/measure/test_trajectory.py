@@ -65,8 +65,8 @@ def test_ase_reads_it(path, tmp_path):
     assert [*first.cell.lengths()] == [*sides, 2 * max(scene.radii)][:3]
     assert [*first.pbc] == [axis in scene.periodic for axis in "xyz"]
     assert (*first.get_masses(),) == (scene.masses if scene.discs == 2 else (1.0,) * 3)
-    path.to_xyz(tmp_path / "all.xyz")
-    frames = read(tmp_path / "all.xyz", ":", format="extxyz")
+    path.to_xyz(tmp_path / "all.xyz.gz")
+    frames = read(tmp_path / "all.xyz.gz", ":", format="extxyz")
     assert [frame.info["Time"] for frame in frames] == [*path["time"]]
     assert first.get_kinetic_energy() == pytest.approx(0.5) or scene.field
     assert second.info["Time"] == 2.5

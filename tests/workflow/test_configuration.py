@@ -44,7 +44,7 @@ def test_a_file_that_cannot_be_read_and_a_mistake_on_the_command_line(unbuilt, t
     assert_refused(unbuilt, "seed must be", "--config", "seed=abc")
     place = folder(tmp_path, unbuilt, {})
     place.configuration.write_text("seed: caf\udce9\n", errors="surrogateescape")
-    assert_refused(place, "config/config.yaml: must be UTF-8, which has no byte 0xe9 here")
+    assert_refused(place, "config/config.yaml, line 1: save the file as UTF-8, which has no")
 
 
 #: A scene that takes days, and does not reach its accuracy.

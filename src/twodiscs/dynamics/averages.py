@@ -51,7 +51,13 @@ def _values(function, start, now):
     """
     # The same start is used for all times. A function that changes it would spoil later times.
     start.flags.writeable = now.flags.writeable = False
-    returned = function(start, now)
+    try:
+        returned = function(start, now)
+    except ValueError as error:
+        if not str(error).startswith("no field of name"):
+            raise
+        fields = ", ".join(start.dtype.names)
+        raise InputError(f"function must use the fields {fields}, but there is {error}") from error
     two_axes = getattr(returned, "ndim", 0) == 2
     is_table = isinstance(returned, Mapping) or (two_axes and hasattr(returned, "keys"))
     names = tuple(returned.keys() if is_table else getattr(returned, "_fields", ()))

@@ -408,9 +408,10 @@ def animate(box, radius, rows, paths):
     ``InputError`` for anything else.
     """
     for path in paths:
-        if not str(path).endswith((".gif", ".png", ".html", ".mp4")):
+        kind = Path(str(path)).suffix.lower()
+        if kind not in (".gif", ".png", ".html", ".mp4"):
             raise InputError(f"path must be a .gif, .png, .html or .mp4 file, not {str(path)!r}")
-        if str(path).endswith(".mp4"):
+        if kind == ".mp4":
             ffmpeg()
         if not Path(path).parent.is_dir():
             with writing_to(path):  # raises before all frames are drawn
@@ -441,9 +442,10 @@ def animate(box, radius, rows, paths):
     durations = [HOP if motion.hop and time == motion.centre else FRAME for time in motion.frames]
     durations[-1] = LAST
     for path in paths:
-        if str(path).endswith(".html"):
+        kind = Path(str(path)).suffix.lower()
+        if kind == ".html":
             write_page(path, images, durations, str(motion.scene))
-        elif str(path).endswith(".mp4"):
+        elif kind == ".mp4":
             write_mp4(path, true, durations)
         else:
             with writing_to(path) as new:

@@ -112,7 +112,7 @@ def save(figure, path, origin=None):
 
     Raises ``InputError`` for a file name with another ending, and if it cannot be written.
     """
-    kind = str(path).rpartition(".")[2]
+    kind = str(path).rpartition(".")[2].lower()
     metadata = {
         "pdf": {"Creator": None, "Producer": None, "CreationDate": None, "Subject": origin},
         "png": {"Software": None, "Description": origin},

@@ -26,8 +26,7 @@ class Quantities(dict):
     """{quantity: value}; any other key raises a ``KeyError`` that lists the quantities."""
 
     def __missing__(self, name):
-        hint = did_you_mean(name, self) if isinstance(name, str) else ""
-        raise KeyError(f"{quote(name)} is none of {', '.join(self)}{hint}")
+        raise KeyError(f"{quote(name)} is none of {', '.join(self)}{did_you_mean(name, self)}")
 
 
 def areas(scene: Scene) -> dict[str, float]:

@@ -323,7 +323,8 @@ class Measurements(Result, Mapping[str, Measurement]):
         -------
         DataFrame
             One row per quantity, which the index names, with the columns of the pipeline's table:
-            mean_times.csv, or volume.csv and areas.csv.
+            mean_times.csv, or volume.csv and areas.csv. The estimate and its error come first, the
+            exact value and z last, so that a terminal shows them.
 
         Examples
         --------
@@ -332,7 +333,9 @@ class Measurements(Result, Mapping[str, Measurement]):
         [1.328, 0.008, 1.338]
         """
         rows = [{"quantity": row_quantity(row)} | row for row in self.rows]
-        return indexed_frame(rows, index="quantity")
+        frame = indexed_frame(rows, index="quantity")
+        first, last = ["estimate", "stderr"], ["exact", "z"]
+        return frame[first + [name for name in frame if name not in first + last] + last]
 
 
 def measurement(scene, row, source=None):
@@ -367,8 +370,7 @@ def _named(key, what, names, allowed, scene):
     if single or not (names := [*names]):
         raise InputError(f"{key} must be some of {', '.join(allowed)}, not {quote(names)}")
     for name in names:
-        hint = did_you_mean(name, allowed) if isinstance(name, str) and name else ""
-        hint = why_absent(scene, name) or hint
+        hint = why_absent(scene, name) or did_you_mean(name, allowed)
         if not isinstance(name, str) or name not in allowed:
             raise InputError(f"{what} must be one of {', '.join(allowed)}, not {quote(name)}{hint}")
     return [name for name in allowed if name in names]

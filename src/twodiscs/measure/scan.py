@@ -107,7 +107,8 @@ class Scan(Result, Sequence[Result]):
         DataFrame
             The rows of ``frame()`` of each result. Its index has the radius, each other parameter
             that is scanned, and the index of a result, such as the quantity; ``reset_index()``
-            makes columns of them. A scene that does not fit has one row, whose ``status`` says why.
+            makes columns of them. A scene that does not fit has one row without numbers; its
+            quantity is "does not fit", and its ``status`` says why.
 
         Examples
         --------
@@ -122,7 +123,8 @@ class Scan(Result, Sequence[Result]):
             known = {name: getattr(result.scene, name) for name in self.parameters}
             rows += [known | row for row in result.frame().reset_index().to_dict("records")]
         for values, why in self.refused.items():
-            row = {index: "" if index == "quantity" else math.nan, "status": why}
+            row = {name: "" for name, value in rows[0].items() if isinstance(value, str)}
+            row |= {index: "does not fit" if index == "quantity" else math.nan, "status": why}
             rows.append(dict(zip(self.parameters, values, strict=True)) | row)
         return pd.DataFrame(rows).set_index([*self.parameters, index])
 

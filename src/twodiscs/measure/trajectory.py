@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 from collections.abc import Iterable, Sequence
 from os import PathLike
 
@@ -181,7 +182,7 @@ class Trajectory(pd.DataFrame):
         Parameters
         ----------
         path : path-like
-            The file, which usually ends in .xyz.
+            The file, which usually ends in .xyz. One that ends in .gz is compressed.
         times : float or iterable of float, optional
             The times of the frames, as for ``states_at``; without them the times of the rows, which
             have no equal steps.
@@ -210,7 +211,8 @@ class Trajectory(pd.DataFrame):
         lattice = " ".join(repr(float(side)) for side in np.diag(sides).flat)
         periodic = " ".join("T" if axis in scene.periodic else "F" for axis in "xyz")
         properties = "species:S:1:pos:R:3:masses:R:1:momenta:R:3:radius:R:1:id:I:1"
-        with writing_to(path) as new, open(new, "w", encoding="utf-8", newline="\n") as file:
+        opened = gzip.open if str(path).lower().endswith(".gz") else open
+        with writing_to(path) as new, opened(new, "wt", encoding="utf-8", newline="\n") as file:
             for time, places, speeds in zip(at, centres, velocities, strict=True):
                 file.write(
                     f'{discs}\nLattice="{lattice}" Properties={properties} pbc="{periodic}" '

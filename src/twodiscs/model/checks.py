@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterable
 from contextlib import contextmanager
 from decimal import Decimal
+from itertools import islice
 from shutil import copymode
 from tempfile import TemporaryDirectory
 
@@ -28,8 +29,8 @@ MOST_DISCS, MOST_DISCS_WITH_VOLUME = 16384, 64
 #: Relative errors that have a name.
 NAMED_ERRORS = {"draft": 1e-2, "paper": 3e-4, "reference": 1e-4}
 
-#: Letters of the longest message, which may quote a value of any length.
-LONGEST_SENTENCE = 1000
+#: Letters of the longest sentence, which may quote a value of any length, and the most sentences.
+LONGEST_SENTENCE, MOST_SENTENCES = 1000, 20
 
 
 class AccuracyWarning(UserWarning):
@@ -77,7 +78,10 @@ class InputError(ValueError):
     def __init__(self, *sentences):
         texts = (" ".join(str(sentence).split()) for sentence in sentences)
         short = (t if len(t) <= LONGEST_SENTENCE else f"{t[:LONGEST_SENTENCE]}…" for t in texts)
-        super().__init__("\n".join(short))
+        first = list(islice(short, MOST_SENTENCES + 1))
+        if len(first) > MOST_SENTENCES:
+            first[MOST_SENTENCES - 1 :] = ["you see more mistakes after you mend these"]
+        super().__init__("\n".join(first))
 
 
 @contextmanager
@@ -226,6 +230,6 @@ def check_numbers(name, values, allowed, is_allowed):
 def check_choice(name, value, allowed):
     """Return ``value``; raise ``InputError`` unless it is one of ``allowed``."""
     if not isinstance(value, str) or value not in allowed:
-        hint = did_you_mean(value, allowed) if isinstance(value, str) else ""
+        hint = did_you_mean(value, allowed)
         raise InputError(f"{name} must be one of {', '.join(allowed)}, not {quote(value)}{hint}")
     return value

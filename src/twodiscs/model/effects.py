@@ -50,7 +50,7 @@ class Effect:
         if value is None or (real and value == self.default):
             return self.default
         kind = "ratio" if self.name.endswith("_ratio") else "number"
-        kind += ", or 0" if self.default == 0.0 else ""
+        kind += f", or 0, {self.meaning}" if self.default == 0.0 else ""
         return check_number(self.name, value, self.low, self.high, kind)
 
 

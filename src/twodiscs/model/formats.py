@@ -9,6 +9,19 @@ from difflib import get_close_matches
 _SHORT_REPR = reprlib.Repr()
 _SHORT_REPR.maxlevel = 2
 
+#: {a word of other programs: the name here, or a sentence if there is none}.
+SYNONYMS = {
+    **dict.fromkeys(("g", "gravity"), "field"),
+    **dict.fromkeys(("r", "diameter"), "radius"),
+    **dict.fromkeys(("n", "particles"), "discs"),
+    **dict.fromkeys(("restitution", "elasticity"), "collisions are elastic, without a restitution"),
+    **dict.fromkeys(("tol", "rtol", "precision"), "error"),
+    **dict.fromkeys(("t", "time", "t_max"), "duration"),
+    **dict.fromkeys(("n_jobs", "threads", "workers"), "cores"),
+    **dict.fromkeys(("random_state", "rng"), "seed"),
+    "temperature": "the total energy is 1/2, which sets the temperature",
+}  # fmt: skip
+
 
 def quote(value):
     """Return the short text of any ``value`` for a message, of a large object its class."""
@@ -23,7 +36,14 @@ def quote(value):
 
 def did_you_mean(name, allowed):
     """Return the hint about an unknown ``name``: the nearest of ``allowed``, or ""."""
-    found = get_close_matches(str(name).lower().replace("-", "_"), [*allowed], 1)
+    if not isinstance(name, str):
+        return ""
+    word = name[:100].lower().replace("-", "_")
+    meant = SYNONYMS.get(word, word)
+    if " " in meant and word != meant:
+        return f"; {meant}"
+    words = [meant] if meant in allowed else [word, meant]
+    found = [near for each in words for near in get_close_matches(each, [*allowed], 1)]
     return f"; did you mean {found[0]}?" if found else ""
 
 

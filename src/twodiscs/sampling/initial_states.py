@@ -94,7 +94,8 @@ def given_state(scene, start):
     names, labels = components(scene), labels_of(start)
     try:
         values = start.values() if isinstance(start, Mapping) else start
-        state = [float(value) for value in values]
+        # NumPy warns of a masked number.
+        state = [math.nan if value is np.ma.masked else float(value) for value in values]
         if any(isinstance(label, str) for label in labels):
             known = dict(zip(labels, state, strict=True))
             state = [known.pop(name) for name in names] + [*known.values()]
@@ -103,7 +104,7 @@ def given_state(scene, start):
     if len(state) == len(names) and all(map(math.isfinite, state)):
         return state
     hint = ""
-    if np.shape(start) and getattr(getattr(start, "dtype", None), "names", None):
+    if getattr(getattr(start, "dtype", None), "names", None) and np.shape(start):
         hint = "; start[0] is one of these states"
     elif hasattr(start, "iloc"):
         hint = "; states_at(times)[0] is a state of a trajectory"

@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 
 from twodiscs.model import checks
 from twodiscs.model.checks import InputError
-from twodiscs.model.formats import decimal_hint
+from twodiscs.model.formats import SYNONYMS, decimal_hint, did_you_mean
+from twodiscs_paper.configuration.model import TAKEN
 from twodiscs_paper.configuration.schema import keys
 
 #: Pydantic's errors about a key: it is unknown or no text, or it is missing.
@@ -75,32 +75,37 @@ class _Mistake:
             return f"{path} needs the key {self.key!r}"
         if self.kind in UNKNOWN_KEY:
             return f"{path} has an unknown key {describe(self.key)}{self.hint_about_key()}"
-        near = nearest(self.value, self.node.get("enum", ()))
+        if self.steps[-1:] == ("name",) and self.value in TAKEN:
+            what = "the name of a target, a folder of results or a device of Windows"
+            return f"{path} must not be {describe(self.value)}, {what}"
+        near = did_you_mean(self.value, self.node.get("enum", ()))
         hint = near or decimal_hint(self.value)
+        if isinstance(self.value, Mapping) and self.node.get("type") == "array":
+            hint = "; a dash begins each item"
         return f"{path} must be {self.node['allowed']}, not {describe(self.value)}{hint}"
 
     def hint_about_key(self):
         """Return where an unknown key belongs, or which known key is near."""
-        homes = [home for key, home in _homes(keys(), "the configuration") if key == self.key]
-        if homes:
-            return f"; it belongs in {homes[0]}"
+        known, meant = list(self.node["properties"]), SYNONYMS.get(self.key, self.key)
+        homes = [home for key, home in _homes(keys(), "the configuration") if key == meant]
+        if homes and meant not in known:
+            return f"; {'it' if meant == self.key else meant} belongs in {homes[0]}"
         if self.value[self.key] is None and not isinstance(self.key, str):  # of {width: 1,5}
             return "; decimals have a point"
-        known = list(self.node["properties"])
         free = [key for key in known if key not in self.value]
-        return nearest(self.key, free) or f"; its keys are {', '.join(known)}"
+        return did_you_mean(self.key, free) or f"; its keys are {', '.join(known)}"
 
 
 def sentences(errors, mapping):
-    """Return a sentence for each of the ``errors`` that pydantic found in a ``mapping``."""
+    """Yield a sentence for each of the ``errors`` that pydantic found in a ``mapping``."""
     found = [_Mistake.of(error, mapping) for error in errors]
     found.sort(key=lambda mistake: mistake.kind not in UNKNOWN_KEY)
-    said = {}
+    told = set()
     for mistake in found:
-        if not any(mistake.follows_from(other) for other in found):
-            named = scene_name(mapping, mistake.steps)
-            said[mistake.steps, mistake.key] = mistake.sentence() + named
-    return list(said.values())
+        place = mistake.steps, mistake.key
+        if place not in told and not any(mistake.follows_from(other) for other in found):
+            told.add(place)
+            yield mistake.sentence() + scene_name(mapping, mistake.steps)
 
 
 def scene_name(mapping, steps):
@@ -110,12 +115,6 @@ def scene_name(mapping, steps):
     scene = mapping["scenes"][steps[1]]
     name = scene.get("name") if isinstance(scene, Mapping) else None
     return f" (scene {describe(name)})" if name else ""
-
-
-def nearest(word, known):
-    """Return the question whether the nearest of the ``known`` words is meant, or ""."""
-    near = get_close_matches(word[:100], known, n=1) if isinstance(word, str) else ()
-    return f"; did you mean {near[0]!r}?" if near else ""
 
 
 def _homes(node, home):

@@ -133,13 +133,13 @@ Folder = text(
     "[A-Za-z0-9_][A-Za-z0-9_.-]*(/[A-Za-z0-9_][A-Za-z0-9_.-]*)*",
     200,
 )
-#: Names of folders and targets that a scene must not have.
+#: Names that a scene must not have: of folders, of targets, and of devices of Windows.
 TAKEN = (
     "all", "benchmarks", "code", "draft", "figures", "logs", "parts", "points", "scenes", *STUDIES,
+    "aux", "con", "nul", "prn", *(f"{port}{n}" for port in ("com", "lpt") for n in range(10)),
 )  # fmt: skip
 Name = text(
-    "a name of small letters, digits, - and _, 100 at most, that starts with a letter or a digit, "
-    f"and none of {', '.join(TAKEN)}",
+    "a name of small letters, digits, - and _, 100 at most, that starts with a letter or a digit",
     f"^(?!({'|'.join(TAKEN)})$)[a-z0-9][a-z0-9_-]*",
     100,
 )
@@ -176,7 +176,7 @@ def _effect_number(effect):
     low, high = format_number(effect.low, "g"), format_number(effect.high, "g")
     allowed = f"a {kind} between {low} and {high}"
     if effect.default == 0:
-        return number(f"0, or {allowed}", effect.unit, ge=0, le=effect.high)
+        return number(f"0, or {allowed}, {effect.meaning}", effect.unit, ge=0, le=effect.high)
     return number(allowed, effect.unit, ge=effect.low, le=effect.high)
 
 
@@ -262,7 +262,8 @@ Accuracy = create_model("Accuracy", __base__=_Accuracy, **dict.fromkeys(EVENTS, 
 
 class SceneBlock(Block):
     name: Name
-    """The name of the scene and of its folder of results; different for every scene."""
+    """The name of the scene and of its folder of results; different for every scene, and not the
+    name of a target, of another folder or of a device of Windows."""
 
     box: Annotated[Sides, words("a block {width: …, height: …}, with a depth for balls")]
     """The rectangle that holds the discs, or with a depth the box that holds two balls."""

@@ -3,12 +3,13 @@
 import json
 import re
 import sys
+from itertools import islice
 from pathlib import Path
 
 import yaml
 from pydantic import ValidationError
 
-from twodiscs.model.checks import InputError, parse_number
+from twodiscs.model.checks import MOST_SENTENCES, InputError, parse_number
 from twodiscs.model.formats import format_number
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.mistakes import ConfigError, describe, scene_name, sentences
@@ -42,15 +43,19 @@ def read(path):
         raise ConfigError(f"{path}: {error.strerror}") from None
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        raise ConfigError(f"{path}, line {mark.line + 1}: {error.problem}") from None
+        hint = "; indent with blanks" if "\\t" in error.problem else ""
+        raise ConfigError(f"{path}, line {mark.line + 1}: {error.problem}{hint}") from None
     except UnicodeDecodeError as error:
-        byte = error.object[error.start]
-        raise ConfigError(f"{path}: must be UTF-8, which has no byte {byte:#x} here") from None
+        byte, line = error.object[error.start], error.object.count(b"\n", 0, error.start) + 1
+        raise ConfigError(
+            f"{path}, line {line}: save the file as UTF-8, which has no byte {byte:#x}"
+        ) from None
     # A value such as the date 2001-13-41 is an error of Python, and so are very deep lists.
     except (yaml.YAMLError, ArithmeticError, LookupError, ValueError, RecursionError) as error:
         raise ConfigError(f"{path}: {error}") from None
     if not isinstance(mapping, dict):
-        raise ConfigError(f"{path}: must hold {keys()['allowed']}, not {describe(mapping)}")
+        hint = "; twodiscs new writes one" if mapping is None else ""
+        raise ConfigError(f"{path}: must hold {keys()['allowed']}, not {describe(mapping)}{hint}")
     return mapping
 
 
@@ -103,7 +108,7 @@ def load(mapping):
         model = Model.model_validate(mapping)
     except ValidationError as error:
         found = error.errors(include_url=False, include_context=False)
-        raise ConfigError(*sentences(found, mapping)) from None
+        raise ConfigError(*islice(sentences(found, mapping), MOST_SENTENCES + 1)) from None
     scenes, mistakes = [], []
     for i, block in enumerate(model.scenes):
         if block.name in [scene.name for scene in model.scenes[:i]]:

@@ -12,7 +12,6 @@ import sys
 import tempfile
 from collections import Counter
 from datetime import datetime
-from difflib import get_close_matches
 from importlib import metadata
 from pathlib import Path
 
@@ -20,6 +19,7 @@ import twodiscs
 from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.measure.load import read_box
 from twodiscs.model.checks import InputError, check_choice, check_integer
+from twodiscs.model.formats import did_you_mean
 from twodiscs_paper.catalogue import STUDIES, STUDY_FIGURES, read_table
 from twodiscs_paper.configuration.yaml_files import ConfigError, check_results, load, read
 from twodiscs_paper.pipeline.job_cost import missed
@@ -94,11 +94,9 @@ def command(path, targets, snakefile, cores=None, dry_run=False, unlock=False):
         cores = "all"
     for target in targets:
         if target not in TARGETS and "/" not in target:
-            near = get_close_matches(target, TARGETS, n=1)
-            hint = f"; did you mean {near[0]!r}?" if near else ""
             raise InputError(
                 f"a target must be one of {', '.join(TARGETS)}, or the path of a file of results, "
-                f"not {target!r}{hint}"
+                f"not {target!r}{did_you_mean(target, TARGETS)}"
             )
     here, found = Path("Snakefile"), []
     if not (here.exists() and here.samefile(snakefile)):
