@@ -6,7 +6,13 @@ from unittest.mock import patch
 
 import numpy as np
 from factory import empty
+from matplotlib.collections import LineCollection
+from matplotlib.colors import to_hex, to_rgb
+from matplotlib.legend import Legend
+from matplotlib.lines import Line2D
+from matplotlib.path import Path
 from matplotlib.text import Text
+from matplotlib.transforms import Bbox
 
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.dynamics.runs import wide_edges
@@ -79,7 +85,7 @@ def tables_of(name):
 
 def noisy(rng, exact, relative):
     """Return estimate, standard error, z; the estimate is near 1 if no exact value is known."""
-    z, value = rng.standard_normal(), rng.uniform(0.3, 3) if exact is None else exact
+    z, value = rng.standard_normal(), rng.uniform(0.98, 1.02) if exact is None else exact
     found = {"estimate": value * (1 + relative * z), "stderr": value * relative}
     return found | {"z": None if exact is None else z}
 
@@ -100,6 +106,7 @@ def simulated(rng, scene, event, exact, relative):
     if (exact or 0) > 1e5:
         return row | {"bound": exact / 2, "status": "none-seen"}
     row |= noisy(rng, exact, relative) | {"status": "reached", "test": "normal"}
+    row["starts"] = "strip" if (exact or 0) > 5 else "invariant"
     return row | ({"stderr": None, "status": "too-few"} if (exact or 0) > 1e4 else {})
 
 
@@ -179,14 +186,13 @@ def covered(axes):
 
 
 def shown_texts(figure):
-    """Return the visible texts of a figure, each with its box in inches."""
+    """Return the visible texts of a figure, each with its box in pixels."""
     found = []
     draw_text = Text.draw
 
     def record(text, renderer):
         if text.get_visible() and text.get_text().strip():
-            box = Text.get_window_extent(text, renderer)
-            found.append((text.get_text(), box.transformed(text.figure.dpi_scale_trans.inverted())))
+            found.append((text, Text.get_window_extent(text, renderer)))
         return draw_text(text, renderer)
 
     with patch.object(Text, "draw", record):
@@ -194,16 +200,93 @@ def shown_texts(figure):
     return found
 
 
-def unclear(figure, slack=0.02):
-    """Return the texts that reach beyond a figure, and the pairs that overlap by more than a rim.
+#: Pixels of the rim by which texts may overlap and touch a line; the least contrast on white.
+RIM, CONTRAST = 6, 4.5
 
-    ``slack`` is the width of the rim, in inches.
+
+def unclear(figure):
+    """Return the faults of a figure, each as its kind and what has it.
+
+    A text is "beyond" the figure, "pale" on white, on an "other" text, or on a "line", an edge or
+    a symbol, if no white box or rim of the text covers them. Symbols are "unnamed" if no legend has
+    their colour, marker and filling. Each may stand in another entry, and a filling in a grey one.
     """
     texts = shown_texts(figure)
-    width, height = figure.get_size_inches()
-    beyond = [t for t, b in texts if b.x0 < 0 or b.y0 < 0 or b.x1 > width or b.y1 > height]
-    return beyond + [
-        (s, t)
-        for (s, a), (t, b) in combinations(texts, 2)
-        if min(a.x1, b.x1) - max(a.x0, b.x0) > slack and min(a.y1, b.y1) - max(a.y0, b.y0) > slack
+    (width, height), named = figure.bbox.size, [(t.get_text(), b) for t, b in texts]
+    edges = [edge for axes in figure.axes for edge in edges_of(axes)]
+    bare = [(t, b) for t, b in texts if t.get_bbox_patch() is None and not t.get_path_effects()]
+    return [
+        *(("beyond", t) for t, b in named if min(b.p0) < 0 or b.x1 > width or b.y1 > height),
+        *(("pale", t.get_text()) for t, _ in texts if contrast(t.get_color()) < CONTRAST),
+        *(("other", s, t) for (s, a), (t, b) in combinations(named, 2) if shared(a, b)),
+        *(("line", t.get_text()) for t, b in bare if any(on(shared(b, c), e) for e, c in edges)),
+        *(("unnamed", *one) for one in sorted(unnamed_looks(figure))),
     ]
+
+
+def shared(one, other):
+    """Return what two boxes in pixels share, or None if it is not larger than a rim."""
+    found = Bbox.intersection(one, other)
+    return found.padded(-RIM / 2) if found and min(found.size) > RIM else None
+
+
+def on(box, edge):
+    """Return whether an ``edge`` of ``edges_of`` has a line or a point in a ``box``, or None."""
+    if box is None or isinstance(edge, np.ndarray):
+        return box is not None and box.count_contains(edge) > 0
+    return any(Path(n).intersects_bbox(box, False) for n in edge.to_polygons(closed_only=False))
+
+
+def contrast(colour):
+    """Return the contrast of a ``colour`` on white, as the guidelines of web pages define it."""
+    parts = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)]
+    return 1.05 / (np.dot(parts, (0.2126, 0.7152, 0.0722)) + 0.05)
+
+
+def edges_of(axes):
+    """Yield (path of a line, or array of points, and the box where it is drawn), in pixels."""
+    for line in axes.lines:
+        clip = axes.bbox if line.get_clip_on() else axes.figure.bbox
+        if line.get_linestyle() != "None":
+            yield line.get_transform().transform_path(line.get_path()), clip
+        if line.get_marker() != "None":
+            yield line.get_transform().transform(line.get_xydata()), clip
+    for bar in axes.findobj(LineCollection):
+        for path in bar.get_paths():
+            yield bar.get_transform().transform_path(path), axes.bbox
+    arrows = [text.arrow_patch for text in axes.texts if text.arrow_patch]
+    for patch_ in [*axes.patches, *arrows, *(axes.spines.values() if axes.axison else ())]:
+        if patch_.get_linewidth() and patch_.get_edgecolor()[3]:
+            yield patch_.get_transform().transform_path(patch_.get_path()), axes.figure.bbox
+
+
+def look(line):
+    """Return (colour, marker, filling) of the symbols of a ``line``."""
+    marker = line.get_marker()
+    if marker not in Line2D.filled_markers:
+        return to_hex(line.get_color()), marker if isinstance(marker, str) else r"$\uparrow$", ""
+    is_open = to_hex(line.get_markerfacecolor()) == "#ffffff"
+    return to_hex(line.get_color()), marker, "open" if is_open else "full"
+
+
+def unnamed_looks(figure):
+    """Return the looks of symbols that no legend names."""
+    keys = figure.findobj(Legend)
+    named = {look(line) for key in keys for line in key.findobj(Line2D)}
+    colours = {colour for colour, *_ in named}
+    grey = (style.BLACK, to_hex(style.GREY))
+    fillings = {filling for colour, _, filling in named if colour in grey}
+    drawn = {
+        look(line)
+        for axes in figure.axes
+        for line in axes.lines
+        if axes.axison
+        and line.get_marker() != "None"
+        and axes.bbox.count_contains(line.get_transform().transform(line.get_xydata()))
+    }
+    markers = {marker for _, marker, _ in named}
+    return {
+        (colour, marker, filling)
+        for colour, marker, filling in drawn - named
+        if not (colour in colours and marker in markers and filling in fillings | {""})
+    }

@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from factory import empty, of
-from figure_cases import points
+from figure_cases import points, unclear
 
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.figures import style
@@ -305,6 +305,10 @@ def test_symbols_are_errors_and_times_and_lines_are_c_over_the_square(
         c, floor = first["c"], first["floor"]
         far = [xy[(xy[:, 0] > 2 * floor) & (xy[:, 0] < 0.5)].T for xy in curves]
         assert any(np.allclose(c / y, x**2 - floor**2, rtol=1e-9) for x, y in far)
+
+
+def test_texts_stand_clear_and_symbols_are_named(panels):
+    assert [unclear(figure) for figure in {axes.figure for axes in panels.values()}] == [[], []]
 
 
 def test_exact_values_are_at_the_bottom(rows, panels):

@@ -275,7 +275,7 @@ def draw_centre(axes, motion, disc, colour):
 
 def draw_number_beside(axes, motion, disc, colour):
     """Draw the number of a disc beside its centre, and below the upper end of the box."""
-    number = drawing.label(axes, f"{disc}", (0, 0), (0, 0), color=colour, fontsize=11)
+    number = drawing.label(axes, f"{disc}", (0, 0), (0, 0), fontsize=11)
 
     def move(time):
         number.xy = motion.folded_place(disc, time)

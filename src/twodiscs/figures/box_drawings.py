@@ -3,6 +3,7 @@
 from itertools import pairwise
 from math import acos, asin, copysign, cos, degrees, hypot, pi, sin, sqrt
 
+from matplotlib.lines import Line2D
 from matplotlib.patches import Arc, Polygon, Wedge
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MultipleLocator
@@ -65,11 +66,11 @@ def _disc(axes, number, centre, radius, velocity):
     size = hypot(*velocity) / 6
     drawing.arrow(axes, centre, head, colour=colour, width=1)
     beyond = (velocity[0] / size, velocity[1] / size)
-    drawing.label(axes, rf"$\mathbf{{v}}_{number}$", head, beyond, color=colour)
+    drawing.label(axes, rf"$\mathbf{{v}}_{number}$", head, beyond)
     # On the side towards the middle of the box, which is empty.
     rim = (x - 0.6 * radius, y + copysign(0.8 * radius, velocity[1]))
     offset = (-4, copysign(5, velocity[1]))
-    drawing.label(axes, rf"$\mathbf{{x}}_{number}$", rim, offset, color=colour)
+    drawing.label(axes, rf"$\mathbf{{x}}_{number}$", rim, offset)
 
 
 # The largest radius -------------------------------------------------------------------------------
@@ -150,7 +151,8 @@ def _map(axes, box):
     end = box.largest_radius / box.shortest
     if shape < last:
         axes.plot([shape, shape], [0, end], color=GREY, lw=0.8, ls=(0, (3, 2)), clip_on=False)
-        axes.plot(shape, end, "o", color=BLACK, clip_on=False, zorder=5)
+        axes.plot(shape, end, "o", color=BLACK, clip_on=False, zorder=5, label="this box")
+        axes.legend(loc="lower right", handlelength=1)
     else:
         drawing.arrow(axes, (last - 0.25, 0.46), (last, 0.46))
         drawing.label(axes, f"${long}/{short}={shape:g}$", (last - 0.25, 0.46), (-4, 0), ha="right")
@@ -317,7 +319,7 @@ def _hop(axes, b, epsilon):
     drawing.line(axes, [(-b, -b), (b, b)], colour=BLUE, width=1.3)
     drawing.rectangle(axes, -b, b, -b, b, width=0.9)
     drawing.label(axes, "(a)", (-b, b), (0, 9), ha="left")
-    drawing.label(axes, "$y_1=y_2$", (-b, b), (18, 9), ha="left", color=BLUE)
+    _name(axes, "$y_1=y_2$", BLUE)
     drawing.name_sides(axes, b, "y", "b", -9)
 
     # ε is a distance in configuration space; along an axis the shell is √2 times wider.
@@ -327,6 +329,13 @@ def _hop(axes, b, epsilon):
     y = 0.4 * b
     drawing.arrow(axes, (y, y), (y - d, y), "<|-|>", width=0.6, size=5)
     drawing.label(axes, r"$\sqrt{2}\,\varepsilon$", (y - d, y), (-12, 1))
+
+
+def _name(axes, name, colour):
+    """Write the ``name`` of the surface of a ``colour`` above its panel, beside a line of it."""
+    line = Line2D([], [], color=colour, lw=1.3)
+    place = {"loc": "lower right", "bbox_to_anchor": (1, 1), "borderaxespad": 0.3, "borderpad": 0}
+    axes.legend([line], [name], **place)
 
 
 def _collision(axes, a, b, radius, epsilon):
@@ -342,7 +351,7 @@ def _collision(axes, a, b, radius, epsilon):
         axes.add_patch(Arc((0, 0), 2 * distance, 2 * distance, theta2=90, **pen))
     drawing.rectangle(axes, 0, wide, 0, high, width=0.9)
     drawing.label(axes, "(b)", (0, high), (0, 9), ha="left")
-    drawing.label(axes, "$x^2+y^2=2r^2$", (0, high), (18, 9), ha="left", color=VERMILLION)
+    _name(axes, "$x^2+y^2=2r^2$", VERMILLION)
     drawing.label(axes, "$x$", (wide / 2 if a > b / 2 else wide / 4, 0), (0, -9))
     drawing.label(axes, "$y$", (0, high / 2), (-8, 0))
     drawing.label(axes, r"$\sqrt{2}\,a$", (wide, 0), (3, -9), ha="right")

@@ -243,7 +243,9 @@ def _column(rows, *names):
     return [[row[name] for row in rows] for name in names]
 
 
-#: The names in a legend of estimates from too few events for an error, and of bounds; their looks.
+#: The names in a legend of estimates from a strip, of those from too few events for an error, and
+#: of bounds; their looks.
+STRIPS = ("from strips", {"color": GREY, "marker": "o", "markersize": SIZES["o"], "ls": ""})
 ROUGH = ("too few events", {"color": GREY, "marker": "x", "ls": ""})
 BOUND = ("95 % lower bound", {"color": GREY, "marker": r"$\uparrow$", "ls": ""})
 
@@ -324,9 +326,10 @@ def legend(axes, series, single=None, more=()):
         if not single and part.is_visible():
             line = "-" if np.any(part.exact > 0) else ""
             entries.append((part.name, style | {"ls": line}))
-    _, *special = split_by_error([row for part in series for row in part.rows])
+    known, *special = split_by_error([row for part in series for row in part.rows])
+    special = [[row for row in known if row.get("starts") == "strip"], *special]
     entries += more
-    entries += [entry for entry, rows in zip((ROUGH, BOUND), special, strict=True) if rows]
+    entries += [entry for entry, rows in zip((STRIPS, ROUGH, BOUND), special, strict=True) if rows]
     names = [name for name, _ in entries]
     handles = [Line2D([], [], **style) for _, style in entries]
     if len(names) > 4:  # no place without a curve is large enough
@@ -370,13 +373,13 @@ class _PlainNumbers(Formatter):
 def label_decades(axis, ratio):
     """Label a logarithmic ``axis``, between decades too if its ends have a ``ratio`` below 100.
 
-    These labels are at 2 and 5 or, below a ratio of 3, at every tick. A power of ten of small or
+    These labels are at 2 and 5 or, below a ratio of 3, at 2, 3, 5 and 7. A power of ten of small or
     large numbers is at the end of the axis, as on linear axes.
     """
     if ratio >= 100:
         axis.set_minor_formatter("")
         return
-    digits = "25" if ratio >= 3 else "123456789"
+    digits = "25" if ratio >= 3 else "12357"
     power = math.floor(math.log10(max(axis.get_view_interval())))
     low, high = rcParams["axes.formatter.limits"]
     power = 0 if low < power < high else power

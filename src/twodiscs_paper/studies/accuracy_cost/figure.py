@@ -22,7 +22,7 @@ from twodiscs.figures.style import (
 )
 
 #: Inches: width of two columns, and the height.
-WIDTH, HEIGHT = 7.0, 3.9
+WIDTH, HEIGHT = 7.0, 4.3
 
 #: The ends of the axes: relative errors, and seconds.
 ERRORS, SECONDS = (1.0, 1e-6), (1e-7, 1e6)
@@ -35,8 +35,8 @@ THINNED = 2
 #: Errors of fewer runs than this have a bar.
 FEW = 64
 
-#: Names at the right end of an axis are apart by this factor of the time at least.
-APART = 2.6
+#: The white box of a text that lines would run through.
+WHITE = {"facecolor": "white", "edgecolor": "none", "pad": 0.4}
 
 
 class MethodCurve(NamedTuple):
@@ -64,11 +64,14 @@ SAMPLES = (
     MethodCurve("conditioned", "volume", False, "volume, conditioned", PURPLE, "v"),
     MethodCurve("rejection", "volume", False, "volume, rejection", BLUE, "o"),
     MethodCurve("shell", AREA, True, "area, shells", ORANGE, "D"),
-    MethodCurve("rejection", "volume", True, "rejection", SKY, "o"),
+    MethodCurve("rejection", "volume", True, "volume, rejection", SKY, "o"),
 )
 
-#: The name and the symbol of the setting of a method.
-SETTINGS = {"time_step": ("step", r"\Delta t"), "shell": ("shell", r"\varepsilon")}
+#: The symbols of the settings of methods.
+SETTINGS = {"time_step": r"\Delta t", "shell": r"\varepsilon"}
+
+#: The lines of hard radii.
+DASHES = (0, (4, 2))
 
 
 def draw(box, tables):
@@ -91,11 +94,12 @@ def draw(box, tables):
         axes.set_title(f"({letter})  {title}", loc="left")
         for name, seconds in GUIDES.items():
             axes.axhline(seconds, color=GREY, lw=0.4, zorder=0)
-            place = {"ha": "left", "va": "bottom", "color": GREY, "fontsize": 6.8}
-            drawing.label(axes, name, (ERRORS[0], seconds), (3, 1), **place)
-        lines = [line for one in series for line in _draw_series(axes, kept, rows, one, radii)]
-        _name_lines(axes, lines)
+            drawing.label(axes, name, (ERRORS[1], seconds), (3, 0), ha="left", fontsize=6.8)
+        for one in series:
+            _draw_series(axes, kept, rows, one, radii)
         _draw_exact(axes, rows, radii[0], "volume" if series is TIMES else AREA)
+        axes.plot([], [], ls="", label="this build", **panels.open_symbol(BLACK, "o", 0.8))
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=2, columnspacing=1.0)
     figure.axes[0].set_ylabel("processor time on one core (s)")
     figure.axes[1].tick_params(labelleft=False)
     return figure
@@ -112,37 +116,16 @@ def select(rows, one, radii):
 
 
 def _draw_series(axes, kept, rows, one, radii):
-    """Draw measured errors, full for the long run and open for this build, and c/error².
-
-    Return the lines without a bias, as ``_name_lines`` takes them.
-    """
+    """Draw measured errors, full for the long run and open for this build, and c/error²."""
     full = panels.open_symbol(one.colour, one.marker) | {"markerfacecolor": one.colour}
+    name = f"{one.name}, near $h/4$" if one.is_hard else one.name
+    axes.plot([], [], lw=0.8, ls=DASHES if one.is_hard else "-", label=name, **full)
     found = select(kept, one, radii)
     for setting, own in found.items():
-        _draw_law(axes, own[0]["c"], own[0]["floor"], one, setting, setting == max(found))
+        _draw_law(axes, own[0]["c"], own[0]["floor"], one, setting, setting == min(found))
         _draw_errors(axes, own, full | {"zorder": 3})
     for own in select(rows, one, radii).values():
         _draw_errors(axes, own, panels.open_symbol(one.colour, one.marker, 0.8) | {"zorder": 4})
-    name = f"{one.name}, near $h/4$" if one.is_hard else one.name
-    return [(own[0]["c"], name, one.colour) for own in found.values() if not own[0]["floor"]]
-
-
-def _name_lines(axes, lines):
-    """Write the names of ``lines``, [(c, name, colour)], where they leave the panel.
-
-    The panel ends on the right, or for slow methods at the top, where the names stand beneath each
-    other, beside the last of these lines.
-    """
-    low = 0.0
-    for c, name, colour in sorted(lines):
-        low = max(c / ERRORS[1] ** 2, APART * low)
-        if low < APART * SECONDS[1]:
-            place = ERRORS[1], min(low, SECONDS[1])
-            drawing.label(axes, name, place, (4, 0), ha="left", color=colour, fontsize=7.5)
-    slow = [line for line in sorted(lines) if line[0] / ERRORS[1] ** 2 >= APART * SECONDS[1]]
-    for i, (_, name, colour) in enumerate(reversed(slow)):
-        place = (slow[0][0] / SECONDS[1]) ** 0.5, SECONDS[1]
-        drawing.label(axes, name, place, (5, -6 - 9 * i), ha="left", color=colour, fontsize=6.8)
 
 
 def _draw_errors(axes, rows, style):
@@ -174,19 +157,19 @@ def _law(c, floor):
     return errors, c / (errors**2 - floor**2)
 
 
-def _draw_law(axes, c, floor, one, setting, is_first):
-    """Draw c/error², or c/(error² − bias²) with the setting, whose name the first line has."""
+def _draw_law(axes, c, floor, one, setting, is_last):
+    """Draw c/error², or c/(error² − bias²) with the setting, right of the ``is_last`` line."""
     errors, seconds = _law(c, floor)
-    dashes = (0, (4, 2)) if one.is_hard else "-"
+    dashes = DASHES if one.is_hard else "-"
     axes.plot(errors, seconds, color=one.colour, lw=0.8, ls=dashes, zorder=1)
     if floor and one.method in SETTINGS:
         number = f"{setting:.2g}"
         if one.method == "time_step":
             number = f"2^{{{round(math.log2(setting))}}}"
-        name, symbol = SETTINGS[one.method]
-        text = rf"{name if is_first else ''} ${symbol}={number}$".strip()
-        style = {"rotation": 90, "ha": "left", "va": "top", "fontsize": 6.8, "color": one.colour}
-        drawing.label(axes, text, (floor, SECONDS[1]), (2, -3), **style)
+        style = {"rotation": 90, "va": "top", "fontsize": 6.8, "bbox": WHITE}
+        offset, style["ha"] = ((2, -3), "left") if is_last else ((-2, -3), "right")
+        text = f"${SETTINGS[one.method]}={number}$"
+        drawing.label(axes, text, (floor, SECONDS[1]), offset, **style)
 
 
 def _draw_exact(axes, rows, radius, quantity):
@@ -195,14 +178,12 @@ def _draw_exact(axes, rows, radius, quantity):
     own = [row for row in own if row["quantity"] == quantity]
     seconds = median(row["seconds"] for row in own if row["method"] == "exact")
     axes.axhline(seconds, color=BLACK, lw=1.0, zorder=2)
-    end = {"ha": "right", "va": "top"}
     text = f"exact: {1e3 * seconds:.2g} ms, error $10^{{-15}}$"
-    drawing.label(axes, text, (ERRORS[1], seconds), (-3, -2), **end)
+    drawing.label(axes, text, (ERRORS[1], seconds), (-3, -2), ha="right", va="top", bbox=WHITE)
     if quantity == AREA:
         nodes = [row for row in own if row["method"] == "quadrature"]
         seconds = median(row["seconds"] for row in nodes)
         shown = [row for row in nodes if row["error"] > ERRORS[1]]
         error = [row["error"] for row in shown]
-        axes.plot(error, [seconds] * len(error), "P", color=BLACK, ms=SIZES["P"])
-        text = f"quadrature, 1 to {len(error)} nodes: ${1e6 * seconds:.1g}\\,\\mu$s"
-        drawing.label(axes, text, (ERRORS[1], seconds), (-3, -4), **end)
+        text = f"quadrature, 1 to {len(error)} nodes"
+        axes.plot(error, [seconds] * len(error), "P", color=BLACK, ms=SIZES["P"], label=text)

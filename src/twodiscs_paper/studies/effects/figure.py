@@ -127,7 +127,8 @@ def _costs(axes, rows, looks):
     for i, row in enumerate(rows):
         time, look = 1 / row["ratio"], looks.get(row["variant"], (GREY, "o"))
         axes.plot([1, time], [i, i], color=look[0], lw=0.8)
-        axes.plot(time, i, **panels.open_symbol(*look))
+        if row["variant"] in looks:
+            axes.plot(time, i, **panels.open_symbol(*look))
         drawing.label(axes, f"{time:.3g}", (time, i), (6, 0), ha="left", **small)
         drawing.label(axes, f"{row['instructions']}", (1, i), (COLUMN, 0), **column)
     head = column | {"ha": "center", "va": "bottom", "linespacing": 1.1}

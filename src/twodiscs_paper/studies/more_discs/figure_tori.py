@@ -35,19 +35,18 @@ def draw(box, tables):
         own = select(rows, reference=reference, discs=discs)
         style = panels.open_symbol(colour, marker, 0.8)
         upper.plot(*_of(own, "estimate"), ls="", label=name, **style)
-        if reference == "metropolis-1953":
+        if reference != "virial":
             upper.errorbar(
                 *_of(own, "expected"), [row["expected_stderr"] for row in own], ls="", marker="x",
                 color=colour, markersize=3, elinewidth=0.7, zorder=0,
             )  # fmt: skip
-        elif reference == "li-2022":
-            upper.plot(*_of(own, "expected"), ls="", marker=".", color=colour, markersize=2)
         for row in own:
             apart = row["starts_z"] or 0.0
-            shade = colour if abs(apart) <= AGREE else GREY
-            lower.plot(
-                row["packing_fraction"], row["z"], ls="", marker=marker, color=shade, markersize=3
-            )
+            style = panels.open_symbol(colour if abs(apart) <= AGREE else GREY, marker, 0.8)
+            lower.plot(row["packing_fraction"], row["z"], ls="", **style)
+    upper.plot([], [], "x", color=BLACK, markersize=3, label="published")
+    lower.plot([], [], ls="", label="two starts differ", **panels.open_symbol(GREY, "o", 0.8))
+    lower.legend(loc="upper left", borderpad=0.2)
     panels.scale_residuals(lower)
     for axes in (upper, lower):
         axes.set_xlim(0.06, 0.9)

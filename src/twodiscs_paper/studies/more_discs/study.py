@@ -133,12 +133,12 @@ STUDY = Study(
             (a) Compressibility factor Z = PA/(N kT) of N discs on a torus against the packing
             fraction φ, from the rate of collisions by the virial theorem (symbols): 256 discs
             beside the virial series to the tenth coefficient (line, dotted where the last terms
-            matter), and 72 to 870 discs at the points of Metropolis and others (1953; crosses with
-            their error bars) and of Li and others (2022; dots). (b) Their deviations in standard
-            errors of both. Full symbols: two sets of initial states, from rows and from a
-            compressed liquid, agree within three standard errors, or only one set was made; grey
-            symbols: they disagree, and the replicas are not in equilibrium. The pressures of 1953
-            are too low between φ = 0.5 and 0.7; those of 2022 are met.
+            matter), and 72 to 870 discs at the points of Metropolis and others (1953) and of Li and
+            others (2022), with their values (crosses). (b) Their deviations in standard errors of
+            both. Grey symbols: results from two sets of initial states, from rows and from a
+            compressed liquid, differ by more than three standard errors, so the replicas are not in
+            equilibrium. The pressures of 1953 are too low between φ = 0.5 and 0.7; those of 2022
+            are met.
             """,
             long_runs={"tori": "paper/long_run/tori/tori.csv"},
         ),

@@ -112,7 +112,7 @@ def _curves(axes, box, hop, limit, rows):
             )  # fmt: skip
             drawing.label(
                 axes, rf"$\delta=2^{{-{n}}}$", (time[-1] / unit, value[-1]), (3, 1.5 * (n == 12)),
-                ha="left", color=colour, fontsize=6.5,
+                ha="left", fontsize=6.5,
             )  # fmt: skip
             for row in select(here, quantity="coefficient"):
                 late = np.geomspace(0.5, 10, 30)

@@ -72,7 +72,8 @@ def draw(box, tables):
         upper.plot([], [], color=colour, lw=2, label=name)
     for step, marker in MARKERS.items():
         style = panels.open_symbol(GREY, marker, 0.85)
-        upper.plot([], [], ls="", label=rf"$s=\sigma/{1 / step:g}$", **style)
+        upper.plot([], [], ls="", label=rf"crossings, $s=\sigma/{1 / step:g}$", **style)
+    upper.plot([], [], "o", color=GREY, markersize=1.8, label="passages")
     upper.set(xscale="log", yscale="log", xlim=NECKS, ylim=KAPPAS)
     upper.set_ylabel(r"$\kappa$ = passages / crossings of theory")
     upper.tick_params(which="both", labelbottom=False)

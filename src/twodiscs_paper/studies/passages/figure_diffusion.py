@@ -1,6 +1,6 @@
 """How fast discs diffuse by hops: two discs on a ring, and files."""
 
-from twodiscs.figures import drawing, panels
+from twodiscs.figures import panels
 from twodiscs.figures.style import BLACK, BLUE, GREEN, PURPLE, SKY
 from twodiscs_paper.studies.passages.figure import (
     LOOKS,
@@ -60,23 +60,11 @@ def _ring(axes, rows):
         for method, filled in (("hops", False), ("states", True)):
             own = select(rows, method=method, moment_of_inertia=inertia)
             if own:
-                points(axes, *_diffusion(own), LOOKS[inertia], filled=filled)
-                if not filled:
-                    _name_beside(axes, name, own, LOOKS[inertia][0])
-    for filled, name in ((False, "by hops"), (True, "by displacements")):
-        style = panels.open_symbol(BLACK, "o", 0.85)
-        if filled:
-            style |= {"markerfacecolor": BLACK, "markersize": 1.8}
-        axes.plot([], [], ls="", label=name, **style)
+                label = None if filled else f"{name}, by hops"
+                points(axes, *_diffusion(own), LOOKS[inertia], label, filled)
+    points(axes, [], [], [], (BLACK, "o"), "by displacements", True)
     axes.set(ylim=(0, 1.45))
     axes.legend(loc="center left")
-
-
-def _name_beside(axes, name, rows, colour):
-    """Write a ``name`` above the last symbols of a curve, at the largest distance."""
-    end = max(rows, key=lambda row: row["distance"])
-    at = (end["distance"], end["estimate"])
-    drawing.label(axes, name, at, (-8, 8), ha="right", color=colour, fontsize=7.3)
 
 
 def _files(axes, short, long):

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from twodiscs.figures import drawing, panels
+from twodiscs.figures import panels
 from twodiscs.figures.style import BLACK, BLUE, PURPLE, VERMILLION
 from twodiscs.model.scene import Scene
 from twodiscs_paper.studies.passages.figure import columns, points
@@ -24,11 +24,8 @@ SUM = {"ls": "", "marker": "_", "markersize": 6.5, "mew": 0.8}
 #: Quantities of long files over the time.
 LONG = ("displacement", "file", "order")
 
-#: Names of curves are apart by this factor of the ordinate at least.
-APART = 1.4
-
-#: The times that are shown, in units of h over the thermal speed: names stand behind the last.
-SHOWN = (0.4, 400)
+#: The times that are shown, in units of h over the thermal speed.
+SHOWN = (0.4, 60)
 
 
 def draw(box, tables):
@@ -62,8 +59,8 @@ def _scaled_columns(rows, quantity, **wanted):
 
 def _moved(axes, rows):
     """Draw displacements in long files, blocked at the first such radius and at the first open."""
-    ends = []
     distances = [row["distance"] for row in rows]
+    names = {}
     shown = [next((d for d in distances if (d > 0) == is_open), None) for is_open in (False, True)]
     for distance in filter(None, shown):
         here = select(rows, distance=distance)
@@ -76,8 +73,7 @@ def _moved(axes, rows):
                 look, kind = ROUGH_FILE, "rough"
             x, y, error = _scaled_columns(own, "displacement")
             points(axes, x, y, error, look, None, blocked)
-            name = f"{kind}, {'blocked' if blocked else 'open'}"
-            ends.append((x[-1], y[-1], name, look[0]))
+            names[kind] = panels.open_symbol(*look)
             if blocked and inertia is None:
                 scene = _scene(own[0])
                 time = np.geomspace(x[0], x[-1], 120)
@@ -87,15 +83,13 @@ def _moved(axes, rows):
                 _, place, _ = _scaled_columns(own, "file")
                 _, walk, _ = _scaled_columns(own, "order")
                 axes.plot(x, place + walk, color=look[0], zorder=2, **SUM)
-    height = 0.0
-    for x, y, name, colour in sorted(ends, key=lambda end: end[1]):
-        height = max(y, APART * height)
-        drawing.label(axes, name, (x, height), (7, 0), ha="left", color=colour)
-    for name, line in (
-        ("theory, blocked", {"color": BLACK, "lw": 0.8}),
-        ("motion of places, plus hops", {"color": BLACK} | SUM),
-    ):
-        axes.plot([], [], label=name, **line)
+    names |= {
+        "blocked": {"color": BLACK, "marker": "o", "markersize": 1.8},
+        "theory, blocked": {"color": BLACK, "lw": 0.8, "ls": "-"},
+        "motion of places, plus hops": {"color": BLACK} | SUM,
+    }
+    for name, style in names.items():
+        axes.plot([], [], label=name, **{"ls": ""} | style)
     axes.set(xscale="log", yscale="log", xlim=SHOWN)
     axes.set(
         xlabel=r"time $t\,\sqrt{kT/m}\,/h$", ylabel=r"displacement $\langle x^2\rangle/\ell^2$"

@@ -6,7 +6,7 @@ import re
 from matplotlib.ticker import NullFormatter
 
 from twodiscs.figures import panels
-from twodiscs.figures.style import BLUE, COLUMN, GREEN, GREY, VERMILLION, new_figure
+from twodiscs.figures.style import BLACK, BLUE, COLUMN, GREEN, GREY, VERMILLION, new_figure
 
 #: {what scenes have in common: colour and marker}.
 LOOKS = {"plain discs": (BLUE, "o"), "effects": (VERMILLION, "s"), "more discs": (GREEN, "^")}
@@ -82,5 +82,6 @@ def draw(box, tables):
     axes.set_xlabel("mean square of scores over seeds")
     for name, (colour, marker) in LOOKS.items():
         axes.plot([], [], ls="", label=name, **panels.open_symbol(colour, marker, 0.8))
-    axes.legend(loc="lower right", ncols=3, bbox_to_anchor=(1, 1.0), borderaxespad=0.2)
+    axes.plot([], [], "o", color=BLACK, markersize=2.4, label="usual work")
+    axes.legend(loc="lower right", ncols=4, bbox_to_anchor=(1, 1.0), borderaxespad=0.2)
     return figure

@@ -142,7 +142,14 @@ def _times(axes, rows):
         axes.plot(*at, **symbol)
         missed = found.get(row["case"], 0) - row["count"]
         if row["method"] == "textbook" and missed:
-            drawing.label(axes, f"{missed} missed", at, (5, 0), ha="left", fontsize=6.9)
+            drawing.label(axes, f"{missed} missed", at, (5, 5), ha="left", fontsize=6.9)
+    for name, symbol in (
+        ("to a disc", panels.open_symbol(*SERIES[0])),
+        ("to a wall", panels.open_symbol(*SERIES[1])),
+        ("textbook formula", TEXTBOOK),
+    ):
+        axes.plot([], [], ls="", label=name, **symbol)
+    axes.legend(ncols=3, **ABOVE)
     axes.set(xscale="log", xlim=(0.1, 1e11))
     axes.set_xlabel(r"error / ($2^{-52}\times$ conditioning)", x=1, ha="right")
     axes.xaxis.set_minor_formatter(NullFormatter())

@@ -25,6 +25,7 @@ def draw(box, tables):
             _tail(tails, ratio, own, *look)
     times = np.geomspace(0.9, 20)
     tails.plot(times, np.exp(-times), color=BLACK, ls=(0, (4, 2)), label=r"$e^{-t/\tau}$")
+    tails.plot([], [], "o", color=BLACK, markersize=1.7, label="plain counts")
     for axes in (tails, ratio):
         axes.set(xscale="log", yscale="log", xlim=(0.9, 1150))
     tails.set(ylim=(1e-11, 1.5), ylabel=r"$P(T>t)$")
