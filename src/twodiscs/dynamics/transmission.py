@@ -172,7 +172,7 @@ class TransmissionRun(Run):
 
     @cached_property
     def components(self):
-        """The ``SequentialRun`` of all blocks, {"times": run}; "clusters", too, of rare hops."""
+        """The ``SequentialRun`` of all blocks, {"times": run}; of rare hops also "clusters"."""
         scene, hop, engine = self.scene, self.hop, find_engine(self.scene)
         given = scene, hop, stream_name(scene, self.name), self.seed
         clusters_seed, times_seed = (hop_seed(*given, what) for what in ("clusters", "times"))

@@ -57,7 +57,7 @@ class AccuracyWarning(UserWarning):
 class InputError(ValueError):
     """A user's mistake in an argument, a configuration or a file, in one sentence.
 
-    It is a ``ValueError``; for a call with a wrong argument it is a ``TypeError``, too. The command
+    It is a ``ValueError``; for a call with a wrong argument it is also a ``TypeError``. The command
     lines print the sentence only. Any other exception is a mistake in the program, and keeps its
     traceback.
 

@@ -40,8 +40,8 @@ def _check_energy(scene):
         )
     if (scene.radius_ratio, scene.mass_ratio) != (1.0, 1.0) and not scene.vertical_hops:
         raise InputError(
-            "unequal discs in a field need room and energy to pass each other on y1 = y2, so that "
-            f"configuration space has no unequal parts; at radius {scene.radius!r} they lack it"
+            f"radius {scene.radius!r} is too large: in a field unequal discs must have room and "
+            "energy for a vertical hop"
         )
 
 

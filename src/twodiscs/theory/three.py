@@ -139,7 +139,7 @@ def _gaps(a, sigma, t, c):
         d = sigma * np.cos(angle)
         return sigma * np.sin(angle), d, (stop - start) * d * w
 
-    # The larger gap is a sine, or above σ; then the smaller one is a sine, or above σ, too.
+    # The larger gap is a sine, or above σ; then the smaller one is also a sine, or above σ.
     gap, p, weight_p = sines(low, high)
     rest = t - gap
     q_of_p = np.sqrt(np.maximum((sigma - rest) * (sigma + rest), 0.0))

@@ -205,7 +205,7 @@ def _periodic(side, farthest=None):
 def _outside(branches, square, room, surface, less=None):
     """Return ∫ Π f over Σ t² ≥ ``square``, or −∂/∂√square of it for a ``surface``.
 
-    ``room`` is Σ reach² − square; both are arrays of one shape, which the result has, too. ``less``
+    ``room`` is Σ reach² − square; both are arrays of one shape, as the result. ``less``
     returns square − c of an exact c, if it is known better than from ``square``.
     """
     first, *rest = branches

@@ -225,7 +225,7 @@ def failure(workflow, status, results):
     """Return the last lines of a run of a ``Workflow`` of Snakemake that ended with a ``status``.
 
     They are the reasons in the words of each failed job, the path of its log, and what to do. If
-    the disk of the ``results`` is full, this is a reason, too.
+    the disk of the ``results`` is full, this is also a reason.
     """
     again = "the same command goes on, and keeps the files that are finished"
     scheduler = workflow and workflow.scheduler
@@ -304,7 +304,7 @@ def closing(results, dag, configured, scenes=()):
 
     They are the files of its targets, the verdict of the check in the folder of ``results``, and
     the path of the report. If the check or the report were not built and are older than a file of
-    ``configured``, the paths of the configuration, a line says so. The last lines are about
+    ``configured``, the paths of the configuration, a line names it. The last lines are about
     accuracies of ``scenes``, as described, that were not reached.
     """
     made = {str(path) for job in dag.jobs for path in job.output}

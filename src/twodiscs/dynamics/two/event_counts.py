@@ -60,7 +60,7 @@ DETECTORS = by_kind(
         "hop": _hop_seen,
         "collision": lambda event: lambda code, a, b, identical, field: code == DISC,
         "wall": _wall_seen,
-        # Collisions of the discs count, too; see ``all_walls``.
+        # Collisions of the discs also count; see ``all_walls``.
         "walls": lambda event: lambda code, a, b, identical, field: code > END_OF_TIME,
     },
 )

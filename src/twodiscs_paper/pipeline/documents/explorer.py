@@ -44,7 +44,7 @@ def monte_carlo_times(volumes, areas, components):
     ``components`` is the number of velocity components minus the number of conserved momenta.
     The bias of an area by the thickness of its shell is known exactly and subtracted. Errors of
     volume and area are added as if they were independent. They are not, because samples in a shell
-    are free samples, too; therefore the error is slightly too large.
+    are also free samples; therefore the error is slightly too large.
     """
     volume = {row["radius"]: row for row in volumes if row["stderr"] is not None}
     times = {event: [] for event in COUNTED}

@@ -42,7 +42,7 @@ def typeset(template, output, scenes, figures, seed, configuration):
     The numbers are rows of ``PaperNumbersTable``, from numbers.typ beside the template. Typst reads
     the tables and figures below the folder of ``output``. ``scenes`` are [{"name", "width",
     "height", "tables": [names], "figures": [names]}]; the manuscript is about the first one. The
-    ``figures`` of studies are names, too. ``configuration`` is its hash. The template finds all
+    ``figures`` of studies are also names. ``configuration`` is its hash. The template finds all
     this as JSON under ``sys.inputs.contents``; ``results`` is a path there from the root that
     results and project have in common. The same inputs at the same commit give the same bytes on
     every machine, because only the fonts of Typst are used.

@@ -14,7 +14,7 @@ def verdict(tables):
 
     A row fails if its |z| is over its bound. The rows of a scene have a column ``bound``. In a
     table of a study the bound follows from the number of scores (``bonferroni_bound``). A table
-    without a score fails, too, and so does a verdict without a table.
+    without a score also fails, and so does a verdict without a table.
     """
     failures, lines = [] if tables else ["nothing is compared"], []
     for name, rows in tables:

@@ -29,7 +29,7 @@ ERRORS, SECONDS = (1.0, 1e-6), (1e-7, 1e6)
 
 GUIDES = {"1 s": 1.0, "1 min": 60.0, "1 h": 3600.0, "1 day": 86400.0}
 
-#: The number of doublings of the time from one symbol to the next; the longest run has one, too.
+#: The number of doublings of the time from one symbol to the next; the longest run also has one.
 THINNED = 2
 
 #: Errors of fewer runs than this have a bar.

@@ -17,7 +17,7 @@ from twodiscs.sampling.streams import open_stream
 from twodiscs_paper.studies.accuracy_cost.scalar import N
 
 #: A lane counts in one double: a field of eight bits for each of ``COUNTED``. Hits of the walls of
-#: one axis are wall hits, too.
+#: one axis are also wall hits.
 VERTICAL, HORIZONTAL, COLLISION, RIGHT, TOP, ANY = (256.0**i for i in range(N))
 BESIDE, ABOVE = RIGHT + ANY, TOP + ANY
 

@@ -175,7 +175,7 @@ def law(scene, friction, time, variance=None):
     """Return ⟨x²⟩/ℓ² at a ``time`` by theory, with kicks at the rate ``friction`` or None.
 
     Without a ``variance`` S the discs must be in an ordered channel, whose theory is exact. Smooth
-    discs with a ``variance`` have no law: the speed of sound is not known. They have none, too,
+    discs with a ``variance`` have no law: the speed of sound is not known. They also have none
     once ``sound`` comes back around the ring.
     """
     per_disc = scene.width / scene.discs
