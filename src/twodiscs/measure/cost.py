@@ -161,7 +161,7 @@ class Price:
     least_seconds : float
         The processor seconds of the smallest run.
     floor : float, default 0
-        The relative error that no work removes: of a thick shell, or of rounding.
+        The relative error that remains however long you compute: of a shell, or of rounding.
 
     Examples
     --------
@@ -316,7 +316,7 @@ class Cost(Printed):
     """The prices of the quantities of a scene by each method; ``cost`` returns one.
 
     It prints as a table: processor times for relative errors, the error of the smallest run, and
-    the floor, an error that no work removes.
+    the floor, the error that remains however long you compute.
 
     Parameters
     ----------
@@ -430,9 +430,9 @@ class Cost(Printed):
         from twodiscs.dynamics.paths import row_bytes
 
         return (
-            f"Processor time of a relative error, on one core of {self.machine}. Least is the "
-            "error of the smallest run; no work removes the floor. A trajectory has no error, and "
-            f"takes {row_bytes(self.scene)} bytes a row."
+            f"Processor time to reach a relative error, on one core of {self.machine}. The smallest "
+            "run has the least error; the floor remains however long you compute. A trajectory has "
+            f"no error, and {row_bytes(self.scene)} bytes for each row."
         )
 
 

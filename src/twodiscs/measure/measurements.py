@@ -399,7 +399,7 @@ def simulate(
     ``error``, or ``budget`` events are simulated; with a ``duration``, until that time is
     simulated. ``cost`` measures how long an error takes.
 
-    Work comes in whole blocks of 1024 trajectories, 2.4e5 events each for a radius of 0.2 in a box
+    Trajectories are simulated in blocks of 1024, 2.4e5 events each for a radius of 0.2 in a box
     of 1.5 × 1. Without a ``duration`` the minimum is 32 blocks, 7.7e6 events there, or fewer within
     the ``budget``, but at least one block. If this is more than asked for, the ``note`` of the
     result has the number. For quick results with many discs give ``budget=1e6``.
@@ -414,7 +414,7 @@ def simulate(
         ``duration`` is given.
     duration : float, optional
         The simulated time of all trajectories together, in time. It is rounded up to whole blocks.
-        All events are then counted in the same trajectories, rare hops too.
+        All events are then counted in the same trajectories, also rare hops.
     budget : float, optional
         The most wall hits and disc collisions, an integer from 1 on. If left out, the error is
         reached unless it takes about a day.
@@ -548,8 +548,8 @@ def sample(
 ) -> Measurements:
     """Measure volume and areas of configuration space by Monte Carlo: {quantity: ``Measurement``}.
 
-    Areas are estimated by shells: z compares with the exact expectation of the shell. Samples are
-    of a given number, or as many as an ``error`` needs, in rounds as in ``simulate``.
+    Areas are estimated by shells: z compares with the exact expectation of the shell. The number of
+    ``samples`` is given, or follows from an ``error``, in rounds as in ``simulate``.
 
     Parameters
     ----------

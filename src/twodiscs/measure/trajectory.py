@@ -286,7 +286,7 @@ def trajectory(
 ) -> Trajectory:
     """Follow one trajectory: a table with one row per event, its time, name and the state after it.
 
-    Hops are events too, unless you leave them out. On periodic axes positions go on beyond the
+    Hops also have rows, unless you leave them out. On periodic axes positions go on beyond the
     cell.
 
     Parameters

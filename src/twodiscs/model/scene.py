@@ -476,8 +476,8 @@ class Scene(Box):
     The total energy is 1/2. Each effect is absent by default. More than two discs are equal, in the
     plane. They can have ``friction``, ``moment_of_inertia`` and ``periodic``: the box is then a
     ring along x or y, or a torus, and smooth discs have a total momentum of 0 along periodic axes.
-    A collision or a hop is then of any pair. A hit of the right or the top wall is of one disc,
-    averaged over all initial conditions.
+    The hops and collisions of all pairs count then, and the hits of one disc on the right and the
+    top wall, averaged over all initial conditions.
 
     Parameters
     ----------

@@ -44,7 +44,7 @@ class AccuracyCostTable(Table):
         "error": NUMBER("root mean square of the relative error against the exact value"),
         "repetitions": COUNT("independent runs behind it"),
         "c": SECONDS("time × error² of this method, above its floor"),
-        "floor": NUMBER("error that no work removes; 0 if it is within the noise"),
+        "floor": NUMBER("error that remains in long runs; 0 if it is within the noise"),
         "slope": NUMBER("power of the time by which errors fall, above the floor"),
         "slope_stderr": NUMBER("its standard error"),
     }
