@@ -430,7 +430,7 @@ class Cost(Printed):
         from twodiscs.dynamics.paths import row_bytes
 
         return (
-            f"Processor time to reach a relative error, on one core of {self.machine}. The smallest "
+            f"Processor time to reach a relative error on one core of {self.machine}. The smallest "
             "run has the least error; the floor remains however long you compute. A trajectory has "
             f"no error, and {row_bytes(self.scene)} bytes for each row."
         )
