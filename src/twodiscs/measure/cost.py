@@ -182,7 +182,7 @@ class Price:
         return max(self.floor, math.sqrt(self.c / self.least_seconds))
 
     def seconds(self, error: float) -> float | None:
-        """Return the processor time of a relative ``error``.
+        """Return the processor time to reach a relative ``error``.
 
         Parameters
         ----------

@@ -80,7 +80,7 @@ STUDY = Study(
             h/4 (dashed), where the hop becomes blocked. Symbols are true errors against the exact
             value, root mean square over independent runs: full symbols are from a long run, open
             symbols from this build on this machine. Lines are c/error², for a method with a bias
-            c/(error² − bias²): no time removes the error of time steps Δt or of thick shells ε.
+            c/(error² − bias²): the bias of time steps Δt and of thick shells ε remains.
             Error bars are one standard error, where runs are few. "Dynamics" follows trajectories
             in lock step from ordinary initial states, "strips" from initial states next to the hop;
             "one by one" is the same dynamics, one trajectory after another. Near h/4 this is a line
@@ -94,7 +94,7 @@ STUDY = Study(
             "The cost of an accuracy against the radius",
             "4 What accuracy costs",
             """
-            c, the processor time of a relative error times its square, against the distance from
+            c, the processor time to a relative error times its square, against the distance from
             the radius h/4 at which horizontal hops are blocked: (a) mean times by dynamics from
             ordinary initial states, (b) hops from initial states in a strip, (c) volume and areas
             by samples of the prism, (d) by conditioned samples. Areas have thin shells. An error ε

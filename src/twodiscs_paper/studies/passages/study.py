@@ -279,7 +279,7 @@ STUDY = Study(
             ring of the length 3σ. In a step a coordinate of a free disc moves by a normal deviate
             of the standard deviation s. The abscissa is the length √(εσ) of the neck over s.
             Reflected discs fly through the step and collide elastically. Steps of both discs or of
-            one are rejected if the discs overlap; walls reflect them, or reject them too. (a) κ,
+            one are rejected if the discs overlap; walls reflect them, or also reject them. (a) κ,
             the rate of passages over that of crossings in transition state theory: by crossings
             that are followed both ways (open), and by first passages (dots). Dashed: 1, and √(2/π)
             s/√(εσ) of diffusion. (b) The local power of ε with which the mean time between passages
