@@ -314,9 +314,10 @@ STUDY = Study(
             that are blocked (r = 0.28 h, full symbols) and open (δ = 1/8, open symbols), in units
             of ℓ², h and the thermal speed. Black lines are the theory of blocked ones, without a
             free parameter: sound of smooth discs, until it has gone around half of the ring, and
-            damped sound with friction. Rough discs (I = 1/2) have no such line. Dashes are measured
-            too: the motion of the places plus the steps of the discs from place to place. (b) Open
-            files with friction: displacements in units of F√t×, at times over t× = (F/2D)², where
+            damped sound with friction. Rough discs (I = 1/2) have no such line. Dashes are also
+            measured: the motion of the places plus the steps of the discs from place to place.
+            (b) Open files with friction: displacements in units of F√t×, at times over
+            t× = (F/2D)², where
             single file and hops contribute equally. Error bars are one standard error.
             """,
             long_runs={"displacements": "paper/long_run/displacements/passages.csv"},
