@@ -43,6 +43,8 @@ def test_keyboards_and_readers_of_screens_reach_every_page(site, tmp_path):
         for path, width, scheme in product(site.rglob("*.html"), WIDTHS, ("light", "dark")):
             page.open(path.as_uri(), width=width, scheme=scheme)
             assert page.violations() == [], (path.name, width, scheme)
+        page.open((site / "index.html").as_uri())
+        page.until("document.querySelector('iframe').clientHeight > 1200")
 
 
 @pytest.mark.slow

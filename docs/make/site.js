@@ -20,3 +20,10 @@ if (!document.querySelector("h1")) {
     const [title] = document.title.split(" - ");
     document.querySelector("article")?.prepend(Object.assign(document.createElement("h1"), { textContent: title }));
 }
+
+// The frame of the explorer is as high as its page, which says how high it is.
+addEventListener("message", ({ data, source }) => {
+    for (const frame of document.querySelectorAll("iframe")) {
+        if (frame.contentWindow === source && data.explorer) frame.style.height = `${data.explorer}px`;
+    }
+});

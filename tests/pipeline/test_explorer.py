@@ -328,9 +328,10 @@ def test_every_control_has_a_name(driven):
     assert len({*names} - {""}) == len(names) == 16
 
 
+@pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", [1280, 768, 390])
-def test_keyboards_and_readers_of_screens_reach_everything(driven, width):
-    assert driven("seed=7&runs=10", width=width).violations() == []
+def test_keyboards_and_readers_of_screens_reach_everything(driven, width, scheme):
+    assert driven("seed=7&runs=10", width=width, scheme=scheme).violations() == []
 
 
 def test_who_wants_no_motion_starts_it_himself_and_it_can_be_paused(driven):

@@ -44,7 +44,9 @@ const NEEDED = { vertical_hop: "y", horizontal_hop: "x", disc_collision: "", any
 const DISCS = ["vertical_hop", "horizontal_hop"];
 
 const at = (id) => document.getElementById(id);
-const colour = (event) => DATA.looks[event][0];
+/** Blue of figures on paper is too dark on a dark page. */
+const isDark = matchMedia("(prefers-color-scheme: dark)"), ON_DARK = { "#0072B2": "#8CA6FF" };
+const colour = (event) => (isDark.matches && ON_DARK[DATA.looks[event][0]]) || DATA.looks[event][0];
 const key = (event) =>
   `<span class="key" style="color: ${colour(event)}">${GLYPHS[DATA.looks[event][1]]}</span>`;
 
@@ -543,12 +545,14 @@ prepareControls();
 prepareTexts();
 readAddress();
 showPause();
-for (const [target, event] of [
-  [window, "resize"], [matchMedia("(prefers-color-scheme: dark)"), "change"],
-]) {
+for (const [target, event] of [[window, "resize"], [isDark, "change"]]) {
   target.addEventListener(event, () => {
+    prepareTexts();
     renew();
     draw();
   });
 }
+// A page that has this one in a frame makes the frame as high.
+const whole = document.querySelector("main");
+new ResizeObserver(() => parent.postMessage({ explorer: whole.offsetHeight }, "*")).observe(whole);
 requestAnimationFrame(frame);
