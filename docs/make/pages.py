@@ -3,9 +3,9 @@
     python docs/make/pages.py
 
 writes, in the folder where it is called: config/schema.json, the keywords and names that editors
-complete in src/twodiscs/__init__.pyi, and in the pages of docs the output of `twodiscs`, the targets
-of studies, the lists that 1.x promises and the costs of changes. It ends with a sentence if the code
-lacks a name that is promised.
+complete in src/twodiscs/__init__.pyi, and in the pages of docs the output of `twodiscs`, the
+targets of studies, the lists that 1.x promises and the costs of changes. It ends with a sentence if
+the code lacks a name that is promised.
 """
 
 import json

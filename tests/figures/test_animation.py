@@ -16,13 +16,13 @@ from PIL import Image
 import twodiscs as td
 from twodiscs.analysis.tables import TrajectoryTable
 from twodiscs.figures import animation, style
-from twodiscs.figures.animation import AFTER, BEFORE, FRAME, HOP, LAST, MARKED
+from twodiscs.figures.animation import FRAMES_AFTER, MARKED_FRAMES
 from twodiscs.model.scene import Box
 
 BOX, RADIUS = Box(1.5, 1.0), 0.24
 
 #: Frames on either side of a hop in a file: a few more than those with its sign.
-FEW = MARKED + 4
+FEW = MARKED_FRAMES + 4
 
 
 @pytest.fixture(scope="module")
@@ -73,11 +73,11 @@ TWO = [(3.0, "vertical_hop"), (4.0, "vertical_hop")]
     ("rows", "discs", "hop", "centre", "frames"),
     [
         # The first lone hop of the rarer kind.
-        (at(*COMMON, *RARE), 2, "horizontal_hop", 400.0, range(400 - BEFORE, 400 + AFTER + 1)),
+        (at(*COMMON, *RARE), 2, "horizontal_hop", 400.0, range(290, 461)),
         # Many discs are shown from the start, for as long as a hop of two.
-        (at((300.0, "vertical_hop")), 3, None, 0.0, range(BEFORE + AFTER + 1)),
+        (at((300.0, "vertical_hop")), 3, None, 0.0, range(171)),
         # Hops that are never alone, and a trajectory that is too short.
-        (at(*TWO), 2, "vertical_hop", 3.0, range(4 + AFTER)),
+        (at(*TWO), 2, "vertical_hop", 3.0, range(4 + FRAMES_AFTER)),
         (at((3.0, "disc_collision"), end=9.5), 2, None, 0.0, range(10)),
     ],
 )  # fmt: skip
@@ -99,8 +99,8 @@ def test_a_file_of_another_kind_and_a_wrong_radius_are_refused():
 
 def test_the_hop_is_a_frame_and_the_only_one_that_stops(rows, tmp_path, monkeypatch):
     """A GIF, a PNG and a page show the same, ``FEW`` frames on either side of the hop."""
-    monkeypatch.setattr(animation, "BEFORE", FEW)
-    monkeypatch.setattr(animation, "AFTER", FEW)
+    monkeypatch.setattr(animation, "FRAMES_BEFORE", FEW)
+    monkeypatch.setattr(animation, "FRAMES_AFTER", FEW)
     paths = [tmp_path / f"a.{kind}" for kind in ("gif", "PNG", "html")]
     with style.context():
         animation.animate(BOX, RADIUS, rows, paths)
@@ -122,10 +122,10 @@ def test_the_hop_is_a_frame_and_the_only_one_that_stops(rows, tmp_path, monkeypa
     assert abs(now) < 1e-12
     assert before * after < 0
     shown = [milliseconds for milliseconds, _ in frames]
-    assert shown == [*([FRAME] * FEW), HOP, *([FRAME] * (FEW - 1)), LAST]
+    assert shown == [*([50] * FEW), 1500, *([50] * (FEW - 1)), 1000]  # milliseconds
     orange = np.array([0xE6, 0x9F, 0x00])
     marked = [k for k, (_, pixels) in enumerate(frames) if (pixels == orange).all(2).any()]
-    assert marked == list(range(FEW, FEW + MARKED))
+    assert marked == list(range(FEW, FEW + MARKED_FRAMES))
 
 
 #: Paths that are straight, that bend and go on beyond the box, and of discs that turn.

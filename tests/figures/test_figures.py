@@ -67,7 +67,7 @@ def test_texts_stand_clear(name, box):
     # In the tiny box every place of the legend crosses a line: that of a limit or a curve.
     if name == "mean_collision_time" and box != "tiny":
         assert covered(figure.axes[0]) == []
-    assert figure.get_size_inches()[0] == (radius.WIDE if name == "all_areas" else style.COLUMN)
+    assert figure.get_size_inches()[0] == (7.0 if name == "all_areas" else style.COLUMN)
 
 
 def select_numbers(rows, quantity, factor=None, rooted=False):
@@ -94,7 +94,7 @@ def series(name, box, rows):
     """Yield (panel, panel of residuals, quantity, numbers of the rows, exact curve)."""
     radii, columns = curves.exact_curves(box)
     if name == "all_areas":
-        for part in radius.AREAS:
+        for part in radius.AREA_FIGURES:
             for _, _, *numbers in series(part, box, rows):
                 yield part, f"residuals of {part}", *numbers
     elif name == "pressure":
@@ -212,7 +212,7 @@ def test_laws_of_plain_scenes_are_not_drawn_with_effects(name):
 def test_limiting_laws_run_into_the_curves():
     """The law for small discs begins at the limit r → 0, and that of the end ends on the curve."""
     small, last = laws_in(drawn("mean_collision_time", "paper").axes[0])
-    assert small[0][-1] == radius.SMALL * PAPER.largest_radius
+    assert small[0][-1] == radius.SMALL_RANGE * PAPER.largest_radius
     assert small[1][0] == small_radius_time(PAPER, "disc_collision", small[0][0])
     time = exact.mean_times(PAPER.scene(float(last[0][-1])))["disc_collision"]
     assert last[1][-1] == pytest.approx(time, rel=1e-3)
@@ -225,7 +225,7 @@ def test_times_approach_the_end_of_their_hop():
     for (event, end), (distances, times) in zip(ends.items(), laws_in(lower), strict=True):
         law = leading_law(PAPER, event)
         np.testing.assert_allclose(times, law.coefficient * (end * distances) ** -2, rtol=1e-5)
-        assert distances.max() < radius.LAW
+        assert distances.max() < radius.LAW_RANGE
     rows = of(tables_of("paper")["mean_times"], event="horizontal_hop")
     shown = {x for line in lower.lines if line.get_marker() == "s" for x in line.get_xdata()}
     assert shown == {1 - row["radius"] / 0.25 for row in rows if row["stderr"]}

@@ -86,7 +86,7 @@ def test_of_very_many_discs_some_lines_are_drawn():
         whole, close = motion.draw_trajectory(box, rows).axes
     assert close.get_xlim()[1] < whole.get_xlim()[1] / 2
     drawn = np.sort([line.get_ydata()[0] for line in whole.lines])
-    assert len(drawn) == len(close.lines) == motion.LINES
+    assert len(drawn) == len(close.lines) == motion.MOST_LINES
     assert (drawn[0], drawn[-1]) == (starts[0], starts[-1])
     assert np.diff(np.searchsorted(starts, drawn)).max() <= 3
 
@@ -107,6 +107,6 @@ def test_a_density_that_bins_are_too_wide_for_is_not_marked():
     row = {"radius": 0.2, "left": 0.0, "exact_mean": 1.0}
     for hop, space in (("vertical_hop", 1.0 - 0.4), ("horizontal_hop", 1.0 - 0.8)):
         for factor in (0.99, 1.01):
-            axes, bin_ = Figure().subplots(), {"event": hop, "right": factor * space / motion.FINE}
-            motion._mark_zero(axes, BOX, row | bin_, "black")
+            axes, right = Figure().subplots(), factor * space / motion.FINE_BINS
+            motion._mark_zero(axes, BOX, row | {"event": hop, "right": right}, "black")
             assert len(axes.lines) == (factor < 1)

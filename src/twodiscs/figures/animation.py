@@ -28,33 +28,11 @@ from twodiscs.figures.style import BLACK, BLUE, GREY, ORANGE, VERMILLION, new_fi
 from twodiscs.model.checks import InputError, check_length, writing_to
 from twodiscs.model.events import HOPS
 
-#: Pixels per inch, and inches: width of the whole, tallest box, panel beneath and margins.
-DPI = 100
-ACROSS, TALLEST, STRIP = 3.8, 2.6, 0.62
-LEFT, RIGHT, TOP, GAP, BOTTOM = 0.5, 0.12, 0.28, 0.1, 0.36
+#: Inches: width of the whole, its margin on the left, and the largest width and height of the box.
+WIDTH, MARGIN, BOX_SIZE = 3.8, 0.5, (3.8 - 0.5 - 0.12, 2.6)
 
-#: The size of letters in the heading over that in other figures; the width of a hop's sign, points.
-LARGER, SIGN = 1.2, 17
-
-#: Points: the distance of a disc's number to the left of its centre and above it, and half of its
-#: height. It is lower if it would leave the box at the top, into the heading.
-BESIDE, HALF = 9, 4
-
-#: Frames before and after the hop, and frames in which a disc of speed 1 moves by the mean side of
-#: the box.
-BEFORE, AFTER, CROSSING = 110, 60, 50
-
-#: The mark that turns with a rough disc begins at this fraction of its radius.
-MARK = 0.65
-
-#: Frames of a trace, and frames in which the hop stays marked.
-TRACE, MARKED = 20, 20
-
-#: Milliseconds of a frame, of the hop and of the last frame.
-FRAME, HOP, LAST = 50, 1500, 1000
-
-#: The number of colours, and their least difference, summed over red, green and blue.
-COLOURS, APART = 32, 60
+#: Frames before and after the hop, frames of a trace, and frames in which the hop stays marked.
+FRAMES_BEFORE, FRAMES_AFTER, TRACE_FRAMES, MARKED_FRAMES = 110, 60, 20, 20
 
 
 def frame_times(rows, step, discs=2):
@@ -73,11 +51,11 @@ def frame_times(rows, step, discs=2):
     isolated = [
         time
         for before, time, after in zip(times, times[1:], times[2:], strict=False)
-        if time - before > BEFORE * step and after - time > AFTER * step
+        if time - before > FRAMES_BEFORE * step and after - time > FRAMES_AFTER * step
     ]
     centre = (isolated or times[1:])[0] if hop else start
-    later = AFTER if discs == 2 else BEFORE + AFTER
-    frames = centre + step * np.arange(-BEFORE if hop else 0, later + 1)
+    later = FRAMES_AFTER if discs == 2 else FRAMES_BEFORE + FRAMES_AFTER
+    frames = centre + step * np.arange(-FRAMES_BEFORE if hop else 0, later + 1)
     frames = frames[(frames >= start) & (frames <= end)]
     if len(frames) < 2:
         lasts = end - start
@@ -99,7 +77,8 @@ class MovingDiscs:
         self.periodic = [axis for axis in self.scene.periodic if axis in self.sides]
         known = [name for name, value in rows[0].items() if value is not None]
         self.columns = {name: np.array([row[name] for row in rows]) for name in known}
-        self.step = (box.width + box.height) / CROSSING
+        # In 50 frames a disc of speed 1 moves by two mean sides of the box.
+        self.step = (box.width + box.height) / 50
         self.frames, self.hop, self.centre = frame_times(rows, self.step, box.discs)
         self.axis = "y" if self.hop == "vertical_hop" else "x"
 
@@ -151,7 +130,7 @@ class MovingDiscs:
         times = self.columns["time"]
         path = np.array([start, *times[(times > start) & (times < end)], end])
         if self.scene.field or self.scene.periodic:
-            between = np.arange(start, end, TRACE * self.step / 100)
+            between = np.arange(start, end, TRACE_FRAMES * self.step / 100)
             path = np.union1d(path, between[between < end])  # by rounding the last may be > end
         return path
 
@@ -162,18 +141,21 @@ class MovingDiscs:
 def draw_panels(motion):
     """Return new axes of the box, with its walls and heading, and of the strip beneath it."""
     box, radius = motion.box, motion.scene.radius
-    inches, margin = drawing.scale(box.width, box.height, ACROSS - LEFT - RIGHT, TALLEST)
-    lines, beneath = panels.heading(box, panels.radius_text(radius)), BOTTOM + STRIP + GAP
-    up = SIGN if box.discs == 2 and not panels.is_short(box, radius) else 0
-    heading = LARGER * panels.LINE * (len(lines) - 1) + up / 72
-    figure = new_figure(beneath + inches * box.height + TOP + heading, ACROSS)
-    figure.set_dpi(DPI)
+    inches, margin = drawing.scale(box.width, box.height, *BOX_SIZE)
+    lines, bottom, tall = panels.heading(box, panels.radius_text(radius)), 0.36, 0.62
+    beneath = bottom + tall + 0.1
+    # Points: the sign of a hop has its own line.
+    up = 17 if box.discs == 2 and not panels.is_short(box, radius) else 0
+    # Letters are larger than in other figures.
+    heading = 1.2 * panels.LINE_HEIGHT * (len(lines) - 1) + up / 72
+    figure = new_figure(beneath + inches * box.height + 0.28 + heading, WIDTH)
+    figure.set_dpi(100)
     x, y = box.width / 2, box.height / 2
-    axes = drawing.add_axes(figure, LEFT + margin, beneath, inches, (-x, x, -y, y))
+    axes = drawing.add_axes(figure, MARGIN + margin, beneath, inches, (-x, x, -y, y))
     draw_walls(axes, motion.scene)
     above = {"xycoords": "axes fraction", "ha": "left", "va": "bottom", "fontsize": 9}
     drawing.label(axes, ",\n".join(lines), (0, 1), (-72 * margin, 5 + up), **above)
-    strip = panels.add_panel(figure, BOTTOM, STRIP, LEFT, ACROSS - LEFT - RIGHT)
+    strip = panels.add_panel(figure, bottom, tall, MARGIN, BOX_SIZE[0])
     strip.set(xlim=(motion.frames[0], motion.frames[-1]), xlabel="time $t$")
     return axes, strip
 
@@ -238,7 +220,8 @@ def draw_circle(axes, motion, disc, face, edge, across=""):
 
 def draw_trace(axes, motion, disc, colour):
     """Draw the latest path of a disc, which fades with age."""
-    trace, longest = axes.add_collection(LineCollection([], linewidths=1.3)), TRACE * motion.step
+    trace = axes.add_collection(LineCollection([], linewidths=1.3))
+    longest = TRACE_FRAMES * motion.step
 
     def move(time):
         times = motion.path_times(max(time - longest, motion.frames[0]), time)
@@ -261,7 +244,7 @@ def draw_mark(axes, motion, disc):
 
     def move(time):
         (x, y), angle = motion.folded_place(disc, time), np.interp(time, times, angles)
-        ends = radius * np.array([MARK, 1.0])
+        ends = radius * np.array([0.65, 1.0])
         mark.set_data(x + ends * np.cos(angle), y + ends * np.sin(angle))
 
     return mark, move
@@ -280,7 +263,7 @@ def draw_number_beside(axes, motion, disc, colour):
     def move(time):
         number.xy = motion.folded_place(disc, time)
         above = (motion.box.height / 2 - number.xy[1]) / drawing.points(axes)
-        number.xyann = (-BESIDE, min(BESIDE, above - HALF))
+        number.xyann = (-9, min(9, above - 4))  # half of its height is 4
 
     return number, move
 
@@ -304,8 +287,8 @@ def draw_surface(axes, motion):
 
 
 def draw_sign(axes, motion):
-    """Draw the sign of the hop, which stays for ``MARKED`` frames."""
-    _, margin = drawing.scale(*motion.sides.values(), ACROSS - LEFT - RIGHT, TALLEST)
+    """Draw the sign of the hop, which stays for some frames."""
+    _, margin = drawing.scale(*motion.sides.values(), *BOX_SIZE)
     sign = axes.annotate(
         rf"hop:  ${motion.axis}_1={motion.axis}_2$", (1, 1), (72 * margin, 5), "axes fraction",
         "offset points", ha="right", va="bottom", fontsize=10,
@@ -314,7 +297,7 @@ def draw_sign(axes, motion):
 
     def move(time):
         elapsed = time - motion.centre
-        sign.set_visible(bool(motion.hop) and 0 <= elapsed < MARKED * motion.step)
+        sign.set_visible(bool(motion.hop) and 0 <= elapsed < MARKED_FRAMES * motion.step)
 
     return sign, move
 
@@ -439,8 +422,9 @@ def animate(box, radius, rows, paths):
     palette = _palette(image(motion.centre), sorted(fills))
     true = [image(time) for time in motion.frames]
     first, *later = images = [one.quantize(palette=palette, dither=0) for one in true]
-    durations = [HOP if motion.hop and time == motion.centre else FRAME for time in motion.frames]
-    durations[-1] = LAST
+    # Milliseconds of the hop, of a frame and of the last frame.
+    durations = [1500 if motion.hop and time == motion.centre else 50 for time in motion.frames]
+    durations[-1] = 1000
     for path in paths:
         kind = Path(str(path)).suffix.lower()
         if kind == ".html":
@@ -453,16 +437,16 @@ def animate(box, radius, rows, paths):
 
 
 def _palette(image, kept):
-    """Return an image whose palette has the colours ``kept`` and the most frequent of ``image``.
+    """Return an image whose palette of 32 has the colours ``kept`` and the most frequent ones.
 
-    Two colours differ at least by ``APART``.
+    Two colours of ``image`` differ at least by 60, summed over red, green and blue.
     """
     chosen = [*kept]
     for _, colour in sorted(image.getcolors(1 << 24), reverse=True):
-        if all(sum(map(abs, np.subtract(colour, other))) >= APART for other in chosen):
+        if all(sum(map(abs, np.subtract(colour, other))) >= 60 for other in chosen):
             chosen.append(colour)
     palette = Image.new("P", (1, 1))
-    palette.putpalette([channel for colour in chosen[:COLOURS] for channel in colour])
+    palette.putpalette([channel for colour in chosen[:32] for channel in colour])
     return palette
 
 

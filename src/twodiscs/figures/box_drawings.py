@@ -16,18 +16,10 @@ from twodiscs.model.scene import Box
 # The billiard -------------------------------------------------------------------------------------
 
 
-#: Radius of the discs drawn, over the shorter side.
-MODEL_RADIUS = 0.13
-
-#: Centres over a and b, and velocities in radii: clear of each other and of the origin in any box.
-CENTRES = ((-0.45, -0.52), (0.45, 0.5))
-VELOCITIES = ((0.7, 1.6), (0.95, -1.3))
-
-
 def draw_model(box):
     """Draw two discs in the ``Box``."""
     width, height = drawing.outline(box)
-    radius = MODEL_RADIUS * min(width, height)
+    radius = 0.13 * min(width, height)
     a, b = width / 2 - radius, height / 2 - radius
     right, top = width / 2, height / 2
     figure, axes = drawing.single((-right, right, -top, top), 0.3, 0.34, 0.3, 0.3)
@@ -40,9 +32,9 @@ def draw_model(box):
         drawing.arrow(axes, (0, 0), head, width=0.6, size=6)
         drawing.label(axes, name, head, offset)
     drawing.label(axes, "$0$", (0, 0), (-4, -4))
-    for number, position, speed in zip((1, 2), CENTRES, VELOCITIES, strict=True):
-        centre = (position[0] * a, position[1] * b)
-        _disc(axes, number, centre, radius, (radius * speed[0], radius * speed[1]))
+    # Centres over a and b, velocities in radii: clear of each other and of the origin in any box.
+    for number, x, y, u, v in ((1, -0.45, -0.52, 0.7, 1.6), (2, 0.45, 0.5, 0.95, -1.3)):
+        _disc(axes, number, (x * a, y * b), radius, (radius * u, radius * v))
 
     tall = height > width / 2
     for at, stops, text, offset, turn in (
@@ -76,24 +68,21 @@ def _disc(axes, number, centre, radius, velocity):
 # The largest radius -------------------------------------------------------------------------------
 
 
-#: Inches: the tallest drawing of the box, the space around it, the map beneath and its margins.
-JAMMED_TALLEST, JAMMED_ABOVE, JAMMED_BENEATH = 1.75, 0.08, 0.42
-JAMMED_LEFT, JAMMED_RIGHT = 0.34, 0.58
-MAP_LEFT, MAP_RIGHT, MAP_BOTTOM, MAP_HEIGHT = 0.48, 0.1, 0.36, 1.5
+#: Inches to the left of the map.
+MAP_MARGIN = 0.48
 
 
 def draw_largest_radius(box):
     """Draw the ``Box`` with discs that just fit, and the map."""
     width, height = drawing.outline(box)
-    across = COLUMN - JAMMED_LEFT - JAMMED_RIGHT
-    inches, spare = drawing.scale(width, height, across, JAMMED_TALLEST)
-    floor = MAP_BOTTOM + MAP_HEIGHT + JAMMED_BENEATH
-    figure = new_figure(floor + inches * height + JAMMED_ABOVE)
+    # Inches: the largest drawing of the box, and its floor above the map.
+    inches, spare = drawing.scale(width, height, COLUMN - 0.34 - 0.58, 1.75)
+    floor = 0.36 + 1.5 + 0.42
+    figure = new_figure(floor + inches * height + 0.08)
     extent = (-width / 2, width / 2, -height / 2, height / 2)
-    axes = drawing.add_axes(figure, JAMMED_LEFT + spare, floor, inches, extent)
+    axes = drawing.add_axes(figure, 0.34 + spare, floor, inches, extent)
     _jammed(axes, width, height)
-    across = COLUMN - MAP_LEFT - MAP_RIGHT
-    _map(panels.add_panel(figure, MAP_BOTTOM, MAP_HEIGHT, MAP_LEFT, across), box)
+    _map(panels.add_panel(figure, 0.36, 1.5, MAP_MARGIN, COLUMN - MAP_MARGIN - 0.1), box)
     return figure
 
 
@@ -159,7 +148,7 @@ def _map(axes, box):
     axes.set(xlim=(1, last), ylim=(0, 0.6), xlabel=f"${long}/{short}$", ylabel=f"$r/{short}$")
     axes.xaxis.set_major_locator(MultipleLocator(0.5))
     corner = {"xycoords": "axes fraction", "ha": "left", "va": "top"}
-    drawing.label(axes, "(b)", (0, 1), (2 - 72 * MAP_LEFT, 3), **corner)
+    drawing.label(axes, "(b)", (0, 1), (2 - 72 * MAP_MARGIN, 3), **corner)
     clear = 2.3 if shape > 2.45 else 2.9
     drawing.label(axes, "both hops", (clear, 0.125))
     drawing.label(axes, f"{hops} hops", (clear, 0.375))
@@ -173,49 +162,40 @@ def _map(axes, box):
 # The regimes of the integration -------------------------------------------------------------------
 
 
-#: The radius drawn for a regime, as a fraction of the way between the regime's limits.
-FRACTION = {"all-hops": 0.55, "vertical-hops": 0.5, "horizontal-hops": 0.5, "no-hops": 0.3}
-
-HEADINGS = {
-    "all-hops": "both hops",
-    "vertical-hops": "vertical hops",
-    "horizontal-hops": "horizontal hops",
-    "no-hops": "no hops",
+#: {regime: (its name, the radius drawn as a fraction of the way between the regime's limits)}
+REGIME_PANELS = {
+    "all-hops": ("both hops", 0.55),
+    "vertical-hops": ("vertical hops", 0.5),
+    "horizontal-hops": ("horizontal hops", 0.5),
+    "no-hops": ("no hops", 0.3),
 }
-
-#: Inches around a panel: labels on the left, below and above, and the heading beside it.
-REGIME_LEFT, REGIME_BELOW, REGIME_ABOVE, REGIME_BESIDE = 0.3, 0.22, 0.14, 1.3
-
-#: Longer boxes are drawn shorter.
-REGIME_LONGEST = 2.5
-
-#: The largest height of all panels together, in inches.
-REGIME_TALLEST = 4.5
 
 
 def draw_regimes(box):
     """Draw one panel for each regime of the ``Box``."""
-    shown = Box(*drawing.outline(box, REGIME_LONGEST))
+    shown = Box(*drawing.outline(box, 2.5))  # longer boxes are drawn shorter
     regimes = []
     for (low, below), (high, above) in pairwise([(0, "0"), *limits(shown)]):
         regime = shown.scene((low + high) / 2).regime
-        here = shown.scene(low + FRACTION[regime] * (high - low))
+        here = shown.scene(low + REGIME_PANELS[regime][1] * (high - low))
         regimes.append((here, f"${below}<r<{above}$"))
     ratios = [here.range_y / here.range_x for here, _ in regimes]
-    side = min(COLUMN - REGIME_LEFT - REGIME_BESIDE, REGIME_TALLEST / sum(ratios))
-    left = (COLUMN - REGIME_LEFT - REGIME_BESIDE - side) / 2 + REGIME_LEFT
-    heights = [REGIME_BELOW + side * ratio + REGIME_ABOVE for ratio in ratios]
+    # Inches: labels on the left of a panel, below and above, the heading beside it, all panels.
+    margin, below, beside = 0.3, 0.22, 1.3
+    side = min(COLUMN - margin - beside, 4.5 / sum(ratios))
+    left = (COLUMN - margin - beside - side) / 2 + margin
+    heights = [below + side * ratio + 0.14 for ratio in ratios]
     figure = new_figure(sum(heights))
     bottom = sum(heights)
     for i, ((here, between), height) in enumerate(zip(regimes, heights, strict=True)):
         bottom -= height
         inches, extent = side / here.range_x, (0, here.range_x, 0, here.range_y)
-        axes = drawing.add_axes(figure, left, bottom + REGIME_BELOW, inches, extent)
+        axes = drawing.add_axes(figure, left, bottom + below, inches, extent)
         _panel(axes, here, 72 * inches)
         if i == 0:
             drawing.label(axes, "$u$", ((here.range_x + here.contact_distance) / 2, 0), (0, -7))
             drawing.label(axes, "$v$", (0, (here.range_y + here.contact_distance) / 2), (-8, 0))
-        heading = f"({'abc'[i]}) {HEADINGS[here.regime]}\n{between}"
+        heading = f"({'abc'[i]}) {REGIME_PANELS[here.regime][0]}\n{between}"
         corner = (here.range_x, here.range_y)
         drawing.label(axes, heading, corner, (12, 2), linespacing=1.5, ha="left", va="top")
     return figure
@@ -277,34 +257,22 @@ def _ends(axes, name, end, sigma, points, at, offset):
 # The shells of surfaces ---------------------------------------------------------------------------
 
 
-#: Radius of the discs and thickness of the shell, over the shorter side.
-SHELL_RADIUS = 0.2
-SHELL_THICKNESS = 0.06
-
-#: Longer boxes are drawn shorter: the shells are at one end of them.
-SHELL_LONGEST = 1.5
-
-SHELL_LEFT, SHELL_GAP, SHELL_RIGHT, SHELL_BELOW, SHELL_ABOVE = 0.3, 0.42, 0.08, 0.3, 0.26
-
-#: The largest height of the panels, in inches.
-SHELL_TALLEST = 1.5
-
-
 def draw_shells(box):
     """Draw the shells in the ``Box``."""
-    width, height = drawing.outline(box, SHELL_LONGEST)
+    width, height = drawing.outline(box, 1.5)  # the shells are at one end of longer boxes
     short = min(width, height)
-    radius, epsilon = SHELL_RADIUS * short, SHELL_THICKNESS * short
+    radius, epsilon = 0.2 * short, 0.06 * short
     a, b = width / 2 - radius, height / 2 - radius
-    across = COLUMN - SHELL_LEFT - SHELL_GAP - SHELL_RIGHT
-    side = min(across / (1 + a / b), SHELL_TALLEST)
-    left = SHELL_LEFT + (across - side * (1 + a / b)) / 2
-    figure = new_figure(SHELL_BELOW + side + SHELL_ABOVE)
-    square = drawing.add_axes(figure, left, SHELL_BELOW, side / (2 * b), (-b, b, -b, b))
+    margin, gap, below = 0.3, 0.42, 0.3  # inches
+    across = COLUMN - margin - gap - 0.08
+    side = min(across / (1 + a / b), 1.5)
+    left = margin + (across - side * (1 + a / b)) / 2
+    figure = new_figure(below + side + 0.26)
+    square = drawing.add_axes(figure, left, below, side / (2 * b), (-b, b, -b, b))
     _hop(square, b, epsilon)
     extent = (0, sqrt(2) * a, 0, sqrt(2) * b)
-    left, inches = left + side + SHELL_GAP, side / (sqrt(2) * b)
-    quarter = drawing.add_axes(figure, left, SHELL_BELOW, inches, extent)
+    left, inches = left + side + gap, side / (sqrt(2) * b)
+    quarter = drawing.add_axes(figure, left, below, inches, extent)
     _collision(quarter, a, b, radius, epsilon)
     return figure
 

@@ -9,54 +9,46 @@ from matplotlib.patches import Polygon
 from twodiscs.figures import drawing
 from twodiscs.figures.style import BLACK, BLUE, COLUMN, GREY, VERMILLION, new_figure
 
-#: Radius of the discs, over the shorter side, and x and y of the point, over √2 r: neither excluded
-#: band vanishes there.
-RADIUS = 0.16
-POINT = (0.88, 0.72)
-
-#: X and Y of the point, its positions along the diagonals, over their largest values.
-ALONG = (0.28, 0.45)
-
-LEFT, RIGHT, GAP, BOTTOM, TOP = 0.27, 0.1, 0.42, 0.3, 0.28
-
-#: Inches between the squares and the prism above them, and the largest height of that.
-BETWEEN, PRISM = 0.42, 1.7
-
 #: The direction of view of the prism, in degrees around the vertical and above the horizon.
 AZIMUTH, ELEVATION = -112.0, 24.0
 
-#: Strips of the cylinder, and its colours: outside, where light falls on it or not, and cut.
-STRIPS, SHADES, CUT = 60, ((0.72, 0.60, 0.32), (0.99, 0.95, 0.82)), "#E2CF95"
+#: Strips of the cylinder.
+STRIPS = 60
 
 
 def draw(box):
     """Draw the two squares of the ``Box``."""
     width, height = drawing.outline(box)
-    radius = RADIUS * min(width, height)
-    side = (COLUMN - LEFT - RIGHT - GAP) / 2
+    radius = 0.16 * min(width, height)
+    # Inches: around and between the squares, and between them and the prism.
+    margin, gap, bottom, top, between = 0.27, 0.42, 0.3, 0.28, 0.42
+    side = (COLUMN - margin - 0.1 - gap) / 2
     halves = (width / 2 - radius, height / 2 - radius)
     corners = [_seen(corner) for corner in product(*((-n, n) for n in _sizes(halves)))]
     x, y = zip(*corners, strict=True)
     extent = (min(x), max(x), min(y), max(y))
     wide, high = max(x) - min(x), max(y) - min(y)
-    inches, spare = drawing.scale(wide, high, COLUMN - 2 * LEFT, PRISM)
-    squares = BOTTOM + side + TOP
-    figure = new_figure(squares + BETWEEN + inches * high)
-    floor = squares + BETWEEN - TOP / 2
-    axes = drawing.add_axes(figure, LEFT + spare, floor, inches, extent)
+    inches, spare = drawing.scale(wide, high, COLUMN - 2 * margin, 1.7)
+    squares = bottom + side + top
+    figure = new_figure(squares + between + inches * high)
+    floor = squares + between - top / 2
+    axes = drawing.add_axes(figure, margin + spare, floor, inches, extent)
     _prism(axes, halves, sqrt(2) * radius)
-    for text, at in (("(a)", squares + BETWEEN + inches * high - 0.08), ("(b)", squares)):
+    for text, at in (("(a)", squares + between + inches * high - 0.08), ("(b)", squares)):
         figure.text(0.01, (at - 0.02) / figure.get_figheight(), text, va="top")
+    # x and y of the point over √2 r: neither excluded band vanishes there.
+    point = (0.88, 0.72)
     for i, (half, colour) in enumerate(zip(halves, (BLUE, VERMILLION), strict=True)):
-        left = LEFT + i * (side + GAP)
-        axes = drawing.add_axes(figure, left, BOTTOM, side / (2 * half), (-half, half, -half, half))
+        left = margin + i * (side + gap)
+        axes = drawing.add_axes(figure, left, bottom, side / (2 * half), (-half, half, -half, half))
         name, other = ("x", "y") if i == 0 else ("y", "x")
-        band = sqrt(2) * radius * sqrt(1 - POINT[1 - i] ** 2)
+        band = sqrt(2) * radius * sqrt(1 - point[1 - i] ** 2)
         _square(axes, half, band, sqrt(2) * radius, (name, other), "ab"[i])
-        depth = POINT[i] * sqrt(2) * radius
-        _point(axes, depth, ALONG[i] * (sqrt(2) * half - depth), colour)
-    cross = (LEFT + side + 0.13) / COLUMN
-    middle = (BOTTOM + side / 2) / figure.get_figheight()
+        depth = point[i] * sqrt(2) * radius
+        # X and Y of the point, its positions along the diagonals, over their largest values.
+        _point(axes, depth, (0.28, 0.45)[i] * (sqrt(2) * half - depth), colour)
+    cross = (margin + side + 0.13) / COLUMN
+    middle = (bottom + side / 2) / figure.get_figheight()
     figure.text(cross, middle, r"$\times$", fontsize=12, ha="center", va="center")
     return figure
 
@@ -122,7 +114,8 @@ def _cylinder(axes, half_length, radius):
         along = end * (half_length - abs(across))
         return _seen((*_turned(across, along), radius * sin(angle)))
 
-    dark, light = map(np.array, SHADES)
+    # Where light falls on it or not.
+    dark, light = np.array((0.72, 0.60, 0.32)), np.array((0.99, 0.95, 0.82))
     for angle, later in pairwise(angles):
         middle = (angle + later) / 2
         facing = _towards((*_turned(cos(middle), 0), sin(middle)))
@@ -135,7 +128,7 @@ def _cylinder(axes, half_length, radius):
         for first, normal in ((-pi / 2, _end_normal(end, True)), (pi / 2, _end_normal(end, False))):
             half = [rim(angle, end) for angle in np.linspace(first, first + pi, STRIPS)]
             if _towards(normal) > 0:
-                axes.add_patch(Polygon(half, facecolor=CUT, edgecolor=BLACK, lw=0.6, clip_on=False))
+                axes.add_patch(Polygon(half, fc="#E2CF95", ec=BLACK, lw=0.6, clip_on=False))
             else:
                 drawing.line(axes, half, colour=GREY, width=0.4, style=(0, (3, 2)))
 

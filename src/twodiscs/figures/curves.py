@@ -70,36 +70,26 @@ def hop_ends(box):
     }
 
 
-#: The closest approach to the limits of a regime, over its length; ``FARTHER`` is for effects.
-CLOSEST, FARTHER = 1e-9, 1e-5
-
-#: The number of radii in each regime. They are Chebyshev nodes, which are dense at both ends, where
-#: curves bend, and go on in geometric progression to the limits. Effects have fewer, because their
-#: theory takes longer.
-NODES, FEWER, GEOMETRIC = 96, 32, 8
-
-#: From this number of discs on one radius may take minutes. Figures then have no curves, but exact
-#: values at the radii of the rows.
-WITHOUT_CURVES = 4
-
-
 def branches(box, others=(), rows=()):
     """Return one ascending array of radii for each regime of a ``Box``, none on its limits.
 
     The first one starts at 1e-4 of its length, where the law for small radii holds. ``others`` are
-    more limits, such as the limits of another box in the same figure. ``WITHOUT_CURVES`` each
-    radius of the ``rows`` is a branch.
+    more limits, such as the limits of another box in the same figure. For more than three discs one
+    radius may take minutes: there are no curves, and each radius of the ``rows`` is a branch.
+
+    Radii are Chebyshev nodes, which are dense at both ends, where curves bend, and go on in
+    geometric progression to the limits. Effects have fewer, because their theory takes longer.
     """
-    if box.discs >= WITHOUT_CURVES:
+    if box.discs > 3:
         return [np.array([radius]) for radius in sorted({row["radius"] for row in rows})]
     own = [radius for radius, _ in limits(box)]
     ends = sorted({0, *own, *(radius for radius in others if radius < own[-1])})
-    nodes = NODES if box.is_plain else FEWER
+    nodes, closest = (96, 1e-9) if box.is_plain else (32, 1e-5)
     inner = (1 - np.cos(np.pi * np.arange(1, nodes) / nodes)) / 2
-    near = np.geomspace(CLOSEST if box.is_plain else FARTHER, inner[0], GEOMETRIC)
+    near = np.geomspace(closest, inner[0], 8)
     regimes = []
     for low, high in pairwise(ends):
-        start = np.geomspace(1e-4, inner[0], GEOMETRIC) if low == 0 else near
+        start = np.geomspace(1e-4, inner[0], 8) if low == 0 else near
         fractions = np.unique(np.concatenate([start, inner, 1 - near]))
         radii = low + fractions * (high - low)
         regimes.append(np.unique(radii[(radii > low) & (radii < high)]))

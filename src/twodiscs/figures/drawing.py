@@ -11,18 +11,15 @@ from matplotlib.patches import Circle, Polygon, Rectangle
 
 from twodiscs.figures.style import BLACK, BLUE, COLUMN, GREY, VERMILLION, new_figure
 
-#: Tallest drawing, in inches.
-TALLEST = 3.6
-
-#: The longest box drawn to scale, over its short side; it shows everything that longer boxes show.
-LONGEST = 4
-
 #: Fill and outline of disc 1 and disc 2.
 DISCS = (("#CFE3F1", BLUE), ("#F8DDC8", VERMILLION))
 
 
-def outline(box, longest=LONGEST):
-    """Return the sides of a drawn ``Box``, the longer cut to ``longest`` times the shorter."""
+def outline(box, longest=4):
+    """Return the sides of a drawn ``Box``, the longer cut to ``longest`` times the shorter.
+
+    A box of 4:1 shows everything that longer boxes show.
+    """
     return min(box.width, longest * box.height), min(box.height, longest * box.width)
 
 
@@ -51,7 +48,7 @@ def single(extent, left, right, bottom, top):
     """Return (figure, axes) of one panel as large as a column allows, with margins in inches."""
     x0, x1, y0, y1 = extent
     room_x = COLUMN - left - right
-    inches, spare = scale(x1 - x0, y1 - y0, room_x, TALLEST - bottom - top)
+    inches, spare = scale(x1 - x0, y1 - y0, room_x, 3.6 - bottom - top)
     figure = new_figure(bottom + top + inches * (y1 - y0))
     return figure, add_axes(figure, left + spare, bottom, inches, extent)
 

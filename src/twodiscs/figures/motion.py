@@ -13,13 +13,6 @@ from twodiscs.figures.style import BLACK, BLUE, GREY, LOOKS, SERIES, VERMILLION,
 from twodiscs.model.events import EVENT_AXES, HOPS
 from twodiscs.theory import laws
 
-#: Inches: each of the two panels.
-PANEL = 1.55
-
-#: The mean number of rows in the lower panel, which is lower if hops would be closer than ``APART``
-#: of its width; and its longest time, over that of the upper panel.
-CLOSE, APART, MOST = 150, 0.02, 1 / 3
-
 
 def draw_trajectory(box, rows, radius=None):
     """Draw x2 − x1 against time from trajectory.csv.
@@ -40,7 +33,7 @@ def draw_trajectory(box, rows, radius=None):
     stretches = _stretches(times, hops)
     letters = "bc"[: len(stretches)]
 
-    figure = new_figure(2 * PANEL, layout="constrained")
+    figure = new_figure(2 * 1.55, layout="constrained")
     panel = figure.subplot_mosaic([["a"] * len(letters), [*letters]])
     for name, axes in panel.items():
         thick, size = (0.3, 2.2) if name == "a" else (0.7, 3)
@@ -74,11 +67,12 @@ def _stretches(times, hops):
     The first has the most ``hops``. The second, as long, is around a hop far from all others.
     """
     start, end = times[0], times[-1]
-    length = (end - start) * min(MOST, CLOSE / len(times))
+    # A third of the time or 150 rows, fewer if hops would be closer than a 50th of the panel.
+    length, least_gap = (end - start) * min(1 / 3, 150 / len(times)), 0.02
     first, last = _densest_stretch(hops, length, start, end)
     gaps = np.diff(hops[(hops > first) & (hops < last)])
-    if gaps.size and gaps.min() < APART * length:
-        length = max(gaps.min() / APART, length / 10)
+    if gaps.size and gaps.min() < least_gap * length:
+        length = max(gaps.min() / least_gap, length / 10)
         first, last = _densest_stretch(hops, length, start, end)
     lone = _loneliest_hop(hops, length, start, end)
     second = [] if lone is None else [(lone - length / 2, lone + length / 2)]
@@ -122,23 +116,8 @@ def _densest_stretch(hops, length, start, end):
 # Many discs ---------------------------------------------------------------------------------------
 
 
-#: The colours of few discs.
-FEW = tuple(colour for colour, _ in LOOKS.values())
-
-#: The part of the map of colours of more discs that is neither too dark nor too light.
-LOW, HIGH = 0.05, 0.95
-
-#: Inches: each of the two panels.
-LINES_PANEL = 2.0
-
-#: Points: a line for each disc, in the upper panel and in the lower one.
-THIN, THICK = 0.5, 0.9
-
-#: Bends for each disc that either panel shows.
-BENDS, CLOSE_BENDS = 75, 15
-
-#: The most discs that the legend names, and the most lines in a panel.
-NAMED, LINES = 8, 24
+#: Bends for each disc that either panel shows, and the most lines in a panel.
+BENDS, CLOSE_BENDS, MOST_LINES = 75, 15, 24
 
 
 def longer_axis(box):
@@ -150,9 +129,11 @@ def disc_colours(box, first):
     """Return a colour for each disc, by its rank along the longer side in the row ``first``."""
     places = [first[f"{longer_axis(box)}{disc}"] for disc in range(1, box.discs + 1)]
     ranks = np.argsort(np.argsort(places))
-    if box.discs <= len(FEW):
-        return [to_rgb(FEW[rank]) for rank in ranks]
-    shades = LOW + (HIGH - LOW) * ranks / (box.discs - 1)
+    if box.discs <= len(LOOKS):
+        colours = [colour for colour, _ in LOOKS.values()]
+        return [to_rgb(colours[rank]) for rank in ranks]
+    # The ends of the map are too dark and too light.
+    shades = 0.05 + (0.95 - 0.05) * ranks / (box.discs - 1)
     return [to_rgb(colormaps["turbo"](shade)) for shade in shades]
 
 
@@ -160,74 +141,59 @@ def draw_world_lines(box, rows, radius=None):
     """Draw the positions of the discs of a ``Box`` along its longer side, against time.
 
     ``rows`` are the rows of trajectory.csv; the first ones are shown, and discs move freely between
-    them. If there are more than ``LINES`` discs, this number is drawn, at equal distances in their
-    order at the start. The ``radius``, if given, is written above.
+    them. If there are more than ``MOST_LINES`` discs, this number is drawn, at equal distances in
+    their order at the start. The ``radius``, if given, is written above.
     """
     axis, side = longer_axis(box), max(box.width, box.height)
     rows = [row for row in rows if row["event"] not in HOPS][: BENDS * box.discs + 1]
     times = np.array([row["time"] for row in rows])
-    figure, (whole, close) = panels.stacked(whole=LINES_PANEL, close=LINES_PANEL)
+    figure, (whole, close) = panels.stacked(whole=2.0, close=2.0)
     shades = disc_colours(box, rows[0])
     whole.set_xlim(times[0], times[-1])
     # A short trajectory has fewer rows than either panel could show.
     close.set_xlim(times[0], times[min(CLOSE_BENDS * box.discs, len(times) * CLOSE_BENDS // BENDS)])
     places = np.array([[row[f"{axis}{disc}"] for row in rows] for disc in range(1, box.discs + 1)])
     shown_discs = np.arange(box.discs)
-    if box.discs > LINES:
-        ranks = np.linspace(0, box.discs - 1, LINES).round().astype(int)
+    if box.discs > MOST_LINES:
+        ranks = np.linspace(0, box.discs - 1, MOST_LINES).round().astype(int)
         shown_discs = np.argsort(places[:, 0], kind="stable")[ranks]
-    for axes, width in ((whole, THIN), (close, THICK)):
+    for axes, width in ((whole, 0.5), (close, 0.9)):
         shown = places[:, times <= axes.get_xlim()[1]]
         goes_on = axis in box.effects.get("periodic", "")
         low, high = (shown.min(), shown.max()) if goes_on else (-side / 2, side / 2)
         axes.set(xlabel="time $t$", ylabel=f"${axis}$", ylim=(low, high))
         for disc in shown_discs:
             axes.plot(times, places[disc], color=shades[disc], lw=width)
-    if box.discs <= NAMED:
+    if box.discs <= 8:  # more names have no place
         names = ["disc 1", *map(str, range(2, box.discs + 1))]
         place = {"loc": "outside lower center", "ncols": box.discs}
         figure.legend(close.get_lines(), names, handlelength=1, **place)
     panels.title(whole, "a", box, panels.radius_text(radius))
-    if box.discs > LINES:
-        close.set_title(f"{LINES} of the discs", loc="right", pad=3)
+    if box.discs > MOST_LINES:
+        close.set_title(f"{MOST_LINES} of the discs", loc="right", pad=3)
     return figure
 
 
 # Intervals ----------------------------------------------------------------------------------------
 
 
-#: Inches: the panel of all intervals, and the panel of short ones.
-ALL, SHORT = 2.4, 1.7
-
-#: The longest of the short intervals, in mean times.
-LONGEST_SHORT = 2.5
-
-#: The curve ends before a bin with fewer intervals than this.
-FEWEST = 10
-
 #: The number of bins that can show a density that changes with the room at a hop.
-FINE = 4
+FINE_BINS = 4
 
-#: Length of the dashes that mark exact densities at 0, in mean times, to either side of the axis,
-#: and their width in points.
-DASH, MARK = 0.035, 1.8
-
-#: The distance between symbols in either panel, in mean times.
-SYMBOLS, SYMBOLS_SHORT = 1.2, 0.4
+#: Points: the width of the dashes that mark exact densities at 0.
+DASH_WIDTH = 1.8
 
 
 def draw_hop_histogram(box, rows):
     """Draw the densities of hop_histogram.csv, in units of the mean interval (``curve``)."""
-    figure, (whole, short) = panels.stacked(whole=ALL, short=SHORT)
+    figure, (whole, short) = panels.stacked(whole=2.4, short=1.7)
     groups = [list(group) for _, group in groupby(rows, key=lambda row: row["radius"])]
     radii = panels.numbers([group[0]["radius"] for group in groups])
     low, last, is_marked = 0.1, 1.0, False
     for i, group in enumerate(groups):
         colour, marker = SERIES[i % len(SERIES)]
-        for axes, bins, fewest, apart in (
-            (whole, "wide", FEWEST, SYMBOLS),
-            (short, "equal", 1, SYMBOLS_SHORT),
-        ):
+        # A curve ends before a bin with fewest intervals; symbols are some mean times apart.
+        for axes, bins, fewest, apart in ((whole, "wide", 10, 1.2), (short, "equal", 1, 0.4)):
             edges, density, errors = curve([r for r in group if r["bins"] == bins], fewest)
             middles = (edges[1:] + edges[:-1]) / 2
             wanted = apart * np.arange(0.4 + i / len(groups), middles[-1] / apart)
@@ -239,7 +205,7 @@ def draw_hop_histogram(box, rows):
                 low, last = min(low, density.min()), max(last, edges[-1])
         if box.is_plain:
             is_marked |= _mark_zero(short, box, group[0], colour)
-    for axes, end in ((whole, last), (short, LONGEST_SHORT)):
+    for axes, end in ((whole, last), (short, 2.5)):
         times = np.linspace(0, end, 60)
         axes.plot(times, np.exp(-times), color=BLACK, ls=(0, (4, 2)), label=r"$e^{-t/\tau}$")
         axes.set(xlim=(0, end), xlabel=r"interval $t/\tau$", ylabel=r"density $\tau\,p(t)$")
@@ -247,7 +213,7 @@ def draw_hop_histogram(box, rows):
     short.set_ylim(0, None)
     whole.legend(loc="upper right")
     if is_marked:
-        exact = Line2D([], [], color=BLACK, lw=MARK, label=r"exact density at $t=0$")
+        exact = Line2D([], [], color=BLACK, lw=DASH_WIDTH, label=r"exact density at $t=0$")
         short.legend(handles=[exact], handlelength=1, loc="upper right")
     panels.title(whole, "a", box, f",  {style.event_name(rows[0]['event'])}")
     return figure
@@ -258,10 +224,11 @@ def _mark_zero(axes, box, row, colour):
     scene, hop = box.scene(row["radius"]), row["event"]
     free, across = (scene.width, scene.height)[:: 1 if EVENT_AXES[hop] == "y" else -1]
     sigma = scene.contact_distance
-    are_fine = (row["right"] - row["left"]) * FINE <= min(across - sigma, free - 2 * sigma)
+    are_fine = (row["right"] - row["left"]) * FINE_BINS <= min(across - sigma, free - 2 * sigma)
     if are_fine:
         value = row["exact_mean"] * laws.density_at_zero(scene, hop)
-        axes.plot([-DASH, DASH], [value, value], color=colour, lw=MARK, clip_on=False, zorder=5)
+        dash = {"color": colour, "lw": DASH_WIDTH, "clip_on": False, "zorder": 5}
+        axes.plot([-0.035, 0.035], [value, value], **dash)
     return are_fine
 
 

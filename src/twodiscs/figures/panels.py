@@ -21,23 +21,11 @@ from twodiscs.figures.curves import limits
 from twodiscs.figures.style import BLACK, COLUMN, GREY, SERIES, SIZES, new_figure
 from twodiscs.model.effects import EFFECTS
 
-#: Inches: the margin of panels that are placed by hand.
-LEFT = 0.48
+#: Inches: the panels of curves and of residuals, with their labels; a further line of a heading.
+MAIN_HEIGHT, RESIDUALS_HEIGHT, LINE_HEIGHT = 2.3, 0.95, 0.13
 
-#: Inches: the panels of curves, of residuals and beneath, with their labels.
-MAIN, LOWER, BENEATH = 2.3, 0.95, 1.7
-
-#: Names of limits that are closer than this share of the abscissa are written as one.
-NEAR = 0.12
-
-#: Inches: a further line of a heading. Points: the distance of a title above names of limits.
-LINE, ABOVE = 0.13, 14
-
-#: The most digits of a box and a radius that leave space for something beside them.
-BESIDE = 11
-
-#: The most pieces of a heading (the box, its effects and additions) in one line.
-PIECES = 3
+#: Points: the distance of a title above names of limits.
+TITLE_PAD = 14
 
 #: The texts of what a box calls for in mathtext, {name: format}, in their order.
 SYMBOLS = {"discs": "${}$ discs"} | {name: EFFECTS[name].symbol for name in sorted(EFFECTS)}
@@ -73,7 +61,7 @@ def radius_panels(box, label, judged=True, beneath=False):
     ``label`` is the label of the main ordinate. The axes of residuals are None unless the estimates
     are ``judged``, the axes beneath unless there are any ``beneath``.
     """
-    heights = [MAIN] + [LOWER] * judged + [BENEATH] * beneath
+    heights = [MAIN_HEIGHT] + [RESIDUALS_HEIGHT] * judged + [1.7] * beneath
     figure = new_figure(sum(heights), layout="constrained")
     axes = figure.subplots(len(heights), height_ratios=heights, squeeze=False)[:, 0]
     main, lower = axes[0], axes[1] if judged else None
@@ -86,7 +74,7 @@ def radius_panels(box, label, judged=True, beneath=False):
         lower.set_ylabel("residual $z$")
         scale_residuals(lower)
     mark([main, lower] if judged else [main], limits(box))
-    title(main, "a" if beneath else "", box, up=ABOVE)
+    title(main, "a" if beneath else "", box, up=TITLE_PAD)
     if beneath:
         title(axes[-1], "b")
     return figure, main, lower, axes[-1] if beneath else None
@@ -135,7 +123,7 @@ def mark(panels, ends):
             axes.axvline(radius, color=GREY, lw=0.5, ls=(0, (5, 1.5, 1, 1.5)), zorder=0)
     groups = [[ends[0]]]
     for end in ends[1:]:
-        if end[0] - groups[-1][-1][0] < NEAR * last:
+        if end[0] - groups[-1][-1][0] < 0.12 * last:  # their names are written as one
             groups[-1].append(end)
         else:
             groups.append([end])
@@ -196,13 +184,13 @@ def radius_text(radius):
 def is_short(box, radius=0):
     """Return whether the ``heading``, maybe with a ``radius``, leaves space beside it."""
     digits = sum(len(mathtext(value)) for value in (box.width, box.height, radius or 0))
-    return box.is_plain and digits <= BESIDE
+    return box.is_plain and digits <= 11
 
 
 def heading(box, more=""):
     """Return the lines that name the sides of the box, ``more`` and the effects."""
     pieces = [*rf"$w\times h={sides(box)}${more}".split(",  "), *effects(box)]
-    return [",  ".join(pieces[i : i + PIECES]) for i in range(0, len(pieces), PIECES)]
+    return [",  ".join(pieces[i : i + 3]) for i in range(0, len(pieces), 3)]
 
 
 def effects(box):
@@ -306,10 +294,6 @@ def draw_residuals(axes, rows, colour, marker):
         axes.plot(r, z, ls="", **style | {"markersize": 0.75 * SIZES[symbol] if clip == 1 else 2.6})
 
 
-#: A legend with the distance of a letter's height from the symbols that it can avoid.
-CLEAR = {"borderpad": 1.2, "borderaxespad": -0.6}
-
-
 def legend(axes, series, single=None, more=()):
     """Explain the symbols at the emptiest place; ``single`` names the method of the only series.
 
@@ -335,11 +319,8 @@ def legend(axes, series, single=None, more=()):
     if len(names) > 4:  # no place without a curve is large enough
         axes.figure.legend(handles, names, loc="outside lower center", ncols=3)
     else:
-        axes.legend(handles, names, loc="best", **CLEAR)
-
-
-#: The least ratio of the ends of a logarithmic ordinate: there is a tick or two within.
-LEAST = 3
+        # A letter's height away from the symbols that it can avoid.
+        axes.legend(handles, names, loc="best", borderpad=1.2, borderaxespad=-0.6)
 
 
 def logarithmic(axes, radii, series):
@@ -351,7 +332,8 @@ def logarithmic(axes, radii, series):
     values = [value for part in series for value in part.exact[clear] if value > 0]
     values += [value for value in estimates if value]
     low, high = min(values, default=1.0), max(values, default=1.0)
-    margin = max((high / low) ** 0.06, (LEAST * low / high) ** 0.5)
+    # Between ends of the ratio 3 there is a tick or two.
+    margin = max((high / low) ** 0.06, (3 * low / high) ** 0.5)
     axes.set_yscale("log")
     axes.set_ylim(low / margin, high * margin)
     label_decades(axes.yaxis, high / low)

@@ -324,13 +324,9 @@ def animate(trajectory: pd.DataFrame, path: str | PathLike[str]) -> None:
 # Curves over time ---------------------------------------------------------------------------------
 
 
-#: Inches: the height of the figure.
-HEIGHT = 2.5
-
-
 def _panels(scene, more="", rows=1):
     """Return (figure, [axes]); the heading has the box, the radius, ``more`` and effects."""
-    figure = new_figure(HEIGHT * (1 + rows) / 2, layout="constrained")
+    figure = new_figure(2.5 * (1 + rows) / 2, layout="constrained")
     axes = figure.subplots(rows, sharex=True, squeeze=False)[:, 0]
     panels.title(axes[0], "", scene, panels.radius_text(scene.radius) + more)
     return figure, axes

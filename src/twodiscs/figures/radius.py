@@ -15,11 +15,9 @@ from twodiscs.theory import virial
 from twodiscs.theory.exact import mean_times, rate
 from twodiscs.theory.laws import small_radius_time, threshold_time
 
-#: The range of the limiting laws, over the largest radius: from r = 0 up, and from the end down.
-SMALL, LAST = 0.4, 0.1
-
-#: The panel of an approach begins this close to the end, relatively; its law is drawn from LAW on.
-CLOSEST, LAW = 1e-5, 0.3
+#: The law for small discs is drawn up to this radius over the largest one, the limiting law from
+#: this relative distance to the end of a hop on.
+SMALL_RANGE, LAW_RANGE = 0.4, 0.3
 
 
 def _every(kind, label):
@@ -76,9 +74,8 @@ def _draw_series(main, lower, radii, kind, by_quantity):
     return series
 
 
-#: The figures that ``draw_areas`` shows beside and beneath each other, and inches.
-AREAS = ("collision_area", "wall_area", "vertical_hop_area", "horizontal_hop_area")
-WIDE, TALL = 7.0, 5.4
+#: The figures that ``draw_areas`` shows beside and beneath each other.
+AREA_FIGURES = ("collision_area", "wall_area", "vertical_hop_area", "horizontal_hop_area")
 
 
 def draw_areas(box, rows):
@@ -87,14 +84,14 @@ def draw_areas(box, rows):
     The panels are those of the figures of single areas. Raises ``InputError`` if the table has no
     areas.
     """
-    names = {q: name for figure in AREAS for q, name in CURVES[figure].names.items()}
+    names = {q: name for figure in AREA_FIGURES for q, name in CURVES[figure].names.items()}
     radii, by_quantity = select_series(box, rows, names, {})
     if not by_quantity:
         raise InputError("the table of all_areas has no row of an area")
-    figure = new_figure(TALL, WIDE, layout="constrained")
-    heights = [panels.MAIN, panels.LOWER]
+    figure = new_figure(5.4, 7.0, layout="constrained")
+    heights = [panels.MAIN_HEIGHT, panels.RESIDUALS_HEIGHT]
     axes = figure.subplots(4, 2, height_ratios=heights * 2, squeeze=False)
-    for i, name in enumerate(AREAS):
+    for i, name in enumerate(AREA_FIGURES):
         main, lower = axes[2 * (i // 2) : 2 * (i // 2) + 2, i % 2]
         kind = CURVES[name]
         main.set_label(name)
@@ -107,7 +104,7 @@ def draw_areas(box, rows):
         main.set_ylabel(kind.label.rpartition(", ")[2])
         main.tick_params(labelbottom=False)
         lower.set(xlabel="radius $r$", ylabel="residual $z$")
-        panels.title(main, "abcd"[i], box if i == 0 else None, up=panels.ABOVE)
+        panels.title(main, "abcd"[i], box if i == 0 else None, up=panels.TITLE_PAD)
     return figure
 
 
@@ -177,16 +174,16 @@ def _laws(axes, box, event, laws):
         return
     end = box.largest_radius
     if "small" in laws:
-        radii = np.linspace(0, SMALL, 41)[1:] * end
+        radii = np.linspace(0, SMALL_RANGE, 41)[1:] * end
         axes.plot(radii, [small_radius_time(box, event, r) for r in radii], **panels.LAW)
     if "last" in laws:
-        radii = end * (1 - np.geomspace(LAST, 1e-6, 60))
+        radii = end * (1 - np.geomspace(0.1, 1e-6, 60))
         axes.plot(radii, [threshold_time(box.scene(r), event) for r in radii], **panels.LAW)
 
 
 def _approach(axes, box, by_quantity):
     """Draw the times over the distance from the radius at which the hop ends."""
-    distances = np.geomspace(CLOSEST, 0.99, 70)
+    distances = np.geomspace(1e-5, 0.99, 70)
     ends = hop_ends(box)
     shown, handles = [], []
     for (colour, marker), (quantity, part) in zip(SERIES, by_quantity.items(), strict=False):
@@ -202,13 +199,13 @@ def _approach(axes, box, by_quantity):
         if None in times:
             shown += [row["estimate"] for row in part.rows if row["estimate"]]
         if box.is_plain:
-            near = distances < LAW
+            near = distances < LAW_RANGE
             laws = [threshold_time(scene, event) for scene in scenes]
             axes.plot(distances[near], np.array(laws)[near], **panels.LAW)
         rows = [row | {"radius": 1 - row["radius"] / end} for row in part.rows]
         panels.draw_estimates(axes, [row for row in rows if row["radius"] > 0], colour, marker)
     low, high = min(shown) / 3, 3 * max(shown)
-    axes.set(xscale="log", yscale="log", xlim=(CLOSEST, 1), ylim=(low, high))
+    axes.set(xscale="log", yscale="log", xlim=(1e-5, 1), ylim=(low, high))
     panels.label_decades(axes.yaxis, high / low)
     axes.set_xlabel(r"relative distance from the end, $1-r/r_{\mathrm{c}}$")
     axes.set_ylabel(r"mean time $\tau$")
@@ -220,19 +217,14 @@ def _approach(axes, box, by_quantity):
 # Pressures ----------------------------------------------------------------------------------------
 
 
-WALLS = ("right_wall", "top_wall")
-
-#: The law below the largest radius is drawn up to this relative distance from it.
-LAST_PRESSURE = 0.12
-
-
 def draw_pressure(box, rows):
     """Draw the pressures from the rows of mean_times.csv, and the terms of the virial."""
     radii = np.concatenate(
         [np.append(branch, np.nan) for branch in curves.branches(box, rows=rows)]
     )
     summed = virial.has_theorem(box)
-    events = [event for event in WALLS if any(row["event"] == event for row in rows)]
+    counted = {row["event"] for row in rows}
+    events = [event for event in ("right_wall", "top_wall") if event in counted]
     series = [
         _pressure_series(
             f"disc 1, {event_name(event)}", box, event, rows, radii, virial.pressure_factor
@@ -249,7 +241,7 @@ def draw_pressure(box, rows):
     if box.is_plain:
         more.append((panels.LAW_NAME, panels.LAW))
         end = box.largest_radius
-        farthest = min(LAST_PRESSURE, 1 - max(box.thresholds, default=0) / end)
+        farthest = min(0.12, 1 - max(box.thresholds, default=0) / end)
         near = [box.scene(float(r)) for r in end * (1 - np.geomspace(0.99 * farthest, 1e-6))]
         for event in events:
             laws = [

@@ -74,7 +74,7 @@ def draw(box, tables):
         panels.mark((main, lower), ends)
         panels.label_decades(main.yaxis, 10)
         title = f"({letter})  {EVENT_NAMES.get(event, event_name(event))}"
-        main.set_title(title, loc="left", pad=panels.ABOVE)
+        main.set_title(title, loc="left", pad=panels.TITLE_PAD)
     axes["a"].set_ylabel(r"mean time / that of plain discs")
     axes["z of a"].set_ylabel("residual $z$")
     _costs(axes["d"], tables["effects_cost"], looks)
@@ -139,7 +139,7 @@ def _costs(axes, rows, looks):
     axes.tick_params(axis="y", length=0)
     axes.xaxis.set_major_locator(FixedLocator([1, 10, 100]))
     axes.xaxis.set_major_formatter("{x:g}")
-    axes.set_title("(d)  time per event", loc="left", pad=panels.ABOVE)
+    axes.set_title("(d)  time per event", loc="left", pad=panels.TITLE_PAD)
 
 
 def _legend(axes, boxes, looks, rough):
