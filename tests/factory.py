@@ -182,7 +182,7 @@ class Laws:
         for event in events:
             mean = 0.0
             if event in self.times:
-                mean = self.scene.multiplicity(event) * duration / self.times[event]
+                mean = self.scene.copies(event) * duration / self.times[event]
             counts[event] = rng.poisson(mean, replicas)
         if not self.scene.has_effects:  # as symmetry has it
             first = {}

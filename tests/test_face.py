@@ -482,7 +482,7 @@ def test_numbers_of_one_run_are_correlated_as_its_counts_are(scene):
     """All hits are those of the right and the top wall, in every replica: no error is left."""
     md = td.simulate(scene, duration=1e4, seed=3)
     walls = ("right_wall", "top_wall", "any_wall")
-    hits = [scene.accessible_fraction(w) * scene.multiplicity(w) / md[f"{w}_time"].u for w in walls]
+    hits = [scene.accessible_fraction(w) * scene.copies(w) / md[f"{w}_time"].u for w in walls]
     left = hits[0] + hits[1] - hits[2]
     assert abs(left.nominal_value) < 1e-12
     assert left.std_dev < 1e-6 * hits[2].std_dev

@@ -39,7 +39,7 @@ def check_rates(scene, seed, blocks, duration=None):
     for event, total, error in zip(EVENTS, sums, errors, strict=True):
         time = mean_times(scene)[event]
         if time is not None:
-            expected = scene.multiplicity(event) * duration / time * blocks * REPLICAS
+            expected = scene.copies(event) * duration / time * blocks * REPLICAS
             assert expected < 1000 or abs(total - expected) <= 5 * error * total, event
         elif event in scene.events:
             assert total == 0

@@ -187,5 +187,5 @@ def test_displacements_are_of_disc_1_unless_all_are_equal(ring, discs, monkeypat
     due = td.observe(ring, moved, found.times, 1, seed=2).mean
     assert np.allclose(found.mean[:, 0], due, rtol=1e-12)
     # One time after the other, as of more states than the memory is to hold.
-    monkeypatch.setattr("twodiscs.dynamics.averages.KEPT", 1)
+    monkeypatch.setattr("twodiscs.dynamics.averages.MOST_STATE_NUMBERS", 1)
     assert np.allclose(found.mean, td.diffusion(ring, found.times, 1, seed=2).mean, rtol=1e-12)

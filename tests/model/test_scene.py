@@ -231,7 +231,7 @@ def test_walls_of_one_rate_that_a_trajectory_reaches_are_counted_together(effect
     scene = Scene(1.5, 1.0, **{"radius": 0.2} | effects)
     by_axis = {"x": right, "y": top}
     for event in EVENTS:
-        assert scene.multiplicity(event) == (by_axis[EVENT_AXES[event]] if event in WALLS else 1)
+        assert scene.copies(event) == (by_axis[EVENT_AXES[event]] if event in WALLS else 1)
 
 
 def test_energy_to_pass_one_above_the_other_is_that_of_the_cheaper_order():

@@ -86,7 +86,7 @@ def test_a_point_gives_estimates_by_name():
     assert weights.estimate("volume").value == 3.0 * 10**6 / 2**20
     counts = counts_point(total=400, squares=800)
     assert counts.estimate("vertical_hop").value == 2048 * 10.0 / 400
-    assert counts.estimate("vertical_hop", multiplicity=2).value == 2 * 2048 * 10.0 / 400
+    assert counts.estimate("vertical_hop", copies=2).value == 2 * 2048 * 10.0 / 400
     assert counts_point().estimate("vertical_hop") is None
     assert COUNTED.estimate("vertical_hop") == STRIP.estimate()
     assert STRIP.estimate().value == pytest.approx(0.1 / 0.5 / (3 / 18))

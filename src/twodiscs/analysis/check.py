@@ -80,8 +80,7 @@ def sum_rule(point):
     """
     scene = point.scene
     rates = {
-        e: scene.accessible_fraction(e) / scene.multiplicity(e) / point.duration
-        for e in SUM_RULE_EVENTS
+        e: scene.accessible_fraction(e) / scene.copies(e) / point.duration for e in SUM_RULE_EVENTS
     }
     return point.combination({e: w * rates[e] for e, w in virial.weights(scene).items()})
 

@@ -324,19 +324,19 @@ def _mean_time_row(point, event, count):
     """Return the row of an event of a ``point`` from a ``Count`` of it."""
 
     scene, exact = point.scene, theory.mean_times(point.scene)[event]
-    target, multiplicity = point.target[event], scene.multiplicity(event)
-    estimate, bound = count.estimate(multiplicity), None
+    target, copies = point.target[event], scene.copies(event)
+    estimate, bound = count.estimate(copies), None
     if target is None or (count.share == 1 and event in point.strips):
         status = "counted"
     else:
         status = "reached" if estimate and estimate.relative_stderr <= target else "budget"
-    z, test = scores.mean_time_z(*count.sums, count.time(multiplicity), exact, count.mean)
+    z, test = scores.mean_time_z(*count.sums, count.time(copies), exact, count.mean)
     if not scene.is_possible(event):
         z, test = scores.impossible_z(count.count)
         estimate, status = None, "impossible"
     elif estimate is None:
         status, bound = "none-seen", count.bound()
-    elif not has_error_bar(*count.sums, exact and count.time(multiplicity) / exact):
+    elif not has_error_bar(*count.sums, exact and count.time(copies) / exact):
         status = "too-few"
     if count.share == 1 and scene.is_possible(event):
         errors = [target or 1.0, estimate.relative_stderr if estimate else 1.0]
@@ -363,7 +363,7 @@ def _mean_time_row(point, event, count):
         "test": test,
         "starts": "invariant" if count.share == 1 else "strip",
         "share": count.share,
-        "copies": multiplicity,
+        "copies": copies,
     }
 
 

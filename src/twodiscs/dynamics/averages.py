@@ -23,7 +23,7 @@ from twodiscs.sampling.threads import map_in_threads
 BLOCK = 4096
 
 #: The most numbers of the states of a block at several times that are in memory together.
-KEPT = 2**22
+MOST_STATE_NUMBERS = 2**22
 
 #: Values of a function are smaller, so that their squares can be added.
 LARGEST = 1e140
@@ -137,8 +137,8 @@ class ObserveRun(Run):
 
     ``over_times(values, before, steps)``, if given, is applied to the values of the replicas of a
     block at some of the times, (replicas, times, …), before they are averaged. ``before`` are the
-    values at the time before these, None at first. ``steps`` are the times since the time before
-    each. ``names`` are then the names of the averages.
+    values at the last time before these, None if there is none. ``steps`` are the differences of
+    successive times. ``names`` are then the names of the averages.
 
     Sums are the number of replicas, the mean and the sum of squared deviations.
     """
@@ -200,7 +200,7 @@ class ObserveRun(Run):
 
         If the states of a block at all times are too many, one block a core goes on piece by piece.
         """
-        together = max(1, KEPT // (self._each * len(components(self.scene))))
+        together = max(1, MOST_STATE_NUMBERS // (self._each * len(components(self.scene))))
         in_pieces = self.times.size > together
         abreast = cores if in_pieces else stop - first
         for low in range(first, stop, abreast):

@@ -75,11 +75,11 @@ class Measurement(Immutable):
     exact : float or None
         The exact value, None if none is known or if the ``status`` is impossible.
     z : float or None
-        The standard normal deviate of the estimate from the exact value or, for an area, from the
-        exact ``expectation`` of its shell. If events are few, or come in few clusters, there is no
-        normal law. z then comes from an upper bound on the probability of such a deviation; the
-        column ``test`` of ``frame()`` marks these rows. If the bound is 1, nothing is known about
-        the deviation: z is None, prints as "–", and is 0 in the table.
+        The deviation of the estimate from the exact value in standard errors; for an area, from the
+        exact ``expectation`` of its shell. If events or their clusters are few, it is the normal
+        deviate of an upper bound on the probability of the deviation; the column ``test`` of
+        ``frame()`` marks these rows. A bound of 1 tests nothing: z is None, prints as "–", and is 0
+        in the table.
     count : int
         The number of events, or hits.
     status : str

@@ -15,7 +15,7 @@ class Geometry(NamedTuple):
     open_axes: Callable  # the axes of open hops
     ergodic_components: Callable  # their number, None if it is not known
     confined: Callable  # for x and y, whether disc 1 reaches a wall only from one side of disc 2
-    multiplicity: Callable  # (an event): the number of events with its rate
+    copies: Callable  # (an event): the number of events with its rate
 
 
 TWO_DISCS = Geometry(
@@ -25,7 +25,7 @@ TWO_DISCS = Geometry(
     open_axes=two_geometry.open_axes,
     ergodic_components=two_geometry.ergodic_components,
     confined=two_geometry.confined,
-    multiplicity=two_geometry.multiplicity,
+    copies=two_geometry.copies,
 )
 
 MANY_DISCS = Geometry(
@@ -35,5 +35,5 @@ MANY_DISCS = Geometry(
     open_axes=many_geometry.open_axes,
     ergodic_components=many_geometry.ergodic_components,
     confined=lambda scene: (False, False),
-    multiplicity=many_geometry.multiplicity,
+    copies=many_geometry.copies,
 )

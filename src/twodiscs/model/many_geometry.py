@@ -73,7 +73,7 @@ def open_axes(scene):
     return tuple(axis for axis in scene.walled if can_be_level(scene, axis))
 
 
-def multiplicity(scene, event):
+def copies(scene, event):
     """Return the number of events with the rate of ``event``, see ``Scene``."""
     return 2 * scene.discs if event in WALLS else 1
 

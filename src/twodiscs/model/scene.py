@@ -679,14 +679,14 @@ class Scene(Box):
         """
         return 0.5 if event in WALLS and self.confined["xy".index(EVENT_AXES[event])] else 1.0
 
-    def multiplicity(self, event):
+    def copies(self, event):
         """Return how many events are equal to ``event`` by symmetry; their hits are counted as one.
 
         It is 1 except for wall hits. A wall and its mirror image, hit by either of two equal discs,
         are four events with one rate. If the discs keep their sides, a trajectory can reach two of
         them. In a field the bottom is no mirror image of the top. For N > 2 discs it is 2N.
         """
-        return self._geometry.multiplicity(self, event)
+        return self._geometry.copies(self, event)
 
     def is_possible(self, event: Event) -> bool:
         """Return whether an event ever happens; hops can be blocked, and a field keeps discs down.

@@ -102,7 +102,7 @@ def _confined(scene, axis):
     return _lowest_potential(scene, scene.squared_reaches(axis, "y") + behind) >= ENERGY
 
 
-def multiplicity(scene, event):
+def copies(scene, event):
     """Return the number of events with the rate of ``event``, see ``Scene``."""
     if event not in WALLS:
         return 1

@@ -140,7 +140,7 @@ def added(sums, more):
 
 
 def _narrow(values, kind=np.int64):
-    """Return numbers of a ``kind`` as an array, integers of 64 bits if they fit."""
+    """Return ``values`` as an array of a ``kind``; of integers of any size if 64 bits do not do."""
     try:
         return np.array(values, kind)
     except OverflowError:

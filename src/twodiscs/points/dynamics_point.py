@@ -46,18 +46,18 @@ class Count:
         """Σ N, Σ N² and the number of replicas."""
         return self.count, self.squares, self.replicas
 
-    def time(self, multiplicity=1):
-        """Return the time T · multiplicity/share; over ⟨N⟩ it is the mean time between events.
+    def time(self, copies=1):
+        """Return the time T · copies/share; over ⟨N⟩ it is the mean time between events.
 
-        ``multiplicity`` is the number of events that count as one (``Scene.multiplicity``).
+        ``copies`` is the number of events that count as one (``Scene.copies``).
         """
-        return self.duration * multiplicity / self.share
+        return self.duration * copies / self.share
 
-    def estimate(self, multiplicity=1):
+    def estimate(self, copies=1):
         """Return the mean time between events as an ``Estimate``, None if none was counted."""
         if not self.count:
             return None
-        return estimates.mean_time(*self.sums, self.time(multiplicity), self.mean)
+        return estimates.mean_time(*self.sums, self.time(copies), self.mean)
 
     def bound(self):
         """Return a lower bound on the mean time, valid if no event was counted."""
@@ -182,9 +182,9 @@ class DynamicsPoint(Point):
         """Return the best ``Count`` of an event, from its strip if there is one."""
         return self.strips.get(event) or self.everywhere(event)
 
-    def estimate(self, event, multiplicity=1):
+    def estimate(self, event, copies=1):
         """Return the mean time of ``event`` as an ``Estimate`` (see ``Count.estimate``)."""
-        return self.count(event).estimate(multiplicity)
+        return self.count(event).estimate(copies)
 
     def sums_of_others(self):
         """Return the set of events whose number is the sum of other events' in every replica."""

@@ -19,9 +19,7 @@ WALL_AREAS = ("right_wall_area", "top_wall_area")
 def wall_weights(scene):
     """Return {area of one wall: weight} with which these areas add up to that of all walls."""
     walls = (area.removesuffix("_area") for area in WALL_AREAS)
-    return {
-        f"{wall}_area": float(scene.multiplicity(wall)) for wall in walls if wall in scene.events
-    }
+    return {f"{wall}_area": float(scene.copies(wall)) for wall in walls if wall in scene.events}
 
 
 class Sampled(NamedTuple):

@@ -48,7 +48,7 @@ class Derivatives(NamedTuple):
 
 
 def rates(scene, known):
-    """Return {event: rate × multiplicity} of a ``Scene``, given its ``Derivatives``.
+    """Return {event: rate × copies} of a ``Scene``, given its ``Derivatives``.
 
     Hops that are None have no entry. Hops along a ring are no events, but have an entry: the rate
     at which two discs pass each other.

@@ -89,7 +89,7 @@ def _events(scene, radius):
     every, most = exact.event_rate(one), 0.0
     for event, error in scene.target.items():
         if one.is_possible(event):
-            rate = exact.rate(one, event) * one.multiplicity(event)
+            rate = exact.rate(one, event) * one.copies(event)
             most = max(most, (2 * every / rate + 256 / 6) / error**2)
     return most
 

@@ -37,11 +37,14 @@ def hit(code, first, second, identical):
 
 @optional(lambda position, side, field: True)
 def facing(position, side, field):
-    """Say whether a disc is on the wall of a ``side``, which matters in a field."""
+    """Say whether a disc at a ``position`` is at the wall of a ``side``, 1 or -1.
+
+    Without a field the two walls of an axis count as one, and this is True.
+    """
     return position * side > 0.0
 
 
-# A wall event counts the hits of all pairs of a disc and a wall in ``Scene.multiplicity``.
+# A wall event counts the hits of all pairs of a disc and a wall in ``Scene.copies``.
 
 
 def _wall_seen(event):
@@ -113,7 +116,7 @@ first_word, second_word = _word(EVENTS[:COUNTS_PER_DOUBLE]), _word(EVENTS[COUNTS
 
 @optional(lambda counts, rest: counts[RIGHT_WALL] + counts[TOP_WALL])
 def all_walls(counts, rest):
-    """Return the hits of all walls, from counts in which their entry has the collisions too.
+    """Return the hits of all walls, from ``counts`` whose entry "any wall" has collisions too.
 
     If no entry counts all walls (``rest`` is None), it is the sum of the right and the top wall.
     """
@@ -133,7 +136,7 @@ class Counts(NamedTuple):
     identical: bool | None
     field: float | None
     packed: np.ndarray  # (lanes,), the first events
-    more: np.ndarray  # (lanes,), the others
+    packed_others: np.ndarray  # (lanes,), the others
     counts: np.ndarray  # (n, lanes), what was unpacked
     of_replica: np.ndarray  # (n,), working memory
     sums: np.ndarray
@@ -148,12 +151,12 @@ class Counts(NamedTuple):
         """Add the events of a flight to the packed counts."""
         first_count, second_count = (
             self.packed[i],
-            self.more[i] if N_EVENTS > COUNTS_PER_DOUBLE else 0.0,
+            self.packed_others[i] if N_EVENTS > COUNTS_PER_DOUBLE else 0.0,
         )
         flight = code, before, after, self.identical, self.field, self.tracked
         self.packed[i] = first_word(first_count, *flight)
         if N_EVENTS > COUNTS_PER_DOUBLE:
-            self.more[i] = second_word(second_count, *flight)
+            self.packed_others[i] = second_word(second_count, *flight)
         return left
 
     def swept(self, sweeps):
@@ -179,8 +182,8 @@ class Counts(NamedTuple):
 @inlined
 def unpack(counting, i):
     """Move the packed counts of lane ``i`` of ``Counts`` to its ``counts``."""
-    words = np.int64(counting.packed[i]), np.int64(counting.more[i])
-    counting.packed[i] = counting.more[i] = 0.0
+    words = np.int64(counting.packed[i]), np.int64(counting.packed_others[i])
+    counting.packed[i] = counting.packed_others[i] = 0.0
     for e in range(N_EVENTS):
         counting.counts[e, i] += (
             words[e // COUNTS_PER_DOUBLE] >> (8 * (e % COUNTS_PER_DOUBLE))
@@ -209,7 +212,7 @@ def run_blocks(
         identical=scene.identical or None,
         field=scene.field or None,
         packed=np.zeros(lanes),
-        more=np.zeros(lanes),
+        packed_others=np.zeros(lanes),
         counts=np.zeros((N_EVENTS, lanes), np.int64),
         of_replica=np.zeros(N_EVENTS, np.int64),
         sums=np.zeros(N_EVENTS, np.int64),

@@ -14,7 +14,7 @@ EVENTS_BETWEEN_RARE_HOPS = 64
 
 def expected_rate(scene, event):
     """Return the exact rate of all events that count as ``event``."""
-    return exact.rate(scene, event) * scene.multiplicity(event)
+    return exact.rate(scene, event) * scene.copies(event)
 
 
 def replica_duration(scene):

@@ -10,7 +10,7 @@ import numpy as np
 
 from twodiscs.dynamics.many import class_counts, many_rates
 from twodiscs.dynamics.many.all_pairs import CLASSES
-from twodiscs.model.many_geometry import multiplicity
+from twodiscs.model.many_geometry import copies
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import insertions, many_initial_states
 from twodiscs.theory import flux, n_discs, plain, virial
@@ -47,7 +47,7 @@ def known_derivatives(scene, hops=True):
 
 def virial_weights(scene):
     """Return ``virial.weights`` of the rates of all events of a class, as in ``flux.rates``."""
-    return {e: weight / multiplicity(scene, e) for e, weight in virial.weights(scene).items()}
+    return {e: weight / copies(scene, e) for e, weight in virial.weights(scene).items()}
 
 
 def virial_sum(scene, rates):
@@ -85,7 +85,7 @@ def _time(scene, event, rate, error=0.0):
     if not rate:
         return None, None
     # The mean is over all initial states, for two discs too, so that all numbers of discs compare.
-    time = multiplicity(scene, event) / rate / math.sqrt(scene.discs / 2)
+    time = copies(scene, event) / rate / math.sqrt(scene.discs / 2)
     return time, time * error / rate
 
 
