@@ -200,7 +200,7 @@ def test_every_number_of_the_prose_is_declared_and_every_declared_one_is_used(pr
 def test_every_number_has_rows_in_the_expected_tables(printed):
     """Except those of tables with seconds in them, which are not kept."""
     absent = {name for name, number in printed.items() if number is None}
-    assert absent == {"configurations", "events", "evaluation_seconds"}
+    assert absent == {"configurations"}
 
 
 def test_every_column_of_cells_has_rows_in_the_expected_tables(printed):
@@ -257,7 +257,6 @@ LONG = "scene == 'h/4' and quantity == 'coefficient' and distance >= 2**-14"
 BY_HAND = {
     "tests": lambda t: t["check"].query("independent").passed.count(),
     "tests_largest": lambda t: t["check"].query("independent").z.abs().max(),
-    "mean_time_largest": lambda t: t["check"].query("comparison == 'mean_time'").z.abs().max(),
     "strips_longest": lambda t: t["mean_times"].query("starts == 'strip'").estimate.max(),
     "hazards": lambda t: len(t["distributions"].query(RATES)),
     "rates_nearest": lambda t: t["distributions"].query(RATES).z.abs().min(),
@@ -273,9 +272,6 @@ BY_HAND = {
     ),
     "passages_exponent": exponent,
     "passages_last": lambda t: t["long_passages"].query(LONG).estimate.max(),
-    "passages_files_error": lambda t: (
-        t["long_files"].query("quantity == 'diffusion' and discs in (4, 8)").stderr.max()
-    ),
     "long_files_law_error": lambda t: (
         t["long_displacements"].query(SINGLE).eval("100 * stderr / estimate").max()
     ),
@@ -291,7 +287,6 @@ BY_HAND = {
     "long_run_events": lambda t: (
         t["long_run"].query("event in ('any_wall', 'disc_collision')")["count"].sum()
     ),
-    "long_run_rare": lambda t: t["long_run"].exact.max(),
 }
 
 

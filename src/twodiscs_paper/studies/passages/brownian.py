@@ -46,6 +46,11 @@ HALF = 1.5
 #: Exponents are fitted where the neck is ``LONG`` steps or more, or ``SHORT`` steps or less.
 LONG, SHORT = 8.0, 0.125
 
+#: If heights diffuse as slowly as u, the resistance of the neck is larger by the factor 1 +
+#: ``HEIGHTS`` ε/σ + … Slacks ξ, η up to L then leave Φ′(u) L′(ξ² + η²)/L in the potential Φ, which
+#: adds (4/3)∫(L′/L)² du to the resistance 2∫du/L².
+HEIGHTS = 4 / 3
+
 #: In wider channels the methods differ by more than a per cent: pairs that are too far apart to
 #: touch need not come to the end of the ring, where passages begin and end.
 NARROW = 1 / 16
@@ -337,6 +342,9 @@ def _fits(cells, chosen, estimates):
         for own in zip(*(point["seeds"] for point in chosen), strict=True)
     ]
     agree = {"seeds_z": compared(*map(_slope, seeds))["z"]} if len(seeds) == 2 else {}
+    if cells["neck"] >= LONG:
+        slow = [(*time[:3], time[3] + math.log1p(HEIGHTS * time[0])) for time in together]
+        agree["reference"] = _slope(slow, column=3).value
     yield _slope_row(cells | agree, together)
     for number, times in enumerate(seeds, 1):
         yield _slope_row(cells | {"seed": number}, times)

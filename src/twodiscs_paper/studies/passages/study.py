@@ -167,7 +167,8 @@ class BrownianTable(Table):
         ),
         "reference": AS_ESTIMATE(
             "expected value: 1 for crossings of reflected discs, by crossings for passages, of "
-            "reflected discs for kicked ones"
+            "reflected discs for kicked ones; for a fitted exponent of long necks diffusive, if "
+            "heights diffuse as slowly as the separation, to first order in ε/σ"
         ),
         "reference_stderr": AS_ESTIMATE(
             "standard error of the reference; empty if the reference is exact"
