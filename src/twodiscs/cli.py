@@ -70,8 +70,8 @@ def value(text):
 def add_scene(parser):
     """Add the arguments of a ``Scene``: sides, a radius, the number of discs and effects."""
     for length in ("width", "height", "radius"):
-        parser.add_argument(f"--{length}", type=value, required=True, help="a length")
-    parser.add_argument("--discs", type=value, default=2, help="their number (2), at most 16384")
+        parser.add_argument(f"--{length}", type=value, required=True, help="in any unit of length")
+    parser.add_argument("--discs", type=value, default=2, help="number of discs, 2 to 16384 (2)")
     effects = parser.add_argument_group("effects", "absent by default")
     for effect in EFFECTS.values():
         kind = {"type": value} if effect.is_number else {"nargs": "+", "metavar": "AXIS"}
@@ -163,11 +163,11 @@ EXAMPLE = "--width 1.5 --height 1 --radius 0.2"
 
 #: {option that several commands have: its settings}
 SHARED = {
-    "--seed": {"type": value, "default": 1, "help": "of the random numbers (1)"},
-    "--name": {"help": "of a scene in a configuration, for its numbers"},
-    "--cores": {"type": value, "default": 1, "help": "to work on (1)"},
-    "--method": {"help": "as twodiscs cost names it (the fastest)"},
-    "--shell": {"type": value, "default": 0.02, "help": "thickness, a fraction (0.02)"},
+    "--seed": {"type": value, "default": 1, "help": "seed of the random numbers (1)"},
+    "--name": {"help": "name of a scene in a configuration, for the same numbers"},
+    "--cores": {"type": value, "default": 1, "help": "number of cores (1)"},
+    "--method": {"help": "one of those that twodiscs cost prints (the fastest)"},
+    "--shell": {"type": value, "default": 0.02, "help": "relative thickness (0.02)"},
 }
 
 
@@ -196,8 +196,8 @@ def _parser():
     parser = Parser(
         prog="twodiscs",
         description="Two hard discs in a box: exact times between events, Monte Carlo and molecular"
-        " dynamics. Disc 1 has mass 1 and the total energy is 1/2: times are lengths over a speed"
-        " of 1.",
+        " dynamics. Use any unit of length. Mass 1 and a total energy of 1/2 set the speed to 1, so"
+        " a time has the same number as a length. Help has default values in brackets.",
         epilog=f"Example: twodiscs exact {EXAMPLE}. More on a command: twodiscs exact --help.",
     )
     version = f"%(prog)s {twodiscs.__version__}"
@@ -221,30 +221,30 @@ def _parser():
     of_scene("exact", _exact, "exact volume, areas and mean times of one scene")
     text = "mean times by molecular dynamics, beside the exact ones"
     add = of_scene("simulate", _simulate, text)
-    text = f"relative, or {', '.join(NAMED_ERRORS)} (1e-3)"
+    text = f"relative standard error, or {', '.join(NAMED_ERRORS)} (1e-3)"
     add("--error", type=value, help=text, completer=ChoicesCompleter(NAMED_ERRORS))
     add("--duration", type=value, help="the time to simulate, instead of an error")
-    add("--budget", type=value, help="events at most (those of a day)")
-    text = f"of {', '.join(EVENTS)} (all)"
+    add("--budget", type=value, help="largest number of events (about a day)")
+    text = f"some of {', '.join(EVENTS)} (all)"
     add("--events", nargs="+", metavar="EVENT", help=text, completer=ChoicesCompleter(EVENTS))
     _add_shared(add, "--method", "--seed", "--name", "--cores")
     text = "volume and areas by Monte Carlo, beside the exact ones"
     add = of_scene("sample", _sample, text)
-    add("--samples", type=value, help="to draw, rounded up to whole blocks (1e7)")
-    text = f"relative, or {', '.join(NAMED_ERRORS)}, instead of samples"
+    add("--samples", type=value, help="number of samples, rounded up to whole blocks (1e7)")
+    text = f"relative standard error, or {', '.join(NAMED_ERRORS)}, instead of samples"
     add("--error", type=value, help=text, completer=ChoicesCompleter(NAMED_ERRORS))
-    add("--budget", type=value, help="samples at most, for an error (those of a day)")
+    add("--budget", type=value, help="with an error, the largest number of samples (about a day)")
     known = ChoicesCompleter(("volume", *(f"{event}_area" for event in EVENTS)))
-    text = "volume, <event>_area"
+    text = "some of volume and <event>_area (all)"
     add("--quantities", nargs="+", metavar="QUANTITY", help=text, completer=known)
     _add_shared(add, "--shell", "--method", "--seed", "--name", "--cores")
-    text = "the processor time of relative errors, by each method"
+    text = "the processor time to reach relative errors, by each method"
     add = of_scene("cost", _cost, text)
-    add("--errors", type=value, nargs="+", help="relative (1e-2 1e-3 1e-4 1e-5 1e-6)")
+    add("--errors", type=value, nargs="+", help="relative errors (1e-2 1e-3 1e-4 1e-5 1e-6)")
     _add_shared(add, "--shell")
     add = of_scene("trajectory", _trajectory, "one trajectory, event by event")
-    add("--duration", type=value, help="a time (some hops of the rarer kind)")
-    add("--start", type=value, nargs="+", metavar="X", help="x1 y1 x2 y2 u1 v1 …")
+    add("--duration", type=value, help="simulated time (that of some hops of the rarer kind)")
+    add("--start", type=value, nargs="+", metavar="X", help="initial state: x1 y1 x2 y2 u1 v1 …")
     _add_shared(add, "--seed", "--name")
 
     epilog = None
@@ -257,9 +257,9 @@ def _parser():
     add = command("run", _run, text, epilog=epilog).add
     yaml = argcomplete.FilesCompleter(("yaml", "yml"))
     add("configuration", help="a YAML file; twodiscs new writes one", completer=yaml)
-    text = "a name or a file of results (report)"
+    text = "name or file of what to build (report)"
     add("targets", nargs="*", default=[], metavar="TARGET", help=text, completer=_targets)
-    text = "to work on (all, or those of SNAKEMAKE_PROFILE)"
+    text = "number of cores (all, or that of SNAKEMAKE_PROFILE)"
     add("--cores", type=value, help=text)
     text = "print a table of the jobs, but run nothing"
     add("-n", "--dry-run", action="store_true", help=text)
