@@ -42,11 +42,3 @@ def test_the_notebook_is_the_page(made):
 
 def text_of(output):
     return output.get("text") or output.data.get("text/plain", "")
-
-
-def test_outputs_are_put_beneath_their_blocks():
-    page = "# A\n\n```python\nx = 1\nprint('a')\nx + 1\n```\n\n```text\nold\n```\n\nB\n"
-    text, notebook = tutorial.tutorial(page)
-    assert text == page.replace("old\n", "a\n2\n")
-    assert [cell.cell_type for cell in notebook.cells] == ["markdown", "code", "markdown"]
-    assert tutorial.tutorial(text)[0] == text
