@@ -1,181 +1,238 @@
-"""Changes that the pages describe, made in a copy of the package with the code of the pages.
+"""Changes that docs/change-it.md describes, made in copies of the repository with its code.
 
-Without these tests a page could invite to a change that breaks something else, or name too few
-files. Blocks are found by what they define, on any page.
+Without these tests the page could invite to a change that breaks something else, or name other
+files than it takes. ``changes.yaml`` has the edits; the functions ``check_…`` run in a copy.
 """
 
 import os
 import re
 import shutil
+import textwrap
+from functools import cache
+from pathlib import Path
 
+import mutants
+import pages
 import pytest
+import yaml
+from checkout import Checkout
 from commands import python
-from test_examples import NAMES, REPOSITORY, blocks, page
+from figure_cases import BOXES, OTHERS, draw, tables_of
+from test_examples import blocks, page
 
-import twodiscs
-from twodiscs.model.events import DECLARED_EVENTS, SHELL_EVENTS
-
-#: Scenes whose walls have different multiplicities, and more discs with and without exact values.
-EVENT = """
-import math
-import sys
-import pytest
 import twodiscs as td
 from twodiscs.analysis.tables import CheckTable
 from twodiscs.dynamics import runs
-from twodiscs.model.events import DECLARED_EVENTS, WALLS
+from twodiscs.model.events import DECLARED_EVENTS, SHELL_EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
+from twodiscs.sampling.jit import cache_folder
 from twodiscs.theory import clusters
 
-own = sys.argv[1]
-for scene in (
-    Scene(1.5, 1.0, 0.3),
-    Scene(1.5, 1.0, 0.38),
-    Scene(1.5, 1.0, 0.2, field=0.4),
-    Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5),
-    Scene(1.5, 1.0, 0.15, radius_ratio=0.6, mass_ratio=3.0),
-    Scene(1.5, 1.0, 0.2, periodic="x"),
-    Scene(1.5, 1.0, 0.15, discs=3),
-    Scene(1.5, 1.0, 0.12, discs=5),
-):
-    assert (own in scene.events) == (DECLARED_EVENTS[own].axis in scene.walled)
-    quantities = ["volume", *(f"{event}_area" for event in scene.events)]
-    points = {
-        "dynamics": [runs.DynamicsRun(scene, dict.fromkeys(scene.events, 5e-3), 10**7, 3).run()],
-        "monte_carlo": [montecarlo.MonteCarloRun(scene, quantities, 400_000, 0.1, 4).run()],
-    }
-    rows = CheckTable.rows([p for some in points.values() for p in some])
-    assert [row for row in rows if row["passed"] is False] == []
-    compared = {row["quantity"] for row in rows if row["z"] is not None}
-    if own in scene.events:
-        assert scene.discs == 5 or {f"{own}_time", f"{own}_area"} <= compared
+PAGE, PAGES_RENEWED = "docs/change-it.md", "python docs/make/pages.py"
+EDITS = yaml.safe_load(Path(__file__).with_name("changes.yaml").read_text(encoding="utf-8"))
 
-scene, opposite = Scene(1.5, 1.0, 0.2), {"x": "right_wall", "y":
-"top_wall"}[DECLARED_EVENTS[own].axis] known = td.pressure(scene) assert known["wall_pressure"] ==
-pytest.approx(known["virial_pressure"], rel=1e-12) assert known["virial_pressure"] ==
-pytest.approx(0.648, abs=1e-4) assert known[f"{own}_pressure"] == known[f"{opposite}_pressure"]
-assert td.areas(scene)[f"{own}_area"] == td.areas(scene)[f"{opposite}_area"] md = td.simulate(scene,
-duration=1e4, seed=3) assert md[f"{own}_time"].u.std_dev == pytest.approx(md[f"{own}_time"].stderr)
-assert abs(td.pressure(md)["virial_pressure"].z) < 5 and abs(td.pressure(md)["wall_pressure"].z) < 5
-td.plot(md, "md.png") td.plot(td.sample(scene, 1e5, seed=2), "mc.png") if own == "bottom_wall":
+
+# The changes --------------------------------------------------------------------------------------
+
+
+def block(beginning):
+    """Return the block of the page with a line that begins so."""
+    line = re.compile(f"^{re.escape(beginning)}", re.MULTILINE)
+    (text,) = (text for _, text in blocks(PAGE) if line.search(text))
+    return text.strip("\n")
+
+
+@cache
+def code():
+    """Return {its name in ``changes.yaml``: code of the page}."""
+    return {
+        "box": block("  - name: double") + "\n",
+        "figure's module": block("def draw(box, rows)"),
+        "figure": block("hop_frequency = Figure(").partition("hop_frequency = ")[2],
+        "study": block("class Waits(Table)"),
+        "study's test": textwrap.indent(block("assert STUDY.tables"), "    "),
+        "experiment": block("class TimeToCollision(NamedTuple)"),
+        "experiment's test": textwrap.indent(block("times = times_to_collision"), "    "),
+        "effect": block("@optional").split("\n\n\n")[1],
+        "event": block("Event(").partition("\n\n")[2].partition("  #")[0] + ",",
+    }
+
+
+class Copy(Checkout):
+    """A copy of the repository in which changes are made."""
+
+    def make(self, change):
+        """Make a change: the files that are edited, and then renewed, are those of the page."""
+        for file, edits in EDITS[change].items():
+            if isinstance(edits, str):
+                self.edit(file, with_code(edits))
+            for edit in [] if isinstance(edits, str) else edits:
+                old, new = edit if isinstance(edit, list) else (*edit.items(),)[0]
+                self.replace(file, old, with_code(new) + old * isinstance(edit, list))
+        edited, renewed = pages.changes(page(PAGE))[change]
+        assert {*map(self.place, edited)} == {*EDITS[change]}
+        known = self.texts()
+        for command in {PAGES_RENEWED, *renewed}:
+            if command.startswith("python "):  # others need a build
+                self.run(*command.split()[1:])
+        named = {file for command, files in renewed.items() for file in files}
+        assert {n for n, text in self.texts().items() if known.get(n) != text} == {
+            file for file in map(self.place, named) if file
+        }
+
+    def place(self, name):
+        """Return the path of a file of the page, whose folder may be left out."""
+        folders = ("", "src/twodiscs/", "src/twodiscs_paper/")
+        return next((f + name for f in folders if (self.path / f / name).is_file()), None)
+
+    def texts(self):
+        """Return {path: bytes} of all files except compiled modules."""
+        return {n: text for n, text in self.results(".").items() if not n.endswith(".pyc")}
+
+    def run(self, *words):
+        """Run Python with the package and the tests of the copy."""
+        folders = (self.path / part for part in ("src", "tests", "tests/workflow", "docs/make"))
+        path = os.pathsep.join(map(str, folders))
+        done = python(*words, env=os.environ | {"PYTHONPATH": path}, cwd=self.path)
+        assert done.returncode == 0, done.stdout + done.stderr
+
+
+def with_code(text):
+    """Return a text with the code of the page in place of its names."""
+    return re.sub("<([^<>]+)>", lambda name: code()[name[1]], text)
+
+
+# What must hold -----------------------------------------------------------------------------------
+
+
+def compared(scene):
+    """Return the quantities with a score in the check of a ``Scene``, in which nothing may fail.
+
+    The check fails once in a thousand seeds if all is right; this seed is fixed.
+    """
+    quantities = ["volume", *(f"{event}_area" for event in scene.events)]
+    dynamics = runs.DynamicsRun(scene, dict.fromkeys(scene.events, 5e-3), 10**7, 3).run()
+    sampled = montecarlo.MonteCarloRun(scene, quantities, 400_000, 0.1, 4).run()
+    rows = CheckTable.rows([dynamics, sampled])
+    assert [row for row in rows if row["passed"] is False] == []
+    return {row["quantity"] for row in rows if row["z"] is not None}
+
+
+def check_event():
+    """It has its exact area and rate in every scene, and all other events keep theirs.
+
+    Walls have different multiplicities in these scenes; more discs have exact values or none.
+    """
+    own, scene = [*DECLARED_EVENTS][-1], Scene(1.5, 1.0, 0.2)
+    for other in (
+        Scene(1.5, 1.0, 0.3),
+        Scene(1.5, 1.0, 0.38),
+        Scene(1.5, 1.0, 0.2, field=0.4),
+        Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5),
+        Scene(1.5, 1.0, 0.15, radius_ratio=0.6, mass_ratio=3.0),
+        Scene(1.5, 1.0, 0.2, periodic="x"),
+        Scene(1.5, 1.0, 0.15, discs=3),
+    ):
+        assert {f"{own}_time", f"{own}_area"} <= compared(other)
+    compared(Scene(1.5, 1.0, 0.12, discs=5))
+    known = td.pressure(scene)
+    assert known["wall_pressure"] == pytest.approx(known["virial_pressure"], rel=1e-12)
+    assert known["virial_pressure"] == pytest.approx(0.648, abs=1e-4)
+    assert known[f"{own}_pressure"] == known["top_wall_pressure"]
+    assert td.areas(scene)[f"{own}_area"] == td.areas(scene)["top_wall_area"]
+    md = td.simulate(scene, duration=1e4, seed=3)
+    assert md[f"{own}_time"].u.std_dev == pytest.approx(md[f"{own}_time"].stderr)
+    assert all(abs(td.pressure(md)[f"{name}_pressure"].z) < 5 for name in ("virial", "wall"))
+    td.plot(md, "md.png")
+    td.plot(td.sample(scene, 1e5, seed=2), "mc.png")
     for field in (0.2, 0.5, 0.8):
         falling = Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5, field=field)
         low, high = (clusters.corner_variance(falling, wall, 4.0) for wall in (own, "top_wall"))
         # The density of six components of velocity, by the kinetic energy that is left at the top.
         assert low / high == pytest.approx((1 - 2 * field * 0.6) ** -2)
-"""
-
-#: The figure of a scene with exact values, and of one without: cells of its rows are empty.
-FIGURE = """
-import sys
-sys.path.append(sys.argv[1])
-from figure_cases import BOXES, OTHERS, draw, tables_of
-
-for name in ("paper", "five"):
-    figure, rows = draw("hop_frequency", (BOXES | OTHERS)[name], tables_of(name)), tables_of(name)
-    own = [r for r in rows["mean_times"] if r["event"] == "vertical_hop" and r["stderr"]]
-    heights = {float(y) for line in figure.axes[0].lines for y in line.get_ydata()}
-    assert own and {1 / row["estimate"] for row in own} <= heights
-"""
 
 
-def block(beginning):
-    """Return the one block of Python on all pages with a line that begins so."""
-    line = re.compile(f"^{re.escape(beginning)}", re.MULTILINE)
-    found = [(name, text) for name in NAMES for kind, text in blocks(name)]
-    (text,) = (text for _, text in found if line.search(text))
-    return text
+def check_effect():
+    """Every mean time is that of the same scene without it, and others keep theirs."""
+    for more in ({"recoil": 1.0}, {"recoil": 1.0, "mass_ratio": 2.0, "field": 0.4}):
+        scene = Scene(1.5, 1.0, 0.2, **more)
+        assert {f"{event}_time" for event in scene.events} <= compared(scene)
+        assert td.mean_times(scene) == td.mean_times(Scene(**scene.parameters() | {"recoil": 0.0}))
+    for others in ({"moment_of_inertia": 0.5}, {"depth": 1.0}, {"discs": 3}):
+        with pytest.raises(td.InputError, match="recoil must be "):
+            Scene(1.5, 1.0, 0.15, recoil=1.0, **others)
 
 
-class Copy:
-    """A copy of the package in a ``folder``, and the files that a change edits."""
-
-    def __init__(self, folder):
-        self.package, self.edited = (
-            shutil.copytree(twodiscs.__path__[0], folder / "twodiscs"),
-            set(),
-        )
-        self.folder = folder
-
-    def insert(self, name, before, text):
-        """Write ``text`` before a line of a file, or the whole of a new file."""
-        path = self.package / name
-        known = path.read_text(encoding="utf-8") if before else ""
-        assert known.count(before) == 1 or not before
-        path.write_text(known.replace(before, text + before) if before else text, encoding="utf-8")
-        self.edited.add(name)
-
-    def run(self, program, *words):
-        """Run a program with the package of the copy."""
-        caches = {"NUMBA_CACHE_DIR": str(self.folder / "cache"), "PYTHONPATH": str(self.folder)}
-        return python("-c", program, *words, env=os.environ | caches, cwd=self.folder)
-
-    def declare(self, *events):
-        """Add events, last."""
-        self.insert("model/events.py", "    )\n}\n", "".join(f"        {e},\n" for e in events))
+def check_figure():
+    """It is drawn with exact values, and without, where cells of its rows are empty."""
+    for name in ("paper", "five"):
+        figure = draw("hop_frequency", (BOXES | OTHERS)[name], tables_of(name))
+        rows = tables_of(name)["mean_times"]
+        own = [r for r in rows if r["event"] == "vertical_hop" and r["stderr"]]
+        heights = {float(y) for line in figure.axes[0].lines for y in line.get_ydata()}
+        assert own
+        assert {1 / row["estimate"] for row in own} <= heights
 
 
-def shown(change):
-    """Return the numbers of edited files in the row of the cost of a ``change``."""
-    (row,) = re.findall(rf"^\| {change}.*$", page("docs/architecture.md"), re.MULTILINE)
-    return [*map(int, re.findall(r"\d+", row.split("|")[2]))]
+#: Changes that share a copy, what must hold in it, and its nearest tests: changes of kernels, and
+#: those for which kernels are kept.
+COPIES = {
+    "kernels": (
+        ("an event", "an effect", "an experiment with two discs"),
+        (check_event, check_effect),
+        ("tests/model", "tests/dynamics/test_to_collision.py"),
+    ),
+    "tables and figures": (
+        (
+            "a box", "a figure of a scene", "a study", "a figure of a study",
+            "a column of a table", "a key of a study",
+        ),
+        (check_figure,),
+        ("tests/studies/test_catalogue.py",),
+    ),
+}  # fmt: skip
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(len(SHELL_EVENTS) > 5, reason="there is no room for one more")
-@pytest.mark.parametrize("turned", [False, True])
-def test_an_event_needs_nothing_but_its_declaration(turned, tmp_path):
-    """It has its exact area and rate in every scene, and all other events keep theirs.
+@pytest.mark.parametrize("name", COPIES)
+def test_a_change_takes_the_files_of_the_page_and_all_else_holds(name, tmp_path, monkeypatch):
+    """No kernel is compiled for the second copy: those of the repository are kept."""
+    changes, checks, tests = COPIES[name]
+    kept = tmp_path / "cache" if name == "kernels" else Path(cache_folder("twodiscs")).parent
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(kept))
+    copy = Copy(mutants.copied(tmp_path / "copy"))
+    for change in changes:
+        copy.make(change)
+    for check in checks:
+        copy.run("-c", f"import test_changes; test_changes.{check.__name__}()")
+    assert mutants.failure(copy.path, tests) is None
 
-    The check of each scene fails once in a thousand seeds if all is right; this seed is fixed.
-    """
-    (line,) = re.findall(r"^Event\(.*?\)", block("Event("), re.MULTILINE)
-    line = line.replace("bottom", "left").replace('"y"', '"x"') if turned else line
-    name, axis = re.findall(r'"(\w+)"', line)[::2]
-    assert (axis, -1) not in {(event.axis, event.side) for event in DECLARED_EVENTS.values()}
+
+def test_every_change_of_the_page_is_made():
+    made = [change for changes, _, _ in COPIES.values() for change in changes]
+    assert sorted(made) == sorted(EDITS) == sorted(pages.changes(page(PAGE)))
+
+
+@pytest.mark.parametrize(
+    ("events", "module", "said"),
+    [
+        (
+            [f'"own_{i}", "wall", "x", -1' for i in range(7 - len(SHELL_EVENTS))],
+            "sampling.montecarlo", "sampling/montecarlo.py has room for 6 shells, not for 7",
+        ),
+        (
+            ['"own", "corner"'], "model.events",
+            "events.py knows events of kind hop, collision, wall, walls, not corner as own is",
+        ),
+    ],
+)  # fmt: skip
+def test_an_event_without_room_or_of_a_new_kind_is_refused(events, module, said, tmp_path):
+    shutil.copytree(td.__path__[0], tmp_path / "src/twodiscs")
     copy = Copy(tmp_path)
-    copy.declare(line)
-    done = copy.run(EVENT, name)
-    assert done.returncode == 0, done.stderr
-    assert [len(copy.edited)] == shown("an event")
-
-
-def test_a_seventh_shell_is_refused_with_a_sentence(tmp_path):
-    copy = Copy(tmp_path)
-    copy.declare(*(f'Event("own_{i}", "wall", "x", -1)' for i in range(7 - len(SHELL_EVENTS))))
-    done = copy.run("import twodiscs.sampling.montecarlo")
-    assert done.stderr.endswith("sampling/montecarlo.py has room for 6 shells, not for 7\n")
-
-
-def test_a_new_kind_is_refused_by_the_first_table_that_lacks_it(tmp_path):
-    copy = Copy(tmp_path)
-    copy.declare('Event("own", "corner")')
-    done = copy.run("import twodiscs.model.events")
-    assert "events.py knows events of kind hop, collision, wall, walls, not corner" in done.stderr
-
-
-def test_a_figure_of_a_scene_is_drawn_with_and_without_exact_values(tmp_path):
-    """Its module, its declaration and its name, as the page has them; its test is one more file."""
-    copy = Copy(tmp_path)
-    copy.insert("figures/frequency.py", "", block("def draw(box, rows)"))
-    _, _, declared = block("hop_frequency = Figure(").partition("hop_frequency = ")
-    declared = f'    "hop_frequency": {declared.rstrip()},\n'
-    copy.insert("figures/scene_figures.py", '    "hop_histogram": Figure(', declared)
-    entry = '    "hop_frequency": __import__("twodiscs.figures.frequency", fromlist="f").draw,\n'
-    copy.insert("figures/draw.py", '    "hop_histogram": motion', entry)
-    done = copy.run(FIGURE, REPOSITORY / "tests")
-    assert done.returncode == 0, done.stderr
-    assert len(copy.edited) + 1 == shown("a figure of a scene")[0]
-
-
-def test_an_experiment_is_one_module_and_its_test(tmp_path):
-    """``test_python_runs`` runs the page; here the two files are in their folders."""
-    copy = Copy(tmp_path)
-    copy.insert("dynamics/two/to_collision.py", "", block("class TimeToCollision(NamedTuple)"))
-    test = "from twodiscs.dynamics.two.to_collision import *\n" + block(
-        "times = times_to_collision"
+    old, _ = EDITS["an event"]["src/twodiscs/model/events.py"][0]
+    copy.replace(
+        "src/twodiscs/model/events.py", old, "".join(f"Event({e}), " for e in events) + old
     )
-    done = copy.run(test)
-    assert done.returncode == 0, done.stderr
-    assert [len(copy.edited) + 1] == shown("an experiment with two discs")
+    with pytest.raises(AssertionError, match=f"{said}\n"):
+        copy.run("-c", f"import twodiscs.{module}")

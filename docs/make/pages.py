@@ -110,20 +110,25 @@ CHANGE = re.compile(r"^\| for (.+) \| content \|\n\|---\|---\|\n((?:\|.*\n)+)", 
 
 
 def changes(page):
-    """Return {change: (edited files, files that a command renews)} of the tables of a page."""
+    """Return {change: (edited files, {command: files that it renews})} of the tables of a page."""
     found = {}
     for change, rows in CHANGE.findall(page):
-        files = [], []
+        edited, renewed = [], {}
         for row in rows.splitlines():
             names, content = row.strip("|").split("|", 1)
-            files[content.startswith(" renewed by ")].extend(re.findall(r"`([^`]+)`", names))
-        found[change] = files
+            command = re.match(r" renewed by `(.+?)`", content)
+            files = renewed.setdefault(command[1], []) if command else edited
+            files += re.findall(r"`([^`]+)`", names)
+        found[change] = edited, renewed
     return found
 
 
 def costs(text, page):
     """Return the page with the table of the costs of the changes of another ``page``."""
-    rows = (f"| {c} | {len(e)} | {len(r)} |\n" for c, (e, r) in changes(page).items())
+    rows = (
+        f"| {change} | {len(edited)} | {sum(map(len, renewed.values()))} |\n"
+        for change, (edited, renewed) in changes(page).items()
+    )
     head = "| change | edited | renewed |\n|---|---|---|\n"
     return re.sub(rf"(?<={re.escape(head)})(?:\|.*\n)+", lambda _: "".join(rows), text)
 

@@ -86,7 +86,7 @@ def stacked(width=COLUMN, **heights):
     ``heights`` are inches, with labels and titles, by the names of the panels from the top down.
     """
     figure = new_figure(sum(heights.values()), width, layout="constrained")
-    axes = figure.subplots(len(heights), height_ratios=[*heights.values()])
+    axes = figure.subplots(len(heights), squeeze=False, height_ratios=[*heights.values()])[:, 0]
     for one, name, letter in zip(axes, heights, "abcdefgh", strict=False):
         one.set_label(name)
         title(one, letter)
