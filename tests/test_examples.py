@@ -12,7 +12,6 @@ import math
 import re
 import shlex
 import subprocess
-from collections import Counter
 from functools import cache
 
 import pages
@@ -26,7 +25,6 @@ from snakemake.cli import get_argument_parser
 import twodiscs
 from twodiscs import cli
 from twodiscs.analysis.tables import SCENE_TABLES
-from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.measure.measurements import STATUSES
 from twodiscs.points.base import restore_arrays
 from twodiscs.points.dynamics_point import DynamicsPoint
@@ -340,17 +338,6 @@ def test_table_of_agreement_is_that_of_the_expected_results():
         abs(row["z"]) for row in TABLES["effects"].read(EXPECTED / "effects.csv") if row["z"]
     ]
     assert f"largest |z| of the mean times is {max(effects):.3g}." in page("docs/results.md")
-
-
-# Configurations -----------------------------------------------------------------------------------
-
-
-def test_a_box_runs_no_job_for_what_it_does_not_watch(dry):
-    rules = Counter(rule for rule, words in dry[()] if "scene=corridor" in words)
-    watched = yaml_files.load(with_examples()).folders["corridor"].quantities.names
-    figures = sum(entry.shown_for(watched) for entry in FIGURES.values())
-    assert rules == {"exact": 2, "dynamics": 4, "table": 3, "figure": figures}
-    assert {"square", "double", "look"} < {*yaml_files.load(with_examples()).folders}
 
 
 # The check ----------------------------------------------------------------------------------------

@@ -9,9 +9,10 @@ after it, and writes the same as a notebook.
 import ast
 import re
 from base64 import b64encode
-from contextlib import redirect_stdout
+from contextlib import chdir, redirect_stdout
 from io import StringIO
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import nbformat
 from nbformat import v4
@@ -59,7 +60,8 @@ def tutorial(page):
 
 
 if __name__ == "__main__":
-    page, kept = Path("docs/python.md"), Path("docs/tutorial.ipynb")
-    text, notebook = tutorial(page.read_text(encoding="utf-8"))
+    page, kept = Path("docs/python.md").absolute(), Path("docs/tutorial.ipynb").absolute()
+    with TemporaryDirectory() as folder, chdir(folder):  # the page saves files
+        text, notebook = tutorial(page.read_text(encoding="utf-8"))
     page.write_text(text, encoding="utf-8", newline="\n")
     nbformat.write(notebook, kept)

@@ -92,7 +92,8 @@ def test_an_equation_of_state_gives_the_rates_of_twenty_discs_within_ten_per_cen
     due = rates(scene, insertions.sample(scene, 2**16, 1)[0])
     due["any_wall"] = due["right_wall"] + due["top_wall"]
     expected = many_rates.expected_rates(scene)
-    assert {event: expected[event] for event in due} == pytest.approx(due, rel=0.1)
+    for event in due.keys() & scene.events:
+        assert expected[event] == pytest.approx(due[event], rel=0.1), event
 
 
 # A trajectory -----------------------------------------------------------------------------------

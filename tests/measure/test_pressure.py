@@ -119,7 +119,7 @@ def test_measured_pressures_are_the_exact_ones(name):
             assert abs(one.z) < 5, quantity
 
 
-@pytest.mark.parametrize("rare", WALLS)
+@pytest.mark.parametrize("rare", ["right_wall", "top_wall"])
 def test_a_pressure_has_an_error_if_none_of_its_times_is_too_rare_for_one(rare):
     point = Laws(PAPER).dynamics(np.random.default_rng(1), 1024, 1e-2)
     products = point.products | {f"{rare}*{rare}": 20}

@@ -17,7 +17,6 @@ from factory import of
 from twodiscs.analysis.tables import SCENE_TABLES, MeanTimesTable
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.stages import STAGES
-from twodiscs.model.events import EVENTS
 from twodiscs.points.base import reached
 from twodiscs_paper.catalogue import STUDY_TABLES, TABLES
 from twodiscs_paper.configuration.yaml_files import load, read
@@ -314,7 +313,7 @@ def test_the_long_run_is_what_its_shards_counted_and_agrees():
     ranges = read_shards(folder.glob("shards/*.json"), *job, settings)
     (counts, _), blocks = reached(ranges["all"], point.replicas // REPLICAS)
     assert blocks * REPLICAS == point.replicas
-    assert counts.tolist() == [point.counts[event] for event in EVENTS]
+    assert counts.tolist() == [point.counts[event] for event in request.quantities.mean_times]
 
 
 def test_the_page_on_passages_has_the_numbers_of_the_build_and_of_the_long_run():

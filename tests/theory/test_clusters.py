@@ -14,7 +14,7 @@ import pytest
 from scipy.integrate import dblquad, quad
 
 from twodiscs.dynamics.two.event_counts import run_blocks
-from twodiscs.model.events import EVENTS
+from twodiscs.model.events import EVENTS, WALL_HITS
 from twodiscs.model.scene import Scene
 from twodiscs.theory import clusters, exact
 from twodiscs.theory.flux import flux_constant
@@ -106,8 +106,7 @@ ROUGH = Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5)
 
 
 def test_only_wall_hits_of_rough_discs_between_two_pairs_of_walls_have_bursts_in_corners():
-    walls = {"right_wall", "top_wall", "any_wall"}
-    assert {e for e in EVENTS if clusters.corner_variance(ROUGH, e, 8.0)} == walls
+    assert {e for e in EVENTS if clusters.corner_variance(ROUGH, e, 8.0)} == {*WALL_HITS}
     for other in ({"moment_of_inertia": None}, {"periodic": "x"}):
         scene = replace(ROUGH, **other)
         assert not any(clusters.corner_variance(scene, event, 8.0) for event in EVENTS)
