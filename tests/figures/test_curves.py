@@ -9,6 +9,7 @@ from figure_cases import BOXES, PAPER
 
 from twodiscs.figures import curves
 from twodiscs.figures.curves import limits
+from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.model.scene import Box
 
 
@@ -53,6 +54,8 @@ def test_curves_break_where_times_jump():
         ({"periodic": "xy"}, {"h/2": 0.25, "w/2": 0.375}),
         # Two discs one above the other need 2 g r < 1/2; one reaches the top if g (h − 2r) < 1/2.
         ({"field": 2.0}, {"h": 0.125, "v": 0.375, "t": 0.375}),
+        # Larger unequal discs cannot hop vertically in a field.
+        ({"width": 2.0, "height": 1.3, "field": 0.3, "mass_ratio": 4.0}, {"h": 0.325, "f": 0.5}),
         # The larger disc 1 passes behind disc 2 as long as h < (√r1 + √r2)².
         ({"radius_ratio": 0.25}, {"h": 0.4, "x": 4 / 9}),
         ({"radius_ratio": 4.0}, {"h": 0.1}),
@@ -61,9 +64,14 @@ def test_curves_break_where_times_jump():
 )
 def test_limits_have_their_radii_and_names(effects, expected):
     box = Box(**{"width": 1.5, "height": 1.0} | effects)
-    *found, (largest, name) = limits(box)
-    assert name == r"r_{\mathrm{max}}"
-    assert largest == pytest.approx(box.largest_radius, rel=1e-14)
-    names = {radius: re.findall(r"(?:\{|=|^(?=[hw]))([\w/]+)", text) for radius, text in found}
+    marked = limits(box)
+    texts = " ".join(name for _, name in marked)
+    caption = FIGURES["volume"].caption(box)
+    assert {*re.findall(r"r_(\w+)", caption)} == {*re.findall(r"r_{\\mathrm{(\w+)", texts)}
+    if "f" not in expected:
+        *marked, (largest, name) = marked
+        assert name == r"r_{\mathrm{max}}"
+        assert largest == pytest.approx(box.largest_radius, rel=1e-14)
+    names = {radius: re.findall(r"(?:\{|=|^(?=[hw]))([\w/]+)", text) for radius, text in marked}
     named = {index: radius for radius, some in names.items() for index in some}
     assert named == pytest.approx(expected, rel=1e-15)

@@ -97,7 +97,7 @@ def test_key_figures_have_their_captions_beneath_them_and_the_rest_are_thumbnail
         assert figure["beneath"]
     for figure in key:
         text = titles[figure["title"]].caption().replace("_", "")
-        assert text in plain(figure["caption"]) or "Scene walls" in figure["caption"]
+        assert text in plain(figure["caption"]) or "scene walls" in figure["caption"]
         assert len(figure["alt"]) > len(figure["title"]) + 20
     results = complete.path / "results"
     drawn = [*results.glob("*/figures/*.png"), *results.glob("figures/*.png")]

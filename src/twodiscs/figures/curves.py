@@ -2,14 +2,17 @@
 
 from functools import cache
 from itertools import pairwise
+from math import isclose
 
 import numpy as np
 
 from twodiscs.analysis.tables import TheoryTable
 from twodiscs.model.events import EVENT_AXES, EVENTS, HOPS
 
-#: The name of the largest radius, and the names of the radii at which hops become blocked.
-LARGEST, QUARTERS = r"r_{\mathrm{max}}", {"x": "h/4", "y": "w/4"}
+#: The name of the largest radius that fits, that of a smaller one beyond which a field allows no
+#: scene, and the names of the radii at which hops become blocked.
+LARGEST, FIELD_END = r"r_{\mathrm{max}}", r"r_{\mathrm{f}}"
+QUARTERS = {"x": "h/4", "y": "w/4"}
 
 #: The names of radii of a box with effects: hops become blocked, disc 1 can no longer change sides,
 #: in a field it can reach the top wall, on a periodic axis discs can no longer pass each other. If
@@ -36,7 +39,7 @@ def limits(box):
     become blocked. In a field r_t is the radius from which on disc 1 can rise to the top wall. At
     r_x and r_y disc 1 loses its way to the other side of disc 2, if the hop is not blocked there.
     A periodic axis adds the radii at which σ = r1 + r2 is half of a side. The last one is the
-    largest radius, which a field may lower.
+    largest radius, or r_f if a field allows scenes only up to a smaller one.
     """
     names = {}
     if box.is_plain:
@@ -53,7 +56,8 @@ def limits(box):
             names[radius] += f"={name}"
         elif radius < largest:
             names.setdefault(radius, name)
-    return *sorted(names.items()), (largest, LARGEST)
+    last = LARGEST if isclose(largest, box.largest_radius) else FIELD_END
+    return *sorted(names.items()), (largest, last)
 
 
 def _fills(scene, axis):

@@ -39,7 +39,8 @@ class Caption:
     """The text beneath a figure, and sentences that are added for some scenes.
 
     These are scenes of two ``plain`` discs, those in a ``square``, all ``other`` scenes, scenes of
-    ``many`` discs, more than two, and scenes with a ``field`` or a ``periodic`` axis.
+    ``many`` discs, more than two, and scenes with a ``field`` or a ``periodic`` axis. A caption
+    with ``lines`` explains the vertical lines in the figure of these scenes, except plain ones.
     """
 
     text: str
@@ -49,11 +50,14 @@ class Caption:
     many: str = ""
     field: str = ""
     periodic: str = ""
+    lines: bool = False
 
     def full_text(self, box=None):
         """Return the text for the scenes in a ``Box``, for plain ones if it is None."""
         called = box.options if box else {}
         parts = [self.text, self.other if called else self.plain]
+        if self.lines and called:
+            parts.append(_name_lines(box))
         parts += [self.square] * bool(box and not called and box.width == box.height)
         parts += [self.many] * ("discs" in called) + [self.field] * ("field" in called)
         parts += [self.periodic] * ("periodic" in called)
@@ -115,19 +119,37 @@ Error bars are one standard error; they are hidden if they are smaller than the 
 _LINES = {
     "plain": """
     Vertical lines mark the radii at which hops become blocked, h/4 and w/4 as far as such discs
-    fit, and the largest radius.
+    fit, and the largest radius, r_max.
     """,
-    "other": """
-    Vertical lines mark the largest radius, r_max, and radii at which something changes. Vertical
-    hops end at r_v and horizontal hops at r_h; from r_x or r_y on disc 1 stays on its side of disc
-    2 along that axis; from r_t on it has the energy to reach the top wall. The radius r is that of
-    disc 1, and σ is the sum of both radii.
-    """,
-    "many": """
-    For more than three discs r_max is the largest radius of a known arrangement. If no exact value
-    is known there is no line and no residual.
-    """,
+    "many": "If no exact value is known there is no line and no residual.",
+    "lines": True,
 }
+
+#: {part of a name in mathtext of a vertical line: what the line marks}
+_MARKED = {
+    "{v}": "r_v, where vertical hops end",
+    "{h}": "r_h, where horizontal hops end",
+    "{x}": "r_x, from which on disc 1 stays on its side of disc 2 along x",
+    "{y}": "r_y, from which on disc 1 stays on its side of disc 2 along y",
+    "{t}": "r_t, from which on disc 1 has the energy to reach the top wall",
+    "sigma=h/2": "σ = h/2, where σ is the sum of both radii",
+    "sigma=w/2": "σ = w/2, where σ is the sum of both radii",
+    "{f}": "r_f, beyond which the field allows no scene, although larger discs fit",
+    "{max}": "r_max, the largest radius",
+}
+
+
+def _name_lines(box):
+    """Return the sentence on the vertical lines of figures over the radius of a ``Box``."""
+    from twodiscs.figures.curves import limits  # imports NumPy and more
+
+    names = " ".join(name for _, name in limits(box)).replace(r"\mathrm", "")
+    marked = "; ".join(text for part, text in _MARKED.items() if part in names)
+    known = " of a known arrangement" * (box.discs > 3)
+    which = " The radius r is that of disc 1." * ("radius_ratio" in box.options)
+    return f"Vertical lines mark {marked}{known}.{which}"
+
+
 _RESIDUALS = """
 Residuals z beneath are in standard errors, with guide lines at ±2 and ±5.
 """
@@ -220,7 +242,7 @@ FIGURES = {
         "Configuration space",
         GEOMETRY,
         """
-        Configuration space. Let x = (x1 − x2)/√2, X = (x1 + x2)/√2 and likewise y and Y; the
+        Let x = (x1 − x2)/√2, X = (x1 + x2)/√2 and likewise y and Y; the
         discs overlap if x² + y² < 2r². (a) The section Y = 0, in which the centres are as far
         above the middle as below it. It is a prism without a cylinder, whose axis is the
         diagonal of x1 and x2. (b) The whole is a product of two squares, one for x1 and x2 and

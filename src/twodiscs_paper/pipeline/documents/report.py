@@ -137,7 +137,7 @@ def figure(folder, path, scenes):
     about = scene or main
     text = entry.caption(about and described_box(about))
     if scene:
-        text += f" Scene {scene['name']}, {scene['box']}."
+        text += f" The box is {scene['box']}, the scene {scene['name']} of the configuration."
     with Image.open(Path(folder, path)) as image:
         width = image.width // DENSITY
     return {
