@@ -101,7 +101,7 @@ def test_cost_prints_times_of_errors_as_a_table_and_for_scripts(shell, monkeypat
     words = "cost", *BOX, "--radius", "0.2"
     text = shell(*words)
     assert text.startswith(str(Scene(1.5, 1, 0.2)))
-    assert " 0.01 0.0003 " in re.sub(" +", " ", text)
+    assert " 1e-2 3e-4 " in re.sub(" +", " ", text)
     rows = json.loads(shell(*words, "--json"))
     table = [*csv.DictReader(io.StringIO(shell(*words, "--csv")))]
     assert [row["method"] for row in table] == [row["method"] for row in rows]

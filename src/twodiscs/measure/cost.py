@@ -421,7 +421,7 @@ class Cost(Printed):
             least = format_number(price.least_error, ".1e") if 0 < price.least_error < 1 else "–"
             floor = format_number(price.floor, ".1e") if price.floor else ""
             rows.append([price.quantity, price.method, *times(price.seconds), least, floor])
-        names = [format_number(error, "g") for error in self.errors]
+        names = [np.format_float_scientific(e, trim="-", exp_digits=1) for e in self.errors]
         return pd.DataFrame(rows, columns=["quantity", "method", *names, "least", "floor"])
 
     @property
