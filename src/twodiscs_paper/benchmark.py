@@ -18,6 +18,7 @@ from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import class_counts, many_rates
 from twodiscs.model.events import EVENTS, SHELL_EVENTS
+from twodiscs.model.many_geometry import LARGE
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.conditioned import conditioned_sampler
@@ -39,10 +40,12 @@ def count_in_square(discs, packing, with_states):
     """Count the events of a block of N discs in a square, with the time for their states or not."""
     side = math.sqrt(discs * math.pi / packing) * SCENE.radius
     scene = Scene(side, side, SCENE.radius, discs=discs)
-    duration = many_rates.replica_duration(scene)
+    duration, replicas = many_rates.replica_duration(scene), many_rates.block_replicas(scene)
+    if discs >= LARGE and not with_states:  # one state, whose time does not depend on ``time``
+        duration, replicas = duration * replicas, 1
 
     def counted(time):
-        return timed(lambda: class_counts.run_classes(scene, 1, 0, 1, time))
+        return timed(lambda: class_counts.run_classes(scene, 1, 0, 1, time, replicas=replicas))
 
     (sums, _), seconds = counted(duration)
     if not with_states:

@@ -190,13 +190,22 @@ def test_a_small_budget_has_an_error_bar(discs, packing):
     with pytest.warns(td.AccuracyWarning):
         md = td.simulate(scene, budget=budget, seed=1)
     if packing == 0.7:
-        assert "after 8 of the 100 replicas that an error needs" in md.note
+        assert "of the 100 replicas that an error needs" in md.note
         budget = float(md.note.split("a budget of ")[1].split()[0])
         with pytest.warns(td.AccuracyWarning):
             md = md.more(budget=budget)
     assert 100 <= md.point.replicas < 300
     assert md.point.events < 1.1 * budget
     assert all(one.stderr for one in md.values())
+
+
+def test_errors_have_the_correlation_of_successive_replicas():
+    """Sums of four neighbours in a row of random numbers; each error is known to 3 %."""
+    alone = np.random.default_rng(3).integers(1000, 1100, (8000, 2))
+    together = sum(np.roll(alone, k, 0) for k in range(4))
+    for counts, ratio in ((alone, 1), (together, 19 / 6)):
+        spread = np.diag(class_counts.spread_of_batches(counts, 6)) / 8000 - counts.mean(0) ** 2
+        assert spread / counts.var(0) == pytest.approx(ratio, rel=0.15)
 
 
 def check_state(scene, state):

@@ -23,7 +23,7 @@ class Engine(NamedTuple):
     expected_event_rate: Callable  # wall hits and collisions, in 1/time
     expected_rate: Callable  # (event): its rate over all discs and walls, in 1/time, 0 if unknown
     replica_duration: Callable  # (budget of events or None): the time T of a replica, 2ⁿ
-    block_replicas: Callable  # the number of replicas of a block
+    block_replicas: Callable  # (T, None for the usual one): the number of replicas of a block
     run_blocks: Callable  # (events, seed, first, stop, duration): (Σ N_e, Σ N_e N_f), integers
     cost_ratio: Callable  # the work of an event
     work_per_event: Callable  # the work of an event with its kicks and jumps, over ``cost_ratio``
@@ -56,7 +56,7 @@ TWO_DISC_ENGINE = Engine(
     expected_event_rate=exact.event_rate,
     expected_rate=two_rates.expected_rate,
     replica_duration=lambda scene, budget=None: two_rates.replica_duration(scene),
-    block_replicas=lambda scene: REPLICAS,
+    block_replicas=lambda scene, duration=None: REPLICAS,
     run_blocks=event_counts.run_blocks,
     cost_ratio=two_rates.cost_ratio,
     work_per_event=two_rates.work_per_event,

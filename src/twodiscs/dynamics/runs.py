@@ -132,7 +132,8 @@ class DynamicsRun(Run):
 
     def _everything(self, budget):
         scene, engine = self.scene, find_engine(self.scene)
-        duration, each = self.replica_duration, engine.block_replicas(scene)
+        duration = self.replica_duration
+        each = engine.block_replicas(scene, duration)
         index = [EVENTS.index(event) for event in self._ordinary_events]
         goals = np.array([self.target[event] for event in self._ordinary_events])
         replicas = (
@@ -183,7 +184,7 @@ class DynamicsRun(Run):
         engine = find_engine(self.scene)
         constants = {
             "duration": self.replica_duration,
-            "replicas": engine.block_replicas(self.scene),
+            "replicas": engine.block_replicas(self.scene, self.replica_duration),
             "target": self._target,
         }
         components = {"all": constants | {"sums": ranges["all"]}}
@@ -242,7 +243,7 @@ class TimedRun(DynamicsRun):
     def components(self):
         """The ``SequentialRun`` of all blocks, {"all": run}."""
         engine = find_engine(self.scene)
-        each = self.replica_duration * engine.block_replicas(self.scene)
+        each = engine.block_replicas(self.scene, self.replica_duration) * self.replica_duration
         blocks, run = max(1, math.ceil(self.duration / each)), self._everything(self.most_events)
         return {"all": fixed(run.work, blocks, run.block_events, run.cost_ratio)}
 

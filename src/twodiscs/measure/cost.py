@@ -107,11 +107,11 @@ def _pilot(run, name, seconds):
     from twodiscs.dynamics.runs import relative_errors
 
     scene, engine, one = run.scene, find_engine(run.scene), run.components[name]
-    replicas = engine.block_replicas(scene)
+    duration = run.replica_duration
+    replicas = engine.block_replicas(scene, duration)
     sums, blocks, each = timed(one.work, seconds, -(-FEWEST_REPLICAS // replicas))
     if name == "all":
         number, errors = blocks * replicas, {}
-        duration = engine.replica_duration(scene)
         burst_variance = np.array(
             [exact.corner_variance(scene, event, duration) for event in EVENTS]
         )

@@ -436,6 +436,17 @@ def start_from(states, replica, motion, grid, law, hops, hops_x):
     look_for_all(motion, grid, law)
 
 
+@inlined
+def end_in(states, replica, motion, law):
+    """Put the discs, which have come to the same time, into a column of ``states``."""
+    discs = motion.x.size
+    for i in range(discs):
+        states[i, replica], states[discs + i, replica] = motion.x[i], motion.y[i]
+        states[2 * discs + i, replica] = motion.u[i]
+        states[3 * discs + i, replica] = motion.v[i]
+    all_pairs.copy_spins(motion.s, 0, replica, spins_in(states, discs, law.rough))
+
+
 @compiled
 def look_for_all(motion, grid, law):
     """Find the contacts and borders of all discs, at the time 0 that all have come to."""
@@ -579,8 +590,9 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
 def count_events(states, seed, first, duration, epoch, law, grid, hops, hops_x, kicks):
     """Follow the columns of ``states`` (rows, replicas) for a ``duration`` and add up their counts.
 
-    Returns (sums, products) as ``all_pairs.count_events`` does. ``hops`` and ``hops_x`` are None
-    where hops in y or in x are not counted. ``kicks`` are those of one lane, None without friction.
+    The states become those at the end. Returns (sums, products) as ``all_pairs.count_events`` does.
+    ``hops`` and ``hops_x`` are None where hops in y or in x are not counted. ``kicks`` are those of
+    one lane, None without friction.
     """
     discs = all_pairs.discs_in(states, law.rough)
     laps = np.zeros((2, discs))
@@ -595,6 +607,7 @@ def count_events(states, seed, first, duration, epoch, law, grid, hops, hops_x, 
         follow_discs(
             duration, epoch, motion, laps, grid, law, count, lane, kicks, None, bands, bands_x
         )
+        end_in(states, replica, motion, law)
         all_pairs.add_counts(count, sums, products)
     return sums, products
 
@@ -609,7 +622,7 @@ def advance_all(states, laps, time, epoch, law, grid, kicks, hops_x):
     """
     discs, replicas = laps.shape[0] // 2, laps.shape[1]
     motion, rounds = new_motion(discs, grid, law.rough), np.zeros((2, discs))
-    counts, spins = np.zeros((N_CLASSES, 1), np.int64), spins_in(states, discs, law.rough)
+    counts = np.zeros((N_CLASSES, 1), np.int64)
     bands_x = new_bands(discs, grid.x, hops_x)
     for replica in range(replicas):
         rounds[:], counts[:] = 0.0, 0
@@ -619,10 +632,7 @@ def advance_all(states, laps, time, epoch, law, grid, kicks, hops_x):
             bands_x,
         )  # fmt: skip
         all_pairs.add_hops(counts, replica, hops_x)
+        end_in(states, replica, motion, law)
         for i in range(discs):
-            states[i, replica], states[discs + i, replica] = motion.x[i], motion.y[i]
-            states[2 * discs + i, replica] = motion.u[i]
-            states[3 * discs + i, replica] = motion.v[i]
             laps[i, replica] += rounds[0, i]
             laps[discs + i, replica] += rounds[1, i]
-        all_pairs.copy_spins(motion.s, 0, replica, spins)

@@ -20,9 +20,9 @@ REPLICA_EVENTS, CHAIN_REPLICA_EVENTS = 256, 8192
 #: together. The motion then takes several times as long as the draw of the state.
 EVENTS_PER_DISC, MOST_REPLICA_EVENTS = 256, 2**19
 
-#: Replicas that a budget has room for, if they can be shorter. Those of crowded discs cannot,
-#: because each has a new chain.
-BUDGET_REPLICAS = 128
+#: Replicas that a budget has room for, if they can be shorter: the 100 that an error needs, and
+#: some more. Those of crowded discs cannot, because each has a new chain.
+BUDGET_REPLICAS = 108
 
 #: The events of a block of ``LARGE`` numbers of discs and its fewest replicas, and the events of
 #: each disc in an epoch.
@@ -87,7 +87,7 @@ def expected_duration(scene, events=None):
     at most ``MOST_REPLICA_EVENTS``.
     """
     if events is None and scene.discs >= LARGE:
-        events = _replica_events(scene)
+        events = min(EVENTS_PER_DISC * crowding(scene) * scene.discs, MOST_REPLICA_EVENTS)
     events = events or (CHAIN_REPLICA_EVENTS if method(scene) == "chain" else REPLICA_EVENTS)
     return ensemble.nearest_power_of_two(events / _guessed_rate(scene))
 
@@ -102,29 +102,32 @@ def replica_duration(scene, budget=None):
 
     With friction it is shorter, so that kicks do not add to the work. For ``LARGE`` numbers of
     discs, if they are not crowded, it is also so short that ``BUDGET_REPLICAS`` have no more events
-    than the ``budget``, but one event for each disc.
+    than the ``budget``, but one event for each disc; it then has three binary digits.
     """
     work = work_per_event(scene)
     duration = ensemble.nearest_power_of_two(expected_duration(scene) / work)
     if budget is None or scene.discs < LARGE or crowding(scene) > CROWDED:
         return duration
     events = budget / BUDGET_REPLICAS / work
-    longest = max(events, scene.discs) / expected_event_rate(scene)
-    return min(duration, math.ldexp(0.5, math.frexp(longest)[1]))
+    mantissa, exponent = math.frexp(max(events, scene.discs) / expected_event_rate(scene))
+    return min(duration, math.ldexp(int(8 * mantissa), exponent - 3))
 
 
-def block_replicas(scene):
-    """Return the number of replicas of a block: for ``LARGE`` numbers of discs a power of two.
+def block_replicas(scene, duration=None):
+    """Return the number of replicas of a block, each of a ``duration``, None for the usual one.
 
-    A block has about ``BLOCK_EVENTS``, and ``FEWEST_REPLICAS`` or more: 128 in a first round.
+    For ``LARGE`` numbers of discs a block has about ``BLOCK_EVENTS``, and ``FEWEST_REPLICAS`` or
+    more: 128 in a first round.
     """
     if scene.discs < LARGE:
         return ensemble.REPLICAS
-    return max(FEWEST_REPLICAS, 1 << int(BLOCK_EVENTS / _replica_events(scene)).bit_length() - 1)
+    events = events_per_disc(scene, duration or replica_duration(scene)) * scene.discs
+    return min(max(FEWEST_REPLICAS, round(BLOCK_EVENTS / events)), BUDGET_REPLICAS)
 
 
-def _replica_events(scene):
-    return min(EVENTS_PER_DISC * crowding(scene) * scene.discs, MOST_REPLICA_EVENTS)
+def events_per_disc(scene, duration):
+    """Return the expected number of wall hits and collisions in a ``duration``, over N."""
+    return duration * expected_event_rate(scene) / scene.discs
 
 
 def usual_epoch(scene):

@@ -15,9 +15,9 @@ discs also their spins s, as the speeds rω of their surfaces.
   another, it stays near the known one.
 
 Counts of events may take successive states of one chain, which cost a part of a new chain. Those
-states have the same law, and all that follow are closer to it. Between two of them the discs have
-so many contacts that neighbours in a chain are almost independent: the study of calibration has
-the correlation of their counts.
+states have the same law, and all that follow are closer to it. A chain of event chains goes on from
+the end of the last trajectory. Neighbours in a chain are almost independent: the study of
+calibration has the mean squares of scores.
 
 The arithmetic is + − × / and √ only.
 """
@@ -46,9 +46,12 @@ LEAST_FREE_FRACTION = 1e-3
 CHAIN_SWEEPS, LEAST_SCALES = 4000, 8
 
 #: The sweeps to a new state over those to the next state of a chain of roomy discs. More crowded
-#: discs forget slowly where they were, so each state has a new chain. Few discs have longer moves,
-#: and twice this limit. Density relaxes slowly along a box of more discs than ``LONG``.
-APART, CROWDED, LONG = 8, 2.5, 32
+#: discs forget slowly where they were, so each state has a new chain; few discs have longer moves,
+#: and a limit of their own. Density relaxes slowly along a box of more discs than ``LONG``.
+APART, CROWDED, CROWDED_FEW, LONG = 8, 3, 5, 32
+
+#: Gaps between numbers that are sorted (M. Ciura, Lect. Notes Comput. Sci. 2138, 106 (2001)).
+SHELL_GAPS = 1750, 701, 301, 132, 57, 23, 10, 4, 1
 
 #: The most discs for rejection of heights in a channel: with more, too few would be accepted.
 MOST_REJECTED = 64
@@ -110,17 +113,18 @@ def method(scene):
     return "rejection" if insertions.free_fraction(scene) >= LEAST_FREE_FRACTION else "chain"
 
 
-def make_initial(scene, by=None, *, chained=False):
+def make_initial(scene, by=None, *, contacts=0):
     """Return the ``Initial`` of a ``Scene``, by its ``method`` unless another one is named.
 
-    If states are ``chained``, those that one call draws by a chain are successive states of it.
+    Each state has a new chain, unless a number of ``contacts`` is given, the most of each disc on
+    the way to the next state of ``LARGE`` numbers of discs in a square.
     """
     by = by or method(scene)
     return Initial(
         scene.discs, scene.range_x / 2, scene.range_y / 2, scene.contact_distance,
         *insertions.periods(scene),
         _cells(scene) if by == "channel" else None,
-        _chain(scene, chained) if by == "chain" or scene.discs > MOST_REJECTED else None,
+        _chain(scene, contacts) if by == "chain" or scene.discs > MOST_REJECTED else None,
         (4 if scene.moment_of_inertia is None else 5) * scene.discs, spin_factor(scene),
     )  # fmt: skip
 
@@ -130,24 +134,28 @@ def spin_factor(scene):
     return None if scene.moment_of_inertia is None else 1 / math.sqrt(scene.moment_of_inertia)
 
 
-def _chain(scene, chained=False):
+def _chain(scene, contacts=0):
     # The smallest moves are a fraction of the free length that is left to the discs.
     tightness = max(scene.range_x, scene.range_y) / (scene.largest_radius - scene.radius)
     scales = min(62, max(LEAST_SCALES, 2 + math.frexp(tightness)[1]))
     centres, grid = np.array(arrangement(scene)).T.copy(), large_grid(scene)
     if grid is None:
-        return Chain(centres, CHAIN_SWEEPS, chained * _between(scene, CHAIN_SWEEPS // 2), scales)
+        between = _between(scene, CHAIN_SWEEPS // 2) if contacts else 0
+        return Chain(centres, CHAIN_SWEEPS, between, scales)
     number, length = chains.plan(scene)
-    between = chained * _between(scene, number)
+    aspect = max(scene.width, scene.height) / min(scene.width, scene.height)
+    most = contacts * aspect**2 * scene.discs / chains.CONTACTS_PER_CHAIN
+    between = _between(scene, number, most) if contacts else 0
     return Chain(centres, number, between, scales, _rounded(length), grid)
 
 
-def _between(scene, sweeps):
+def _between(scene, sweeps, most=math.inf):
     """Return the part of the ``sweeps`` to the next state of a chain; 0 if discs are crowded."""
-    crowding, most = chains.crowding(scene), CROWDED if scene.discs >= LARGE else 2 * CROWDED
+    crowding, limit = chains.crowding(scene), CROWDED if scene.discs >= LARGE else CROWDED_FEW
     along = max(scene.width, scene.height) * math.sqrt(scene.discs / (scene.width * scene.height))
     share = crowding / APART * max(1.0, along / LONG) ** 2
-    return math.ceil(share * sweeps) if crowding <= most and share < 1 else 0
+    between = math.ceil(min(share * sweeps, most))
+    return between if crowding <= limit and between < sweeps else 0
 
 
 def large_grid(scene):
@@ -225,13 +233,14 @@ def excess(separation, sigma, height, least):
 
 @inlined
 def sort(values):
-    """Sort a short array in place."""
-    for i in range(1, values.size):
-        value, j = values[i], i
-        while j > 0 and values[j - 1] > value:
-            values[j] = values[j - 1]
-            j -= 1
-        values[j] = value
+    """Sort an array in place, as D. L. Shell does (Commun. ACM 2, 30 (1959))."""
+    for gap in SHELL_GAPS:
+        for i in range(gap, values.size):
+            value, j = values[i], i
+            while j >= gap and values[j - gap] > value:
+                values[j] = values[j - gap]
+                j -= gap
+            values[j] = value
 
 
 @optional(lambda velocities, row, ring: None)
@@ -461,12 +470,16 @@ def put_state(states, k, centres, velocities, spin):
 
 
 @compiled
-def draw_states(state, initial, states):
-    """Fill ``states`` (rows, number): x of all discs, then y, u, v and maybe s."""
-    centres = np.empty((2, initial.discs))
+def draw_states(state, initial, states, first=0):
+    """Fill ``states`` (rows, number): x of all discs, then y, u, v and maybe s.
+
+    A chain that has given ``first`` states goes on from the centres in the first column.
+    """
+    n = initial.discs
+    centres = states[: 2 * n, 0].copy().reshape((2, n))
     velocities, cuts = velocity_memory(initial.discs, initial.spin)
     for k in range(states.shape[1]):
-        draw_centres(state, initial, centres, k, initial.cells)
+        draw_centres(state, initial, centres, first + k, initial.cells)
         draw_velocities(state, velocities, cuts, initial.ring_x, initial.ring_y, initial.spin)
         put_state(states, k, centres, velocities, initial.spin)
 

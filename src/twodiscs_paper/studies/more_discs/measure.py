@@ -66,7 +66,7 @@ def counted(scene, events, seed):
     blocks = max(2, math.ceil(events / class_counts.simulated_events(first[0])))
     rest = class_counts.run_classes(scene, seed, 1, blocks, duration)
     sums, products = (one + more for one, more in zip(first, rest, strict=True))
-    return sums, products, blocks * many_rates.block_replicas(scene), duration
+    return sums, products, blocks * many_rates.block_replicas(scene, duration), duration
 
 
 def dynamics_rates(scene, events, seed):
