@@ -79,7 +79,7 @@ def cases():
     yield from long_file_cases()
     yield from threshold_cases()
     yield from distribution_cases()
-    for (_, _, own), look in zip(tail_cases(), tails.LOOKS, strict=False):
+    for (_, _, own), look in zip(tail_cases(), tails.CASE_LOOKS, strict=False):
         law = own[0]["law"]
         due = [symbol(r["time"] / r["exact_mean"], r, 1 / r["law"] if law else 1.0) for r in own]
         yield "tails", "ratio" if law else "exponential", look, due
@@ -104,7 +104,7 @@ def cases():
     # Open and full symbols of one look are of crossings and of first passages.
     (path,) = STUDY_FIGURES["brownian"].long_runs.values()
     rows = [row for row in read_table(EXPECTED.parents[1] / path) if row["room"] <= 1 / 4]
-    for program, (colour, _) in brownian.LOOKS.items():
+    for program, (colour, _) in brownian.PROGRAM_LOOKS.items():
         for step, marker in brownian.MARKERS.items():
             for panel, quantity in (("kappa", "coefficient"), ("exponent", "local_exponent")):
                 own = select(rows, program=program, step=step, quantity=quantity)
@@ -143,7 +143,7 @@ def passage_cases():
     plain = {"width": rows[0]["width"], "height": rows[0]["height"], "event": "horizontal_hop"}
     plain |= {"periodic": None, "friction": None}
     ours = select([*rows, *kept], **plain)
-    for inertia, look in passages.LOOKS.items():
+    for inertia, look in passages.INERTIA_LOOKS.items():
         own = select(ours, moment_of_inertia=inertia)
         kappa, times = select(own, quantity="coefficient"), select(own, quantity="passage_time")
         built = select(table("passages"), quantity="passage_time", **plain)
@@ -152,13 +152,13 @@ def passage_cases():
         yield "passages", "times", look, columns(times, "distance")
         due = columns(kappa, "distance") if inertia else [*map(over_cube_root, kappa)]
         yield "transmission", "rough" if inertia else "smooth", look, due
-        shown = [2.0**-n for n in passages.SHOWN.get(inertia, ())]
+        shown = [2.0**-n for n in passages.SHOWN_HALVINGS.get(inertia, ())]
         curves = [row for row in select(own, quantity="correlation") if row["distance"] in shown]
         yield "passages", "curves", look, [symbol(r["time"] / unit(r), r) for r in curves]
         # Both methods, open symbols and dots.
         ring = select(rows, quantity="diffusion", discs=2, moment_of_inertia=inertia)
         yield "diffusion", "ring", look, columns(ring, "distance")
-    for rate, look in friction.LOOKS.items():
+    for rate, look in zip(friction.KICKED, style.SERIES, strict=True):
         kappa, exponents = [], []
         for some in (rows, kept):
             own = select(some, friction=rate, quantity="coefficient")
@@ -196,7 +196,7 @@ def long_file_cases():
     ]
     yield "files", "moved", files.ROUGH_FILE, due
     kicked = [row for row in order if row["friction"]]
-    for look, row in zip(files.OPEN, kicked, strict=True):
+    for look, row in zip(files.COLLAPSE_LOOKS, kicked, strict=True):
         where = {"distance": row["distance"], "friction": row["friction"]}
         (single,) = select(rows, quantity="single_file", **where)
         (rate,) = select(rows, quantity="rate", discs=row["discs"], **where)
@@ -306,7 +306,7 @@ def test_what_passages_leave_falls_at_twice_their_rate():
     lines = [n for n in drawn("passages")["curves"].lines if n.get_color() == style.BLACK]
     shown = [line.get_data() for line in lines if len(line.get_xdata()) == 30]
     due = []
-    for inertia, halvings in passages.SHOWN.items():
+    for inertia, halvings in passages.SHOWN_HALVINGS.items():
         own = select(rows, quantity="coefficient", moment_of_inertia=inertia)
         due += [row for n in halvings for row in select(own, distance=2.0**-n)]
     assert len(shown) == len(due) > 2
@@ -344,7 +344,7 @@ def test_residuals_are_those_of_the_table():
 
 def test_the_symbols_of_tori_are_those_of_the_long_run():
     rows = read_table(EXPECTED.parent / "long_run" / "tori" / "tori.csv")
-    for (reference, discs), (colour, marker, _) in tori.LOOKS.items():
+    for (reference, discs), (colour, marker, _) in tori.REFERENCE_LOOKS.items():
         own, axes = select(rows, reference=reference, discs=discs), drawn("tori")
         due = {(row["packing_fraction"], row["estimate"]) for row in own}
         assert points(axes["factor"], colour, marker) >= due != set()
@@ -357,7 +357,7 @@ def test_the_mean_squares_of_calibration_are_those_of_the_long_run():
     """Every row with enough scores, except those of long calls, has a symbol in its line."""
     lines = [n for n in drawn("calibration")["calibration"].lines if n.get_marker() in "os^"]
     shown = sorted((round(y), x) for line in lines for x, y in line.get_xydata())
-    path, fewest = "calibration/calibration.csv", figure_calibration.FEWEST
+    path, fewest = "calibration/calibration.csv", figure_calibration.FEWEST_SCORES
     rows = read_table(EXPECTED.parent / "long_run" / path)
     rows = [row for row in rows if row["scores"] >= fewest and row["size"] != "long"]
     due = []
@@ -432,7 +432,7 @@ def test_the_panels_of_stability_of_runs_are_those_of_the_table():
 
 
 def test_tails_are_those_of_the_table_with_their_laws():
-    for (event, radius, own), look in zip(tail_cases(), tails.LOOKS, strict=False):
+    for (event, radius, own), look in zip(tail_cases(), tails.CASE_LOOKS, strict=False):
         rates = select(table("tails"), event=event, radius=radius, quantity="rate")
         axes = drawn("tails")["exponential" if rates else "tails"]
         line = next(n for n in axes.lines if n.get_color() == look[0] and n.get_marker() == "None")

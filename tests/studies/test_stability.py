@@ -332,7 +332,7 @@ def few_intervals(seed):
 def few_passages(seed):
     """Return rows of passages.csv by ``NearThreshold`` from few hops, at two distances."""
     rows = [*near_threshold.one_hop("", PAPER, "horizontal_hop", (6, 7), None, 2**12, seed)]
-    return [*rows, *powers.fits([dict.fromkeys(powers.HOP) | row for row in rows])]
+    return [*rows, *powers.fits([dict.fromkeys(powers.HOP_COLUMNS) | row for row in rows])]
 
 
 @pytest.mark.parametrize("make", [few_intervals, few_passages])

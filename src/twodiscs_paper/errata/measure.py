@@ -8,7 +8,7 @@ check.csv, radius by radius.
 
 from mpmath import mp
 
-from twodiscs_paper.errata.statements import GENERAL, LIMITS, NEAR, REGIMES, SAME, STATEMENTS
+from twodiscs_paper.errata.statements import GENERAL, LIMIT_STEP, LIMITS, REGIMES, SAME, STATEMENTS
 from twodiscs_paper.reference import DIGITS, MpScene
 from twodiscs_paper.study import row
 
@@ -34,7 +34,7 @@ def reported_boxes(name):
         return [MpScene.of(*box) for box in REGIMES[name]], REGIMES[name][0][2]
     sides, limit, side = LIMITS[name]
     outlines = [MpScene.of(*box, 0) for box in sides]
-    boxes = [box._replace(r=limit(box) + side * NEAR) for box in outlines]
+    boxes = [box._replace(r=limit(box) + side * LIMIT_STEP) for box in outlines]
     return boxes, float(limit(outlines[0])) if sides[0] == (WIDTH, HEIGHT) else None
 
 

@@ -33,7 +33,7 @@ LIMITS = {
 }
 
 #: The distance from the limiting radius at which a limit is evaluated.
-NEAR = mpf("1e-30")
+LIMIT_STEP = mpf("1e-30")
 
 #: Printed and true are the same if their ratio is 1 to this accuracy.
 SAME = mpf("1e-20")
@@ -107,7 +107,7 @@ def four_components_are_there(q):
 
 def collision_time_vanishes(q):
     """Whether the time between disc collisions vanishes at the largest radius."""
-    return mean_time("disc_collision", q) < mp.sqrt(NEAR)
+    return mean_time("disc_collision", q) < mp.sqrt(LIMIT_STEP)
 
 
 def collision_time_is_smooth(q):
@@ -196,7 +196,7 @@ def _quarter_time(q):
 
 def _half_of_before(q):
     """Half the time on the right wall just below h/4."""
-    return mean_time("right_wall", MpScene(q.w, q.h, q.h / 4 - NEAR)) / 2
+    return mean_time("right_wall", MpScene(q.w, q.h, q.h / 4 - LIMIT_STEP)) / 2
 
 
 STATEMENTS = (
@@ -470,7 +470,7 @@ STATEMENTS = (
         truth=reference.lower_wall, severity="major",
     ),
     Statement(
-        "limit of thin shells", "B", HOPS, lambda q: published.hop_shell(q, NEAR),
+        "limit of thin shells", "B", HOPS, lambda q: published.hop_shell(q, LIMIT_STEP),
         "vertical_hop_area",
         "multiply by `‖∇g‖`, as the text around it says in other words; a shell of both sides is "
         "divided by `2ε` (here `|y_1 − y_2| ≤ ε`); for walls `g` is `a − x_1`, for `x_1 − a` is "

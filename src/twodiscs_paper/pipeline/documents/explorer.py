@@ -16,9 +16,6 @@ from twodiscs.theory.flux import flux_constant
 #: The scripts of the page in their order.
 SCRIPTS = ("theory.js", "dynamics.js", "plot.js", "page.js")
 
-#: The effects that the page can show.
-SHOWN = {"periodic", "field", "friction"}
-
 #: The events that the page counts.
 COUNTED = ("vertical_hop", "horizontal_hop", "disc_collision", "any_wall")
 
@@ -85,7 +82,8 @@ def explorer(parts, tables, scenes, seed):
     shown, left_out = [], []
     for scene in scenes:
         name, effects = scene["name"], scene["effects"]
-        if not effects.keys() <= SHOWN:
+        # The effects that the page can show.
+        if not effects.keys() <= {"periodic", "field", "friction"}:
             left_out.append(name)
             continue
         own = {Path(path).stem: path for path in tables if Path(path).parent.name == name}

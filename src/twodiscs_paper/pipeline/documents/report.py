@@ -37,9 +37,6 @@ from twodiscs_paper.pipeline.results.provenance import commit, versions
 KEY, SOME = ("mean_hop_time", "mean_collision_time"), 2
 KEY_OF_ALL = ("accuracy_cost", "tails", "distributions", "passages", "effects")
 
-#: The report opens on all mean times if they have at most this number of rows.
-FEW = 60
-
 #: The tables that have an error for each radius, by the stage that makes them, and the errors whose
 #: time the report has.
 ACCURATE = {"dynamics": "mean_times", "monte_carlo": "volume"}
@@ -238,7 +235,8 @@ def contents(folder, files, scenes, run):
     sections += [section(folder, of_all, by_name)] if of_all else []
     measured = {scene["name"]: mean_times(folder, scene) for scene in scenes}
     return {
-        "few": sum(len(rows) for radii in measured.values() for rows in radii.values()) <= FEW,
+        # The report opens on all mean times if they have at most this number of rows.
+        "few": sum(len(rows) for radii in measured.values() for rows in radii.values()) <= 60,
         "measured": {name: radii for name, radii in measured.items() if radii},
         "accuracies": {
             scene["name"]: rows for scene in scenes if (rows := accuracies(folder, scene))

@@ -32,9 +32,6 @@ GUIDES = {"1 s": 1.0, "1 min": 60.0, "1 h": 3600.0, "1 day": 86400.0}
 #: The number of doublings of the time from one symbol to the next; the longest run also has one.
 THINNED = 2
 
-#: Errors of fewer runs than this have a bar.
-FEW = 64
-
 #: The white box of a text that lines would run through.
 WHITE = {"facecolor": "white", "edgecolor": "none", "pad": 0.4}
 
@@ -132,7 +129,8 @@ def _draw_errors(axes, rows, style):
     """Draw some of the errors in a ``style``, the longest run always; few runs have bars."""
     rows = rows[::-1][::THINNED]
     axes.plot(*_columns(rows), ls="", **style)
-    few = [row for row in rows if row["repetitions"] < FEW]
+    # Errors of fewer runs than this have a bar.
+    few = [row for row in rows if row["repetitions"] < 64]
     bars = [_spread(row) for row in few]
     axes.errorbar(*_columns(few), xerr=bars, ls="", color=style["color"], lw=0.6, zorder=2)
 

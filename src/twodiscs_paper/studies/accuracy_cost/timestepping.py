@@ -19,7 +19,7 @@ from twodiscs_paper.studies.accuracy_cost.scalar import N
 #: A lane counts in one double: a field of eight bits for each of ``COUNTED``. Hits of the walls of
 #: one axis are also wall hits.
 VERTICAL, HORIZONTAL, COLLISION, RIGHT, TOP, ANY = (256.0**i for i in range(N))
-BESIDE, ABOVE = RIGHT + ANY, TOP + ANY
+X_WALL, Y_WALL = RIGHT + ANY, TOP + ANY
 
 #: Steps between two readings of the packed counts: a step has four walls at most.
 STEPS = 60
@@ -66,10 +66,10 @@ def step_blocks(seed, first, stop, replicas, lanes, steps, step, sigma, draw):
                     x2[i], y2[i] = x2[i] + u2[i] * step, y2[i] + v2[i] * step
                     wall_x1, wall_y1 = bounced(x1[i], u1[i], half_x), bounced(y1[i], v1[i], half_y)
                     wall_x2, wall_y2 = bounced(x2[i], u2[i], half_x), bounced(y2[i], v2[i], half_y)
-                    tally += BESIDE if wall_x1 else 0.0
-                    tally += ABOVE if wall_y1 else 0.0
-                    tally += BESIDE if wall_x2 else 0.0
-                    tally += ABOVE if wall_y2 else 0.0
+                    tally += X_WALL if wall_x1 else 0.0
+                    tally += Y_WALL if wall_y1 else 0.0
+                    tally += X_WALL if wall_x2 else 0.0
+                    tally += Y_WALL if wall_y2 else 0.0
                     u1[i], v1[i] = -u1[i] if wall_x1 else u1[i], -v1[i] if wall_y1 else v1[i]
                     u2[i], v2[i] = -u2[i] if wall_x2 else u2[i], -v2[i] if wall_y2 else v2[i]
                     dx, dy = x1[i] - x2[i], y1[i] - y2[i]

@@ -9,10 +9,7 @@ from twodiscs.model.scene import Box
 from twodiscs.theory import laws
 
 #: The longest time shown, in mean times, and the largest relative error of a rate.
-LONGEST, LARGEST_ERROR = 12, 0.15
-
-#: Rates are shown for radii below this fraction of the radius at which the hop becomes blocked.
-FARTHEST = 0.83
+LONGEST_INTERVAL, LARGEST_ERROR = 12, 0.15
 
 #: Ends of the dashes that mark exact densities at 0, in mean times.
 DASH = 0.0, 0.3
@@ -48,7 +45,8 @@ def _rates(axes, rows):
     box = Box(rows[0]["width"], rows[0]["height"])
     limit = box.threshold(event)
     radii = list(dict.fromkeys(row["radius"] for row in rows if row["event"] == event))
-    radii = [radius for radius in radii if radius < FARTHEST * limit]
+    # Rates are shown for radii below this fraction of the radius at which the hop becomes blocked.
+    radii = [radius for radius in radii if radius < 0.83 * limit]
     kinds = set()
     for radius, (colour, marker) in zip(radii, SERIES, strict=False):
         own = [row for row in rows if (row["event"], row["radius"]) == (event, radius)]
@@ -68,7 +66,7 @@ def _rates(axes, rows):
         tests = [row for row in own if row["quantity"] in ("rate", "trend")]
         constant = all(row["p"] > SMALLEST_P for row in tests)
         for row in tests[:1]:
-            ends = row["first"] / mean, min(row["last"] / mean, LONGEST)
+            ends = row["first"] / mean, min(row["last"] / mean, LONGEST_INTERVAL)
             fit = {"ls": DASHES[constant], "zorder": 2}
             kinds.add(constant)
             axes.plot(ends, [row["estimate"] * mean] * 2, color=colour, lw=1.4, **fit)
@@ -78,9 +76,9 @@ def _rates(axes, rows):
     for constant in sorted(kinds, reverse=True):
         name = "constant rate" if constant else "constant rate, rejected"
         axes.plot([], [], color=GREY, lw=1.4, ls=DASHES[constant], label=name)
-    late = np.linspace(6, LONGEST, 40)
+    late = np.linspace(6, LONGEST_INTERVAL, 40)
     axes.plot(late, 3 / late, color=GREY, lw=0.9, ls=(0, (6, 1.5, 1, 1.5)), label=r"$3\tau/t$")
-    axes.set(xlim=(0, LONGEST), ylim=(0, None), xlabel=r"time since the last hop $t/\tau$")
+    axes.set(xlim=(0, LONGEST_INTERVAL), ylim=(0, None), xlabel=r"time since the last hop $t/\tau$")
     axes.set_ylabel(r"rate of hops $\times\,\tau$")
     axes.legend(loc="upper right")
 

@@ -45,15 +45,6 @@ BLOCKS, BINS = 128, 512
 #: intervals.
 EVENTS, MOST_INTERVALS, MOST_PASSAGES = 2**22, 2**22, 2**18
 
-#: For a test, first passages are cut at this many mean times.
-CUT = 20
-
-#: The hazard is tested for constancy from this many mean times to its last bin.
-FIRST = 4
-
-#: The fewest intervals that must end for a test of constancy.
-FEWEST = 1000
-
 #: Relative distances below the radius at which a hop becomes blocked.
 DISTANCES = (0.16, 0.08, 0.04, 0.02, 0.01)
 
@@ -62,9 +53,6 @@ GROWTH, FEWEST_IN_BIN = 0.08, 100
 
 #: A hazard is a plateau if the probabilities of its χ² and of its trend exceed this level.
 LEVEL = 1e-3
-
-#: Late bins begin beyond this fraction of the time that the data reach.
-LATE = 0.6
 
 #: The columns that identify one hop at one radius.
 CASE = ("scene", "width", "height", "radius", "event", "exact_mean")
@@ -226,7 +214,8 @@ def measured(start, scene, hop, seed, events=EVENTS):
     affordable = int(nearest_power_of_two(max(1.0, events / (rate * mean)))) // BLOCKS
     block = max(1, min(affordable, MOST_INTERVALS // BLOCKS))
     passages = min(block, MOST_PASSAGES // BLOCKS)
-    width, cut = nearest_power_of_two(mean / 16), CUT * mean
+    # For a test, first passages are cut at this many mean times.
+    width, cut = nearest_power_of_two(mean / 16), 20 * mean
     oriented = scene
     if hop == "horizontal_hop":
         oriented = scene.turned()
@@ -257,7 +246,8 @@ def measured(start, scene, hop, seed, events=EVENTS):
         ends = {"first": 0.0, "last": 2 * width, "z": (zero.value - due) / zero.stderr}
         yield row(of_intervals, zero, quantity="density_at_zero", reference=due, **ends)
     bins = list(hazard(counts, intervals, width))
-    yield from _constancy(start, [part for part in bins if part.first >= FIRST * mean], mean)
+    # The hazard is tested for constancy from this many mean times to its last bin.
+    yield from _constancy(start, [part for part in bins if part.first >= 4 * mean], mean)
     for part in bins:
         found = Estimate(part.rate, part.error, part.count)
         ends = {"first": part.first, "last": part.last, "count": part.count}
@@ -266,7 +256,8 @@ def measured(start, scene, hop, seed, events=EVENTS):
 
 def _constancy(start, bins, mean):
     """Yield the rows that test whether the hazard is constant over ``bins``, if these suffice."""
-    if len(bins) < 3 or sum(part.count for part in bins) < FEWEST:
+    # The fewest intervals that must end for a test of constancy.
+    if len(bins) < 3 or sum(part.count for part in bins) < 1000:
         return
     fit, trend, chi2, degrees = constant_hazard(bins)
     ends = start | {"first": bins[0].first, "last": bins[-1].last, "count": fit.n}
@@ -329,7 +320,8 @@ def shape(case):
         yield start | {name: rate[name] for name in names} | {"quantity": "plateau"}
         return
     hazards = [one for one in case if one["quantity"] == "hazard"]
-    late = [one for one in hazards if one["first"] >= LATE * rate["last"] and one["count"] > 0]
+    # Late bins begin beyond this fraction of the time that the data reach.
+    late = [one for one in hazards if one["first"] >= 0.6 * rate["last"] and one["count"] > 0]
     falling = "falling" if is_drifted(rate) else "falling_without_drift"
     if not late:
         yield row(start, quantity=falling)

@@ -39,9 +39,6 @@ SHARE = "never_met_share"
 COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, BLACK)
 MARKERS = ("o", "s", "^", "D", "v", "P")
 
-#: The range of the ratios; curves leave it only near the ends of the radii.
-SHOWN = (0.22, 22)
-
 #: The shortest relative time of the panel of costs, and the factor that leaves room for numbers.
 #: Points: the end of the column of instructions, from the edge of the panel.
 COST_FROM, COST_ROOM, COLUMN = 0.6, 8.0, 26
@@ -66,7 +63,8 @@ def draw(box, tables):
             panels.draw_estimates(main, list(map(_relative, own)), *look)
             panels.draw_residuals(lower, own, *look)
         main.axhline(1, color=GREY, lw=0.5, zorder=0)
-        main.set(yscale="log", ylim=SHOWN)
+        # The range of the ratios; curves leave it only near the ends of the radii.
+        main.set(yscale="log", ylim=(0.22, 22))
         main.tick_params(which="both", labelbottom=False, labelleft=letter == "a")
         lower.set(xlabel="radius $r$")
         lower.tick_params(labelleft=letter == "a")

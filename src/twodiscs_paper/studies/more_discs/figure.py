@@ -15,9 +15,6 @@ SHARED = {
     "top_wall": (lambda n: 1, ""),
 }
 
-#: Residuals of one number of discs stand side by side, from radius to radius.
-APART = 1.035
-
 DOTTED = (0, (1, 1.5))
 
 
@@ -83,7 +80,8 @@ def _legend(axes):
 def _residuals(axes, rows, radii):
     for event, (colour, marker) in {**LOOKS, "virial": (BLACK, "x")}.items():
         own = [row for row in rows if row["event"] == event and row["z"] is not None]
-        x = [r["discs"] * APART ** (radii.index(r["radius"]) - (len(radii) - 1) / 2) for r in own]
+        # Residuals of one number of discs stand side by side, from radius to radius.
+        x = [r["discs"] * 1.035 ** (radii.index(r["radius"]) - (len(radii) - 1) / 2) for r in own]
         style = panels.open_symbol(colour, marker, 0.75) if marker != "x" else {
             "color": colour, "marker": marker, "markersize": 3,
         }  # fmt: skip

@@ -8,7 +8,7 @@ from twodiscs_paper.studies.more_discs.tori import virial_series
 from twodiscs_paper.study import select
 
 #: {(reference, discs): (colour, marker, its name)}.
-LOOKS = {
+REFERENCE_LOOKS = {
     ("virial", 256): (BLACK, "o", "256 discs, virial series"),
     ("metropolis-1953", 224): (VERMILLION, "s", "224, Metropolis 1953"),
     ("li-2022", 72): (BLUE, "^", "72, Li 2022"),
@@ -31,7 +31,7 @@ def draw(box, tables):
         packings = np.linspace(low, high, 100)
         factors = [virial_series(packing, 256)[0] for packing in packings]
         upper.plot(packings, factors, color=GREY, lw=0.9, ls=style, zorder=1)
-    for (reference, discs), (colour, marker, name) in LOOKS.items():
+    for (reference, discs), (colour, marker, name) in REFERENCE_LOOKS.items():
         own = select(rows, reference=reference, discs=discs)
         style = panels.open_symbol(colour, marker, 0.8)
         upper.plot(*_of(own, "estimate"), ls="", label=name, **style)

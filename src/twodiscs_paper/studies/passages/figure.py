@@ -11,10 +11,10 @@ from twodiscs_paper.studies.passages.near import ONE_INERTIA, thresholds
 from twodiscs_paper.study import select
 
 #: Halvings of the distance at which κ(t) is shown, for smooth discs and for rough discs.
-SHOWN = {None: (3, 5, 7, 9, 12), ONE_INERTIA: (3, 5, 7)}
+SHOWN_HALVINGS = {None: (3, 5, 7, 9, 12), ONE_INERTIA: (3, 5, 7)}
 
 #: Colour and marker of smooth discs, and of rough discs of each moment of inertia.
-LOOKS = {
+INERTIA_LOOKS = {
     None: (BLUE, "o"), 0.1: (SKY, "v"), 0.25: (GREEN, "^"), 0.5: (VERMILLION, "s"),
     1.0: (PURPLE, "D"),
 }  # fmt: skip
@@ -96,8 +96,8 @@ def points(axes, x, y, error, look, label=None, filled=False):
 
 def _curves(axes, box, hop, limit, rows):
     """Draw κ(t), its exact slope at 0, and its decay by later passages."""
-    for inertia, halvings in SHOWN.items():
-        colour, marker = LOOKS[inertia]
+    for inertia, halvings in SHOWN_HALVINGS.items():
+        colour, marker = INERTIA_LOOKS[inertia]
         for n in halvings:
             here = select(rows, moment_of_inertia=inertia, distance=2.0**-n)
             curve = select(here, quantity="correlation")
@@ -123,7 +123,7 @@ def _curves(axes, box, hop, limit, rows):
     slope = laws.density_at_zero(scene, hop) * box_time(scene, hop)
     axes.plot(early, 1 - 2 * slope * early, color=BLACK, lw=0.8, ls=(0, (3, 1.5)), zorder=6)
     for inertia, name in ((None, "smooth discs"), (ONE_INERTIA, f"rough, $I={ONE_INERTIA:g}$")):
-        colour, marker = LOOKS[inertia]
+        colour, marker = INERTIA_LOOKS[inertia]
         axes.plot([], [], color=colour, marker=marker, markersize=2.5, lw=0.6, label=name)
     axes.plot([], [], color=BLACK, lw=0.7, label=r"$\kappa\,e^{-2\kappa t/\tau}$, by clusters")
     axes.plot([], [], color=BLACK, lw=0.8, ls=(0, (3, 1.5)), label="exact slope at 0")
@@ -152,7 +152,7 @@ def _times(axes, box, hop, limit, rows):
         name = "smooth" if inertia is None else "rough"
         axes.plot(distances, tau, color=BLACK, lw=0.8, ls=style, zorder=5,
                   label=rf"$\tau$, {name}")  # fmt: skip
-    for inertia, look in LOOKS.items():
+    for inertia, look in INERTIA_LOOKS.items():
         own = select(rows, moment_of_inertia=inertia, quantity="passage_time")
         if not own:
             continue

@@ -11,7 +11,7 @@ from twodiscs_paper.studies.passages.figure import columns, points
 from twodiscs_paper.study import select
 
 #: {program: (colour, its name)}.
-LOOKS = {
+PROGRAM_LOOKS = {
     "reflected": (BLUE, "reflected"),
     "kicked": (PURPLE, "reflected, random times"),
     "together": (VERMILLION, "rejected, both discs"),
@@ -39,17 +39,17 @@ def draw(box, tables):
     """Draw the rows of brownian.csv; the ``box`` is not that of the channel."""
     rows = [row for row in tables["brownian"] if row["room"] <= WIDEST]
     figure, (upper, lower) = panels.stacked(kappa=2.7, exponent=2.0)
-    for program, (colour, _) in LOOKS.items():
+    for program, (colour, _) in PROGRAM_LOOKS.items():
         for step, marker in MARKERS.items():
             for method in ("crossings", "passages"):
                 own = select(rows, program=program, step=step, method=method)
                 filled = method == "passages"
                 kappas = select(own, quantity="coefficient")
                 if kappas:
-                    points(upper, *columns(kappas, *SHOWN), (colour, marker), filled=filled)
+                    points(upper, *columns(kappas, *POINT_COLUMNS), (colour, marker), filled=filled)
                 powers = select(own, quantity="local_exponent")
                 if powers:
-                    points(lower, *columns(powers, *SHOWN), (colour, marker), filled=filled)
+                    points(lower, *columns(powers, *POINT_COLUMNS), (colour, marker), filled=filled)
             laws = select(rows, program=program, step=step, method="crossings")
             laws = [row for row in laws if program in REJECTING and row["neck"] >= LONGEST_STEP]
             for panel, quantity in ((upper, "coefficient"), (lower, "local_exponent")):
@@ -68,7 +68,7 @@ def draw(box, tables):
     ):
         lower.axhline(power, color=GREY, lw=0.8, ls=(0, (4, 2)), zorder=1)
         drawing.label(lower, name, (NECKS[1], power), (3, 0), ha="left", color=GREY)
-    for colour, name in LOOKS.values():
+    for colour, name in PROGRAM_LOOKS.values():
         upper.plot([], [], color=colour, lw=2, label=name)
     for step, marker in MARKERS.items():
         style = panels.open_symbol(GREY, marker, 0.85)
@@ -88,4 +88,4 @@ def draw(box, tables):
 
 
 #: The columns that are drawn.
-SHOWN = ("neck", "estimate", "stderr")
+POINT_COLUMNS = ("neck", "estimate", "stderr")

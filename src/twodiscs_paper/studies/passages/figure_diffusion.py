@@ -3,7 +3,7 @@
 from twodiscs.figures import panels
 from twodiscs.figures.style import BLACK, BLUE, GREEN, PURPLE, SKY
 from twodiscs_paper.studies.passages.figure import (
-    LOOKS,
+    INERTIA_LOOKS,
     columns,
     first_scene,
     is_empty,
@@ -12,9 +12,6 @@ from twodiscs_paper.studies.passages.figure import (
 )
 from twodiscs_paper.studies.passages.near import ONE_INERTIA
 from twodiscs_paper.study import select
-
-#: The distances that are shown, from the threshold.
-SHOWN = (0.01, 0.2)
 
 #: Short files of smooth discs; long files of smooth discs, without friction and with it.
 FILES = {4: (SKY, "P"), 8: (BLACK, "D")}
@@ -48,7 +45,8 @@ def draw(box, tables):
     rows = [*select(rows, friction=None), *tables["displacements"]]
     residuals(lower, rows, RESIDUAL_LOOKS)
     for axes in (ring, files, lower):
-        axes.set(xlim=SHOWN)
+        # The distances that are shown, from the threshold.
+        axes.set(xlim=(0.01, 0.2))
     lower.xaxis.set_major_formatter("{x:g}")
     lower.xaxis.set_minor_formatter(lambda x, _: f"{x:g}" if f"{x:e}"[0] in "25" else "")
     return figure
@@ -61,7 +59,7 @@ def _ring(axes, rows):
             own = select(rows, method=method, moment_of_inertia=inertia)
             if own:
                 label = None if filled else f"{name}, by hops"
-                points(axes, *_diffusion(own), LOOKS[inertia], label, filled)
+                points(axes, *_diffusion(own), INERTIA_LOOKS[inertia], label, filled)
     points(axes, [], [], [], (BLACK, "o"), "by displacements", True)
     axes.set(ylim=(0, 1.45))
     axes.legend(loc="center left")

@@ -15,24 +15,19 @@ from twodiscs_paper.study import select
 #: Rough discs in a long file.
 ROUGH_FILE = (VERMILLION, "s")
 
-#: Looks of distances in a collapse.
-OPEN = ((BLUE, "o"), (VERMILLION, "s"), (PURPLE, "D"))
+#: Colour and marker of distances in a collapse.
+COLLAPSE_LOOKS = ((BLUE, "o"), (VERMILLION, "s"), (PURPLE, "D"))
 
 #: The symbols of the motion of places plus hops, which is measured at the same times.
 SUM = {"ls": "", "marker": "_", "markersize": 6.5, "mew": 0.8}
-
-#: Quantities of long files over the time.
-LONG = ("displacement", "file", "order")
-
-#: The times that are shown, in units of h over the thermal speed.
-SHOWN = (0.4, 60)
 
 
 def draw(box, tables):
     """Draw the rows of a long run of long files: displacements, and their collapse."""
     rows = tables["displacements"]
     figure, (moved, collapse) = panels.stacked(moved=2.7, collapse=2.0)
-    _moved(moved, [row for row in rows if row["quantity"] in LONG])
+    # Quantities of long files over the time.
+    _moved(moved, [row for row in rows if row["quantity"] in ("displacement", "file", "order")])
     _collapse(collapse, rows)
     return figure
 
@@ -90,7 +85,8 @@ def _moved(axes, rows):
     }
     for name, style in names.items():
         axes.plot([], [], label=name, **{"ls": ""} | style)
-    axes.set(xscale="log", yscale="log", xlim=SHOWN)
+    # The times that are shown, in units of h over the thermal speed.
+    axes.set(xscale="log", yscale="log", xlim=(0.4, 60))
     axes.set(
         xlabel=r"time $t\,\sqrt{kT/m}\,/h$", ylabel=r"displacement $\langle x^2\rangle/\ell^2$"
     )
@@ -100,7 +96,7 @@ def _moved(axes, rows):
 
 def _collapse(axes, rows):
     """Draw displacements with friction over F √t×, against t/t×."""
-    looks = iter(OPEN)
+    looks = iter(COLLAPSE_LOOKS)
     for row in select(rows, quantity="diffusion", method="order"):
         if row["friction"] is None:
             continue

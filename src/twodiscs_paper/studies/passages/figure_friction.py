@@ -13,11 +13,8 @@ from twodiscs_paper.studies.passages.parts.with_friction import (
 )
 from twodiscs_paper.study import select
 
-#: {rate of kicks: colour, marker}.
-LOOKS = dict(zip(KICKED, SERIES, strict=True))
-
 #: The scaled friction that is shown.
-SHOWN = (0.015, 45)
+FRICTION_RANGE = (0.015, 45)
 
 #: The law with the exact slope at 0.
 FORMULA = r"$1/\kappa=4x/3+1/(1+bx+cx^2)$"
@@ -35,7 +32,8 @@ def draw(box, tables):
     if is_empty(figure, upper, rows, box):
         return figure
     panels.title(upper, "a", first_scene(rows, box)[0])
-    for friction, look in LOOKS.items():
+    # {rate of kicks: colour, marker}.
+    for friction, look in dict(zip(KICKED, SERIES, strict=True)).items():
         for some, filled in ((rows, False), (kept, True)):
             own = select(some, friction=friction, quantity="coefficient")
             if own:
@@ -53,23 +51,23 @@ def draw(box, tables):
                 )
     limit = columns(select(kept, method="limit", quantity="coefficient"), "friction", "estimate")
     upper.plot(*limit, "x", color=BLACK, markersize=4, label="limit of a narrow neck", zorder=6)
-    x = np.geomspace(*SHOWN, 60)
+    x = np.geomspace(*FRICTION_RANGE, 60)
     upper.plot(x, scaling_law(x), color=BLACK, lw=0.8, label=FORMULA, zorder=5)
     style = {"color": BLACK, "lw": 0.8, "ls": (0, (4, 2)), "zorder": 5}
-    upper.plot(SHOWN, np.ones(2), **style)
-    large = np.array([DIFFUSIVE, SHOWN[1]])
+    upper.plot(FRICTION_RANGE, np.ones(2), **style)
+    large = np.array([DIFFUSIVE, FRICTION_RANGE[1]])
     upper.plot(large, DIFFUSIVE / large, label=r"$1$ and $3/(4x)$", **style)
     for exponent, name, side in (
         (-1.5, "$-3/2$  long necks", "left"),
         (-2.0, "$-2$  short necks", "right"),
     ):
         lower.axhline(exponent, color=GREY, lw=0.8, ls=(0, (4, 2)), zorder=1)
-        at, offset = (SHOWN[0], 3) if side == "left" else (SHOWN[1], -3)
+        at, offset = (FRICTION_RANGE[0], 3) if side == "left" else (FRICTION_RANGE[1], -3)
         drawing.label(lower, name, (at, exponent), (offset, 5), ha=side, color=GREY)
-    upper.set(xscale="log", yscale="log", xlim=SHOWN, ylim=(0.012, 1.3))
+    upper.set(xscale="log", yscale="log", xlim=FRICTION_RANGE, ylim=(0.012, 1.3))
     upper.set_ylabel(r"transmission $\kappa$")
     upper.tick_params(which="both", labelbottom=False)
-    lower.set(xscale="log", xlim=SHOWN, ylim=(-2.15, -1.15))
+    lower.set(xscale="log", xlim=FRICTION_RANGE, ylim=(-2.15, -1.15))
     lower.set_xlabel(r"scaled friction $x=\gamma\sqrt{\varepsilon\sigma}$")
     lower.set_ylabel(r"exponent of $\tau/\kappa$")
     lower.xaxis.set_major_formatter("{x:g}")

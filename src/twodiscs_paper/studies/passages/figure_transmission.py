@@ -8,7 +8,7 @@ from twodiscs.figures.style import BLACK, BLUE, GREY, SKY, VERMILLION
 from twodiscs.model.events import EVENT_AXES
 from twodiscs.model.scene import Box
 from twodiscs_paper.studies.passages.figure import (
-    LOOKS,
+    INERTIA_LOOKS,
     at_places,
     columns,
     is_empty,
@@ -18,9 +18,6 @@ from twodiscs_paper.studies.passages.figure import (
     scale,
 )
 from twodiscs_paper.study import select
-
-#: Colour and marker of further boxes and hops of smooth discs.
-OTHERS = ((SKY, "P"), (BLACK, "D"))
 
 #: The distances that are named above the panel of smooth discs, in halvings, and the end of its
 #: abscissa. The slope of its line is fitted from ``CLOSE`` on.
@@ -61,7 +58,8 @@ def _smooth(axes, rows, kept, ours):
     The correction of the law is of this relative order, so a line leads to the limit c. ``ours`` is
     the place of the first scene.
     """
-    others, looks, named = iter(OTHERS), {ours: LOOKS[None]}, set()
+    # Colour and marker of further boxes and hops of smooth discs.
+    others, looks, named = iter(((SKY, "P"), (BLACK, "D"))), {ours: INERTIA_LOOKS[None]}, set()
     for some, filled in ((rows, False), (kept, True)):
         found = select(some, quantity="coefficient", moment_of_inertia=None, friction=None)
         for scene, event in dict.fromkeys((row["scene"], row["event"]) for row in found):
@@ -114,7 +112,7 @@ def cube_root(row):
 
 def _rough(axes, ours, kept, where):
     """Draw κ of rough discs, with ``where`` above the legend and fitted powers in it."""
-    for inertia, look in LOOKS.items():
+    for inertia, look in INERTIA_LOOKS.items():
         rows = select(kept, moment_of_inertia=inertia) or select(ours, moment_of_inertia=inertia)
         own = select(rows, quantity="coefficient")
         if not own or inertia is None:

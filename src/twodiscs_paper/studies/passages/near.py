@@ -42,9 +42,6 @@ MOST_HOPS, FEWEST_HOPS = 2**17, 2**11
 #: neck of the relative length √distance, smooth discs fly and rough discs diffuse.
 MET = {False: (2, 0.5), True: (24, 1.0)}
 
-#: The density at 0 is taken from κ at two times; this is about 1 − κ at the first.
-FIRST = 0.01
-
 #: On a ring, correlations of hops are summed up for ``AROUND`` times the time that a disc takes
 #: around it. Displacements take twice that time, or two mean times between hops if these are
 #: longer, in ``FEWEST`` replicas or more.
@@ -99,7 +96,8 @@ def slope_time(scene, hop):
     The time is None if discs that turn round so late do not find the neck again.
     """
     density = laws.density_at_zero(scene, hop)
-    time = FIRST / (2 * density)
+    # The density at 0 is taken from κ at two times; this is about 1 − κ at the first.
+    time = 0.01 / (2 * density)
     found = time <= math.sqrt(scene.contact_distance * scene.clearance(hop))
     return time if found else None, density
 

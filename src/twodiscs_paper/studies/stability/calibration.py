@@ -298,7 +298,7 @@ def threshold_rows(seed):
 def passage_rows(seed):
     """Return rows of passages.csv of smooth discs: κ, its exponents, and c."""
     rows = [*near_threshold.one_hop("", BOX, HOP, range(3, 9), None, 2**16, seed)]
-    rows = [dict.fromkeys(powers.HOP) | row for row in rows]
+    rows = [dict.fromkeys(powers.HOP_COLUMNS) | row for row in rows]
     c = limit.amplitude(64, seed)
     amplitude = {"quantity": "amplitude", "estimate": c.value, "stderr": c.stderr}
     return [*rows, *powers.fits(rows), amplitude]

@@ -24,7 +24,7 @@ TEXTBOOK, VIRIAL = {"color": VERMILLION, "marker": "x", "markersize": 3.4}, (GRE
 
 #: Inches: the height of the lowest panel. Its legend stands above.
 LOWEST = 2.6
-ABOVE = {
+LEGEND_PLACE = {
     "loc": "lower right", "bbox_to_anchor": (1, 1.01), "handletextpad": 0.1, "columnspacing": 0.8,
     "borderaxespad": 0.0,
 }  # fmt: skip
@@ -149,7 +149,7 @@ def _times(axes, rows):
         ("textbook formula", TEXTBOOK),
     ):
         axes.plot([], [], ls="", label=name, **symbol)
-    axes.legend(ncols=3, **ABOVE)
+    axes.legend(ncols=3, **LEGEND_PLACE)
     axes.set(xscale="log", xlim=(0.1, 1e11))
     axes.set_xlabel(r"error / ($2^{-52}\times$ conditioning)", x=1, ha="right")
     axes.xaxis.set_minor_formatter(NullFormatter())
@@ -171,7 +171,7 @@ def _extremes(axes, rows):
     for z in (-5, 5):
         axes.axvline(z, **BOUND)
     axes.axvline(0, color=GREY, lw=0.5, zorder=0)
-    axes.legend(ncols=7, **ABOVE)
+    axes.legend(ncols=7, **LEGEND_PLACE)
 
 
 # Reversal -----------------------------------------------------------------------------------------

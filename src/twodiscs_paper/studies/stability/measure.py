@@ -68,9 +68,6 @@ STUCK = 0.01
 #: half of the digits are then lost.
 REVERSED, RETRACED = 4000, 2.0**-26
 
-#: The longest path that is reversed; if a smaller exponent allows more, the row has no value.
-LONGEST = 2000
-
 #: Lengths of reversed paths over the predicted one. From ``FITTED`` to 1 the error of return is far
 #: above a rounding and far below the size of the box, and grows like an exponential.
 SHARES, FITTED = tuple(i / 10 for i in range(1, 13)), 0.4
@@ -624,7 +621,8 @@ def reversal_rows(box, seed):
 
         there, back = (radius_cells("reversal", case, radius) for case in ("separation", "return"))
         expected = exponent(FORGOTTEN, PILOT).value
-        if expected < digits / LONGEST:
+        # The longest path to reverse; if a smaller exponent allows more, the row has no value.
+        if expected < digits / 2000:
             yield judged(back, "events_retraced", None, status="long")
             continue
         expected = digits / expected

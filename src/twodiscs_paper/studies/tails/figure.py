@@ -6,7 +6,7 @@ from twodiscs.figures import panels
 from twodiscs.figures.style import BLACK, BLUE, GREEN, VERMILLION, event_name
 
 #: Colour and marker of the cases, in the order of the table.
-LOOKS = ((BLUE, "o"), (VERMILLION, "s"), (GREEN, "^"))
+CASE_LOOKS = ((BLUE, "o"), (VERMILLION, "s"), (GREEN, "^"))
 
 #: Counts with a larger relative error than this are not drawn.
 LARGEST_ERROR = 0.3
@@ -17,7 +17,7 @@ def draw(box, tables):
     rows = tables["tails"]
     figure, (tails, ratio, exponential) = panels.stacked(tails=1.9, ratio=1.4, exponential=1.7)
     cases = list(dict.fromkeys((row["event"], row["radius"]) for row in rows))
-    for case, look in zip(cases, LOOKS, strict=False):
+    for case, look in zip(cases, CASE_LOOKS, strict=False):
         own = [row for row in rows if (row["event"], row["radius"]) == case]
         if any(row["quantity"] == "rate" for row in own):
             _decay(exponential, own, *look)

@@ -61,9 +61,6 @@ WINDOW = (3, 9)
 #: The most wall and disc events in a mean time: intervals are followed for a thousand mean times.
 RAREST = 100
 
-#: Hops approach their law as (t/τ)^(−1/2) from this time on, in units of the mean.
-LATE = 1000
-
 #: A ratio is well measured if its relative error is below this one.
 WELL_MEASURED = 0.2
 
@@ -327,7 +324,8 @@ def long_run(weighted, counted):
     seeds = range(counted["seed"], counted["seed"] + counted["runs"])
     of_runs = [counted_survival(scene, event, times, counted["replicas"], s) for s in seeds]
     alone = survival_rows("counted", start, times, map(joined, zip(*of_runs, strict=True)), None)
-    late = [one for one in falling if one["time"] > 0.999 * LATE * one["exact_mean"]]
+    # Hops approach their law as (t/τ)^(−1/2) from this time on, in units of the mean.
+    late = [one for one in falling if one["time"] > 0.999 * 1000 * one["exact_mean"]]
     follow = []
     if late:
         follow = [approach_power(falling, late[0]), *map(approach, late), mean_approach(late)]

@@ -25,9 +25,6 @@ from twodiscs_paper.study import row
 #: Fits take radii within this relative distance of the limit, without another limit in between.
 WIDTH = 0.2
 
-#: The fewest points for a fit.
-FEWEST = 3
-
 #: The columns that a fit uses.
 COLUMNS = ("radius", "estimate", "stderr", "exact")
 
@@ -62,7 +59,8 @@ def fits(start, law, quantity, radii, times, errors, exact):
     exact curve; first passages have no exact curve. Coefficients are fitted at the exact power, to
     mean times only. Yields nothing for fewer than three points.
     """
-    if len(radii) < FEWEST:
+    # The fewest points for a fit.
+    if len(radii) < 3:
         return
     radii, times, errors, exact = (np.array(v, float) for v in (radii, times, errors, exact))
     x, relative = np.log(law.limit - radii), errors / times
