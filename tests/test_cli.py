@@ -20,7 +20,7 @@ from io import TextIOWrapper
 from multiprocessing import get_context
 from pathlib import Path
 from types import SimpleNamespace
-from unittest.mock import Mock
+from unittest.mock import Mock, create_autospec
 
 import pytest
 from checkout import REPOSITORY
@@ -80,7 +80,7 @@ def test_every_option_reaches_the_function(name, monkeypatch):
     """Without the options it has its own defaults."""
     usual = inspect.signature(getattr(twodiscs, name))
     given = {option: value for option, value in OPTIONS.items() if option in usual.parameters}
-    function = Mock(side_effect=InputError("enough"))
+    function = create_autospec(getattr(twodiscs, name), side_effect=InputError("enough"))
     monkeypatch.setattr(twodiscs, name, function)
     words = [name, *BOX, "--radius", "0.2"]
     assert command(monkeypatch, cli, *words) == 2

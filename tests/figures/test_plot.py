@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+import re
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 
@@ -14,6 +15,7 @@ from PIL import Image
 
 import twodiscs as td
 from twodiscs.figures import curves
+from twodiscs.figures.draw import BOX_DRAWINGS, TABLE_FIGURES
 from twodiscs.figures.style import LOOKS
 
 HOPS, COLLISIONS = "vertical_hop", "disc_collision"
@@ -23,6 +25,11 @@ RADII = (0.1, 0.2, 0.24)
 @cache
 def scan(*events, width=1.5):
     return td.scan(width, 1.0, RADII, error=0.1, events=events)
+
+
+def test_the_docstring_names_every_figure():
+    named = {*re.findall(r"``(\w+)``", td.plot.__doc__.partition("Names of figures:")[2])}
+    assert named == {*TABLE_FIGURES, *BOX_DRAWINGS, "transmission", "observed"}
 
 
 def due_bars(found, event):

@@ -32,7 +32,7 @@ from itertools import groupby
 
 from twodiscs.analysis import scores
 from twodiscs.model.events import WAYS
-from twodiscs.points.estimates import LEAST_EVENTS, Estimate
+from twodiscs.points.estimates import Estimate, why_no_error
 from twodiscs.points.monte_carlo_point import wall_weights
 from twodiscs.theory import virial
 from twodiscs.theory.exact import replicas_needed
@@ -90,7 +90,7 @@ def _sum_rule(point):
     rule, scene, replicas = sum_rule(point), point.scene, point.replicas
     stderr = z = None
     enough = min(point.counts[event] for event in SUM_RULE_EVENTS) >= scores.NORMAL_EVENTS
-    enough = enough and replicas >= LEAST_EVENTS and rule.stderr
+    enough = enough and not why_no_error(replicas=replicas) and rule.stderr
     if enough:
         # A run of rough discs may have missed the initial states with very many events.
         enough = all(replicas >= replicas_needed(scene, e, rule.stderr) for e in SUM_RULE_EVENTS)

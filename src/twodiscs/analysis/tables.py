@@ -23,7 +23,7 @@ from twodiscs.analysis.columns import (
 )
 from twodiscs.model.events import EVENTS
 from twodiscs.model.formats import format_number, format_seconds, round_up
-from twodiscs.points.estimates import LEAST_EVENTS, has_error_bar
+from twodiscs.points.estimates import LEAST_EVENTS, has_error_bar, why_no_error
 from twodiscs.theory import exact as theory
 
 #: A run that reaches an error below this one has the 100 effective events of an error bar.
@@ -227,7 +227,7 @@ def _sampled_row(point, quantity, sampled, exact, expectation, score=None):
     elif estimate is None:
         status = "none-seen"
     else:
-        status = "too-few" if sampled.enough < LEAST_EVENTS else "sampled"
+        status = "too-few" if why_no_error(hits=sampled.enough) else "sampled"
     return {
         "radius": point.radius,
         "quantity": quantity,
@@ -392,11 +392,10 @@ def shortfall(rows, budget, events=None, seconds=None, ends="ended", what="event
     text = f"You asked for an error of {asked}, but the {limit} {ends} the run "
     if not math.isfinite(more):
         replicas = worst.get("replicas", LEAST_EVENTS)
-        if events and replicas < LEAST_EVENTS:
+        if events and (why := why_no_error(replicas=replicas)):
             # Half more, because replicas come in whole blocks.
             enough = 1.5 * LEAST_EVENTS / replicas * events
-            text += f"after {replicas} of the {LEAST_EVENTS} replicas that an error needs"
-            return f"{text}. A budget of {round_up(enough)} is enough."
+            return f"{text}after {why}. A budget of {round_up(enough)} is enough."
         seen = f"events {worst['event']}" if "event" in worst else f"hits for {worst['quantity']}"
         return f"{text}with too few {seen} for an error."
     reached = format_number(worst["relative_stderr"], ".2g")
@@ -460,7 +459,7 @@ def _mean_interval(point):
     """Return the columns about the mean of a point; its exact mean may be None."""
 
     z, mean, exact = None, point.estimate("mean"), theory.mean_times(point.scene)[point.event]
-    stderr = mean.stderr or None if mean.n >= LEAST_EVENTS else None
+    stderr = None if why_no_error(chains=mean.n) else mean.stderr or None
     if stderr and exact is not None:
         z = scores.student_deviate((mean.value - exact) / stderr, mean.n - 1)
     known = {"intervals": point.intervals, "exact_mean": exact}

@@ -13,7 +13,7 @@ from twodiscs.model.events import EVENT_AXES
 from twodiscs.model.scene import Scene
 from twodiscs.model.seeds import key, stream_name, stream_seed
 from twodiscs.points.base import reached
-from twodiscs.points.estimates import LEAST_EVENTS, Estimate
+from twodiscs.points.estimates import Estimate, why_no_error
 from twodiscs.sampling.rounds import Run, fixed
 from twodiscs.theory import exact
 
@@ -69,7 +69,7 @@ def with_error(estimate, *numbers):
     The numbers are those of independent hops with each of the results whose mix is the estimate. If
     all of them had the same result, their spread would be 0 although another result is possible.
     """
-    return estimate if min(numbers) >= LEAST_EVENTS else replace(estimate, stderr=None)
+    return replace(estimate, stderr=None) if why_no_error(hops=min(numbers)) else estimate
 
 
 def cluster_estimate(sizes):

@@ -194,16 +194,13 @@ def _read(result):
 
     There are no names if no figure shows the ``result``. A scene and a box have no rows.
     """
-    for read in (_read_scene, _read_measurements, _read_table, _read_trajectory):
+    if isinstance(result, Box):
+        return result, [], [*BOX_DRAWINGS], None
+    for read in (_read_measurements, _read_table, _read_trajectory):
         found = read(result)
         if found is not None:
             return found
     return None, [], [], None
-
-
-def _read_scene(result):
-    """Return what ``_read`` returns for a ``Scene`` or a ``Box``, else None."""
-    return (result, [], [*BOX_DRAWINGS], None) if isinstance(result, Box) else None
 
 
 def _read_measurements(result):

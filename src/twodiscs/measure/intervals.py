@@ -11,7 +11,7 @@ from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import InputError, check_choice, check_count, check_integer
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene, check_scene
-from twodiscs.points.estimates import LEAST_EVENTS
+from twodiscs.points.estimates import why_no_error
 from twodiscs.theory import laws
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ class Intervals(Result):
         density = point.estimate("density_at_zero")
         exact = laws.density_at_zero(scene, self.hop) if scene.is_plain else None
         at_zero, error, status = density.value, density.stderr, "extrapolated"
-        if min(self.counts[:2]) < LEAST_EVENTS:
+        if why_no_error(intervals=min(self.counts[:2])):
             error, status = None, "too-few"
         from twodiscs.dynamics.engine import find_engine
 

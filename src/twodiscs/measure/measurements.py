@@ -37,7 +37,7 @@ from twodiscs.model.checks import (
 )
 from twodiscs.model.formats import did_you_mean, quote, round_up, texts_with_error
 from twodiscs.model.scene import Scene, check_scene, why_absent
-from twodiscs.points.estimates import LEAST_EVENTS, Estimate
+from twodiscs.points.estimates import Estimate, why_no_error
 from twodiscs.points.monte_carlo_point import WALL_AREAS, wall_weights
 
 if TYPE_CHECKING:
@@ -642,7 +642,7 @@ def make_sampling(scene, **asked):
             if row["status"] == "sampled":
                 row["status"] = "reached" if known <= row["target"] else "budget"
         # No budget ended a run with too few misses, whose binomial error is small.
-        short = [row for row in rows if row["status"] != "too-few" or row["hits"] < LEAST_EVENTS]
+        short = [r for r in rows if r["status"] != "too-few" or why_no_error(hits=r["hits"])]
         drawn, budget = point.samples * run.weight, settings["budget"]
         note = _note_of_error(rows, short, budget, drawn, "samples", "samples")
     return Measurements("sample", scene, rows, settings, point, note)

@@ -128,7 +128,9 @@ class Result(Printed):
         >>> some.more(duration=1e4) == td.simulate(scene, duration=1e4, seed=1, events="any_wall")
         True
         """
-        names = [name for name in MORE if name in self.settings]
+        # Settings that can grow; the first one of a kind of result is its amount.
+        names = "error", "samples", "number", "hops", "replicas", "duration", "budget", "function"
+        names = [name for name in names if name in self.settings]
         if amount is not None:
             larger = {names[0]: amount} | larger
         larger = {name: value for name, value in larger.items() if value is not None}
@@ -192,10 +194,6 @@ def note_of_number(what, asked, done, fewer="the budget ended the run"):
     """Return the note that a number was rounded up, or why ``fewer`` were done; None if neither."""
     why = "work is done in whole blocks" if done > asked else fewer
     return None if done == asked else f"You asked for {asked} {what} and got {done}, because {why}."
-
-
-#: Settings that can grow when a result goes on; the first one of a kind is its amount.
-MORE = ("error", "samples", "number", "hops", "replicas", "duration", "budget", "function")
 
 
 #: Seconds before a bar appears: shorter work needs none.

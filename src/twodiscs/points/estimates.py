@@ -73,6 +73,18 @@ def normal_quantile(confidence):
     return float(-ndtri((1 - check_fraction("confidence", confidence)) / 2))
 
 
+def why_no_error(least=LEAST_EVENTS, **numbers):
+    """Return why an estimate has no error bar, such as "37 of the 100 hits", None if it has one.
+
+    ``numbers`` are {name: number} of independent events, such as hits or replicas. Each of them
+    must be the ``least`` or more.
+    """
+    short = min(numbers, key=numbers.get)
+    if numbers[short] < least:
+        return f"{numbers[short]:.3g} of the {least:.3g} {short} that an error needs"
+    return None
+
+
 def combination(weights, totals, products, n):
     """Return Σ_a w_a ⟨N_a⟩ with its error, from sums over n independent samples.
 
@@ -164,8 +176,10 @@ def is_enough(least, total, squares, replicas, expected=None):
     nobody foresaw are seen in the counts: they have far fewer effective events than expected.
     """
     effective = effective_count(total, squares, replicas)
-    if replicas < LEAST_EVENTS or expected is None:
-        return replicas >= LEAST_EVENTS and effective >= least
+    if why_no_error(replicas=replicas):
+        return False
+    if expected is None:
+        return effective >= least
     return (
         replicas >= least * relative_variance(expected) and effective >= least / CLUSTER_ALLOWANCE
     )

@@ -257,11 +257,11 @@ class InsertionPoint(SampledPoint):
         """Return (Σ_q weight × estimate of q)/(estimate of the volume) as an ``Estimate``.
 
         The error is propagated linearly, with the covariance of the quantities and the volume. The
-        result is None if one of them has an effective number of samples below ``LEAST_EVENTS``.
+        result is None if one of them has too few effective samples for an error.
         """
         volume, _, enough = self._moments({"volume": 1.0})
         area, _, effective = self._moments(weights)
-        if min(enough, effective) < estimates.LEAST_EVENTS:
+        if estimates.why_no_error(samples=min(enough, effective)):
             return None
         # The variance of Σ weight × q/area − volume/V, whose mean is 0.
         terms = {name: weight / area for name, weight in weights.items()} | {"volume": -1 / volume}
