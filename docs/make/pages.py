@@ -4,8 +4,8 @@
 
 writes, in the folder where it is called: config/schema.json, the keywords and names that editors
 complete in src/twodiscs/__init__.pyi, and in the pages of docs the output of `twodiscs`, the
-targets of studies, the lists that 1.x promises and the costs of changes. It ends with a sentence if
-the code lacks a name that is promised.
+targets of studies, the lists that 1.x promises, the costs of changes and the table of agreement of
+the expected results. It ends with a sentence if the code lacks a name that is promised.
 """
 
 import json
@@ -24,8 +24,11 @@ from twodiscs import cli
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.scene import USUAL_VALUES, Box
+from twodiscs.points.base import restore_arrays
+from twodiscs.points.dynamics_point import DynamicsPoint
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.schema import keys, schema
+from twodiscs_paper.configuration.yaml_files import load, read
 from twodiscs_paper.pipeline.build import TARGETS
 
 #: The keywords and names for checkers of types in the face, between their marks.
@@ -69,6 +72,28 @@ def described_targets(text):
     """Return the page of targets with a row for each study."""
     rows = "".join(f"| `{name}` | {study.builds} |\n" for name, study in STUDIES.items())
     return re.sub(r"(^\| `volume`.*\n)(?:.*\n)*?(?=\| `manifest`)", rf"\1{rows}", text, flags=re.M)
+
+
+def _agreement(folder, scene):
+    """Return the row of the table of agreement for a ``SceneRequest``, as text."""
+    rows = SCENE_TABLES["check"].read(folder / scene.name / "check.csv")
+    compared = [abs(row["z"]) for row in rows if row["passed"] is not None]
+    points = json.loads((folder / scene.name / "points" / "dynamics.json").read_text())
+    parts = [restore_arrays(point["parts"]) for point in points.values()]
+    events = sum(DynamicsPoint.of(None, part).events for part in parts)
+    independent = sum(row["independent"] for row in rows)
+    largest = f"{max(compared):.3g}"  # as in check.passed
+    counts = f"{len(points)} | {len(compared)} | {independent} | {largest} | {events:.1e}"
+    counts = counts.replace("e+0", "e").replace("e+", "e")
+    return f"| {scene.box.width:g} × {scene.box.height:g} | {counts} |\n"
+
+
+def agreements(text, folder):
+    """Return the page with the table of agreement of the results that ``folder`` expects."""
+    scenes = load(read(Path(folder, "config/config.yaml"))).scenes
+    expected = Path(folder, "paper/expected")
+    rows = "".join(_agreement(expected, s) for s in scenes if (expected / s.name).is_dir())
+    return re.sub(r"(^\| box \|.*\n\|[-|]+\n)(?:\|.*\n)+", rf"\1{rows}", text, flags=re.MULTILINE)
 
 
 # What 1.x promises --------------------------------------------------------------------------------
@@ -153,6 +178,7 @@ def pages(folder):
     paths = Path(folder, "README.md"), *sorted(Path(folder, "docs").glob("*.md"))
     known = {p.relative_to(folder).as_posix(): p.read_text(encoding="utf-8") for p in paths}
     made = {
+        "README.md": lambda text: agreements(text, folder),
         "docs/architecture.md": lambda text: costs(text, known["docs/change-it.md"]),
         "docs/pipeline.md": described_targets,
         "docs/promises.md": promises,
