@@ -33,10 +33,10 @@ WHOLE = {
 
 #: {picture: (figure, number of the panel, abscissa if it is written beneath another panel)}
 PANELS = {
-    "mean_hop_time": ("mean_hop_time", 0, "radius $r$"),
+    "mean_hop_time": ("mean_hop_time", 0, "radius $r$ (length)"),
     "tails": ("tails", 0, r"interval $t/\tau$"),
     "hazard": ("distributions", 0, ""),
-    "effects": ("effects", 0, "radius $r$"),
+    "effects": ("effects", 0, "radius $r$ (length)"),
     "passages": ("transmission", 0, ""),
     "more_discs": ("more_discs", 1, "number of discs $N$"),
 }
@@ -100,7 +100,11 @@ def draw_hops(results):
     rows = [row | {"starts": None} for row in rows]
     radii, series = select_series(BOX, rows, names, {})
     figure, axes = small(
-        "Mean time between hops", "radius of the discs", "time", xlim=(0, 0.4), ylim=(0.2, 1e12)
+        "Mean time between hops",
+        "radius of the discs",
+        "time (length/speed)",
+        xlim=(0, 0.4),
+        ylim=(0.2, 1e12),
     )
     panels.draw_series(axes, None, radii, [*series.values()])
     panels.legend(axes, [*series.values()])

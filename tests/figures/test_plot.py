@@ -60,7 +60,7 @@ def test_a_warning_names_what_is_not_drawn():
     with pytest.warns(UserWarning, match=said) as all_:
         td.plot(found)
     assert all_[0].filename == __file__
-    assert td.plot(found, figure="areas").axes[0].get_ylabel() == "area $S$"
+    assert td.plot(found, figure="areas").axes[0].get_ylabel() == "area $S$ (length$^3$)"
 
 
 def test_two_boxes_are_drawn_in_axes_of_the_user(tmp_path):

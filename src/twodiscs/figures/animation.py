@@ -156,7 +156,7 @@ def draw_panels(motion):
     above = {"xycoords": "axes fraction", "ha": "left", "va": "bottom", "fontsize": 9}
     drawing.label(axes, ",\n".join(lines), (0, 1), (-72 * margin, 5 + up), **above)
     strip = panels.add_panel(figure, bottom, tall, MARGIN, BOX_SIZE[0])
-    strip.set(xlim=(motion.frames[0], motion.frames[-1]), xlabel="time $t$")
+    strip.set(xlim=(motion.frames[0], motion.frames[-1]), xlabel="time $t$ (length/speed)")
     return axes, strip
 
 

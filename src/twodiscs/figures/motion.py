@@ -40,7 +40,7 @@ def draw_trajectory(box, rows, radius=None):
         axes.axhline(0, color=GREY, lw=0.5, zorder=1)
         axes.plot(times, apart, color=BLUE, lw=thick, zorder=2)
         axes.plot(hops, 0 * hops, "o", color=VERMILLION, markersize=size, mew=0, zorder=3)
-        axes.set(xlabel="time $t$", ylabel=f"${axis}_2-{axis}_1$")
+        axes.set(xlabel="time $t$ (length/speed)", ylabel=f"${axis}_2-{axis}_1$ (length)")
     most = 1.08 * np.abs(apart).max()
     panel["a"].set(xlim=(times[0], times[-1]), ylim=(-most, most))
     shades = style.ORANGE, style.SKY
@@ -161,7 +161,7 @@ def draw_world_lines(box, rows, radius=None):
         shown = places[:, times <= axes.get_xlim()[1]]
         goes_on = axis in box.effects.get("periodic", "")
         low, high = (shown.min(), shown.max()) if goes_on else (-side / 2, side / 2)
-        axes.set(xlabel="time $t$", ylabel=f"${axis}$", ylim=(low, high))
+        axes.set(xlabel="time $t$ (length/speed)", ylabel=f"${axis}$ (length)", ylim=(low, high))
         for disc in shown_discs:
             axes.plot(times, places[disc], color=shades[disc], lw=width)
     if box.discs <= 8:  # more names have no place

@@ -68,7 +68,7 @@ def radius_panels(box, label, judged=True, beneath=False):
     for one, name in zip(axes, ["main"] + ["residuals"] * judged + ["beneath"], strict=False):
         one.set_label(name)
     main.set_ylabel(label)
-    (lower or main).set_xlabel("radius $r$")
+    (lower or main).set_xlabel("radius $r$ (length)")
     if judged:
         main.tick_params(labelbottom=False)
         lower.set_ylabel("residual $z$")

@@ -354,7 +354,7 @@ def _draw_observed(result):
         axes.set_ylabel(name if apart or (len(series) == 1 and result.names) else "average")
     if len(series) > 1 and not apart:
         axes.legend()
-    rows[-1].set_xlabel("time $t$")
+    rows[-1].set_xlabel("time $t$ (length/speed)")
     return figure
 
 
@@ -380,7 +380,7 @@ def _draw_transmission(result):
         late = np.geomspace(0.5 * box_time(scene, hop), result.times[-1], 30)
         end = kappa * np.exp(-2 * kappa * late / result.neighbour_mean)
         axes.plot(late, end, color=BLACK, zorder=5, label=name)
-    axes.set(xscale="log", xlabel="time $t$", ylabel=r"transmission $\kappa(t)$")
+    axes.set(xscale="log", xlabel="time $t$ (length/speed)", ylabel=r"transmission $\kappa(t)$")
     axes.xaxis.set_major_formatter("{x:g}")
     if axes.get_legend_handles_labels()[0]:
         axes.legend()

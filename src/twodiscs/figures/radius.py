@@ -28,8 +28,8 @@ def _every(kind, label):
 
 #: The figures by their names. ``mean_times`` and ``areas`` show all events in one panel.
 CURVES = {name: entry.curves for name, entry in FIGURES.items() if entry.curves} | {
-    "mean_times": _every("time", r"mean time $\tau$"),
-    "areas": _every("area", "area $S$"),
+    "mean_times": _every("time", r"mean time $\tau$ (length/speed)"),
+    "areas": _every("area", "area $S$ (length$^3$)"),
 }
 
 
@@ -103,7 +103,7 @@ def draw_areas(box, rows):
         # The name of a root is too long beside a panel of this height.
         main.set_ylabel(kind.label.rpartition(", ")[2])
         main.tick_params(labelbottom=False)
-        lower.set(xlabel="radius $r$", ylabel="residual $z$")
+        lower.set(xlabel="radius $r$ (length)", ylabel="residual $z$")
         panels.title(main, "abcd"[i], box if i == 0 else None, up=panels.TITLE_PAD)
     return figure
 
@@ -131,7 +131,7 @@ def add(axes, box, rows, names):
         low, high = zip(ends, axes.get_ylim(), strict=True)
         axes.set_ylim(min(low), max(high))
     else:
-        axes.set(xlabel="radius $r$", ylabel=kind.label)
+        axes.set(xlabel="radius $r$ (length)", ylabel=kind.label)
     axes.legend()
 
 
@@ -208,7 +208,7 @@ def _approach(axes, box, by_quantity):
     axes.set(xscale="log", yscale="log", xlim=(1e-5, 1), ylim=(low, high))
     panels.label_decades(axes.yaxis, high / low)
     axes.set_xlabel(r"relative distance from the end, $1-r/r_{\mathrm{c}}$")
-    axes.set_ylabel(r"mean time $\tau$")
+    axes.set_ylabel(r"mean time $\tau$ (length/speed)")
     if box.is_plain:
         handles.append(Line2D([], [], label=panels.LAW_NAME, **panels.LAW))
     axes.legend(handles=handles, loc="best")
@@ -292,7 +292,7 @@ def _virials(axes, box, rows, radii):
     for (colour, marker), part in zip(SERIES, series, strict=False):
         panels.draw_exact(axes, radii, part.exact, colour)
         panels.draw_estimates(axes, part.rows, colour, marker)
-    axes.set(xlim=(0, 1.02 * box.last_radius), xlabel="radius $r$")
+    axes.set(xlim=(0, 1.02 * box.last_radius), xlabel="radius $r$ (length)")
     axes.set_ylabel(r"virial$\,/\,2\langle E_{\mathrm{k}}\rangle$")
     panels.logarithmic(axes, radii, series)
     axes.set_ylim(0.01, None)

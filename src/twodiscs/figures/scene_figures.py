@@ -200,7 +200,7 @@ def _hop_area(hop, q):
         """,
         many="It is the sum over all pairs of discs.",
     )
-    label = rf"root of the {hop}-hop area, $\sqrt{{S_{{\mathrm{{{hop[0]}}}}}}}$"
+    label = rf"root of the hop area, $\sqrt{{S_{{\mathrm{{{hop[0]}}}}}}}$ (length$^{{3/2}}$)"
     names = {f"{hop}_hop_area": f"{hop} hops"}
     curves = _radius_fields("areas", names, label, single=SAMPLING, rooted=True)
     return Figure(f"Area of {hop} hops", SPACE, own, SHELLS, **curves)
@@ -260,7 +260,9 @@ FIGURES = {
         Carlo sampling (symbols).
         """,
         SAMPLED,
-        **_radius_fields("volume", {"volume": "volume"}, "volume $V$", single=SAMPLING),
+        **_radius_fields(
+            "volume", {"volume": "volume"}, "volume $V$ (length$^4$)", single=SAMPLING
+        ),
     ),
     "vertical_hop_area": _hop_area("vertical", "y"),
     "horizontal_hop_area": _hop_area("horizontal", "x"),
@@ -278,7 +280,7 @@ FIGURES = {
         **_radius_fields(
             "areas",
             {"disc_collision_area": "disc collisions"},
-            r"collision area $S_{\mathrm{coll}}$",
+            r"collision area $S_{\mathrm{coll}}$ (length$^3$)",
             single=SAMPLING,
         ),
     ),
@@ -297,7 +299,9 @@ FIGURES = {
         ),
         SHELLS,
         **_radius_fields(
-            "areas", {f"{event}_area": name for event, name in WALL_NAMES.items()}, "wall area $S$"
+            "areas",
+            {f"{event}_area": name for event, name in WALL_NAMES.items()},
+            "wall area $S$ (length$^3$)",
         ),
     ),
     "all_areas": Figure(
@@ -336,7 +340,7 @@ FIGURES = {
         **_radius_fields(
             "mean_times",
             {"vertical_hop_time": "vertical hops", "horizontal_hop_time": "horizontal hops"},
-            r"mean time between hops $\tau$",
+            r"mean time between hops $\tau$ (length/speed)",
             laws=("small",),
             approach=True,
         ),
@@ -359,7 +363,7 @@ FIGURES = {
         **_radius_fields(
             "mean_times",
             {"disc_collision_time": "disc collisions"},
-            r"mean time between collisions $\tau_{\mathrm{coll}}$",
+            r"mean time $\tau_{\mathrm{coll}}$ (length/speed)",
             single="MD",
             laws=("small", "last"),
         ),
@@ -389,7 +393,7 @@ FIGURES = {
         **_radius_fields(
             "mean_times",
             {f"{event}_time": name for event, name in WALL_NAMES.items()},
-            r"mean time between wall hits $\tau$",
+            r"mean time $\tau$ (length/speed)",
             laws=("small", "last"),
         ),
     ),

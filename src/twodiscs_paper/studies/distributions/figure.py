@@ -107,5 +107,5 @@ def _passages(axes, rows):
         [], [], ls="", marker=".", color=BLACK, label=r"from intervals, $(1+\mathrm{CV}^2)/2$"
     )
     axes.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)))
-    axes.set(xlabel="radius $r$", ylabel=r"first passage $\langle F\rangle/\tau$")
+    axes.set(xlabel="radius $r$ (length)", ylabel=r"first passage $\langle F\rangle/\tau$")
     axes.legend(loc="upper left")

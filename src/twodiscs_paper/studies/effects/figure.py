@@ -66,7 +66,7 @@ def draw(box, tables):
         # The range of the ratios; curves leave it only near the ends of the radii.
         main.set(yscale="log", ylim=(0.22, 22))
         main.tick_params(which="both", labelbottom=False, labelleft=letter == "a")
-        lower.set(xlabel="radius $r$")
+        lower.set(xlabel="radius $r$ (length)")
         lower.tick_params(labelleft=letter == "a")
         panels.scale_residuals(lower)
         panels.mark((main, lower), ends)

@@ -49,7 +49,7 @@ def draw(box, tables):
     ratios.set(ylim=(0.7, 5))
     ratios.set_yticks([1, 2, 5], ["1", "2", "5"])
     ratios.yaxis.set_minor_formatter("")
-    hops.set_ylabel("time between hops")
+    hops.set_ylabel("time between hops (length/speed)")
     ratios.set_ylabel(r"time / limiting law $\tau_0\,\delta^\gamma$")
     for axes in (hops, ratios):
         axes.set_xlabel(r"distance from the limit $\delta/r_{\rm c}$")
