@@ -218,9 +218,12 @@ def test_a_change_takes_the_files_of_the_page_and_all_else_holds(name, tmp_path,
     assert mutants.failure(copy.path, tests) is None
 
 
-def test_every_change_of_the_page_is_made():
+def test_every_change_of_the_page_is_made_and_finds_its_text():
     made = [change for changes, _, _ in COPIES.values() for change in changes]
     assert sorted(made) == sorted(EDITS) == sorted(pages.changes(page(PAGE)))
+    for file, edits in (item for change in made for item in EDITS[change].items()):
+        for old, *_ in [] if isinstance(edits, str) else map(tuple, edits):
+            assert page(file).count(old) == 1, (file, old)
 
 
 def test_a_seventh_shell_is_refused_with_a_sentence(tmp_path):
