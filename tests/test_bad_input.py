@@ -138,6 +138,7 @@ td.scan(1.5, 1, 0.2, 0.1, measure=td.volume) → measure must be a function of a
 td.scan(1.5, 1, 0.2, measure='volume') → measure must be a function … calls, not 'volume'
 td.scan(1.5, 1, 0.2, measure=td.volume) → measure must return a result of its scene, of one function
 td.scan(1.5, 1, [0.1, 0.2], measure=lambda s: td.sample(PAPER, 1)) → of its scene, of one function
+td.intervals(PAPER, td.EVENTS[0], 1, error=1) → number and error must not both be given: leave out
 td.sample(PAPER, 1, error=0.1) → samples and error must not both be given: leave out one of them
 td.sample(PAPER, budget=1) → budget must be left out without an error: samples is the number to draw
 td.sample(PAPER, error={'volum': 0.1}) → quantity must be one of volume, …; did you mean volume?
@@ -427,7 +428,7 @@ RIGHT = [
     (td.scan, {"width": 1.5, "height": 1.0, "radii": [0.2], "error": 0.5, **COUNTED}),
     (td.simulate, {"scene": PAPER, "error": 0.5, **COUNTED, **NAMED}),
     (td.sample, POINT | NAMED | {"method": "rejection"}),
-    (td.intervals, {"scene": PAPER, "hop": "vertical_hop", "number": 1, **NAMED}),
+    (td.intervals, {"scene": PAPER, "hop": "vertical_hop", "number": 1, "bins": [0, 1], **NAMED}),
     (td.transmission, {"scene": PAPER, "hop": "vertical_hop", "hops": 1, **NAMED}),
     (td.starts, {"scene": PAPER, "number": 1, **NAMED}),
     (td.trajectory, {"scene": PAPER, "start": [*START.values()], "duration": 1.0, **NAMED}),
@@ -452,6 +453,7 @@ WRONG = (
     | {"seed": [-1, 1.5, "1", True], "duration": [INF, "1", 0.0, -1.0]}
     | {"error": [0.0, 1.1, -0.5, True, "rough", {}, {"hop": 0.1}], "name": [3, b"a"]}
     | {"events": [["hop"], {"any_wall": 0.1}, b"any_wall", 5], "radii": [[], [0.9], [None]]}
+    | {"bins": [[], [1], [1, 0], [-1, 1], [0, INF], "x", 5]}
     | {"start": [[], [1.0] * 8, "x", [None] * 8], "times": [[-1], [1, 1], [1e9], [INF]]}
     | {"function": [1, lambda start, now: None, lambda start, now: "x1"], "path": [3.5, "a.txt"]}
     | {"result": [1, "scene", [PAPER, 1], {}]}

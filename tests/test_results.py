@@ -138,7 +138,7 @@ JOBS = {
     ),
     "intervals": (
         {"hop": "vertical_hop", "number": 10**5, "budget": 10**11}, {"number": 2 * 10**5},
-        lambda *given, budget, **named: td.intervals(*given, **named),
+        td.Intervals.makers["intervals"],  # with the bins of a build
     ),
 }  # fmt: skip
 
@@ -513,7 +513,11 @@ def test_tables_have_plain_values_beside_them(tmp_path):
 
 def test_a_density_that_the_bins_do_not_resolve_has_no_value():
     """Near a threshold a bin is many flights wide, and the density falls within one of them."""
-    near = td.intervals(td.Scene(1.5, 1.0, 0.22), "horizontal_hop", 1).at_zero
+    scene, bins = td.Scene(1.5, 1.0, 0.22), [0, 1, 2]
+    near = td.intervals(scene, "horizontal_hop", 1, bins=bins).at_zero
     assert (near.value, near.stderr, near.z, near.status) == (None, None, None, "not-resolved")
     assert near.exact == pytest.approx(3 * math.sqrt(2) / (16 * (1.5 - 0.44)))
     assert "not-resolved" in str(near)
+    resolved = td.intervals(scene, "horizontal_hop", error=0.01)
+    assert abs(resolved.at_zero.value - near.exact) < 5 * resolved.at_zero.stderr
+    assert resolved.mean.relative_stderr < 0.01

@@ -53,7 +53,7 @@ def test_squares_are_those_of_the_counts_of_each_chain():
         sums = np.zeros((2, 66 + edges.size), np.int64)
         how = {"returns": 32, "lanes": 1 if stop - first == 1 else 5}
         returns.record_intervals(
-            PAPER, "vertical_hop", 3, first, stop, 1, (0.25, wide), sums, going, **how
+            PAPER, "vertical_hop", 3, first, stop, 1, (0.25, None, wide), sums, going, **how
         )
         found.append(sums)
     chains = np.array([counts for counts, _ in found[:-1]])
@@ -110,7 +110,7 @@ def test_intervals_of_many_are_those_of_trajectories(scene, event, monkeypatch):
     wide, sums = np.full(65, 65), np.zeros((3, 66), np.int64)
     going = np.ones(1, np.bool_)
     times, numbers = many_intervals.record_within(
-        window, scene, event, 7, 3, 4, replicas, (width, wide), sums, going
+        window, scene, event, 7, 3, 4, replicas, (width, None, wide), sums, going
     )
     due = np.zeros((3, 66), np.int64)
     for k, state in enumerate(many_initial_states.states(scene, replicas, 7, 3).T):

@@ -53,6 +53,15 @@ def nearest_power_of_two(value):
     return math.ldexp(1.0, exponent if mantissa > math.sqrt(0.5) else exponent - 1)
 
 
+@optional(lambda time, width, last, edges: min(np.int64(time / width), last))
+def find_bin(time, width, last, edges):
+    """Return the number of the bin with a ``time``: of one ``width`` or between ``edges``.
+
+    A time outside of all bins has the number ``last``.
+    """
+    return (np.searchsorted(edges, time, side="right") - 1) % edges.size
+
+
 # Kicks ------------------------------------------------------------------------------------------
 
 

@@ -251,18 +251,19 @@ class TimedRun(DynamicsRun):
 # Intervals --------------------------------------------------------------------------------------
 
 
-def record_blocks(scene, event, seed, first, stop, going):
+def record_blocks(scene, event, seed, first, stop, going, edges=None):
     """Return (times of the chains, sums in bins) of the blocks ``first`` … ``stop`` − 1.
 
     Each block has ``CHAINS_PER_BLOCK`` chains of ``RETURNS`` intervals, see ``record_intervals``.
-    ``going`` is an array to stop it with.
+    ``going`` is an array to stop it with. Bins are between ``edges``, or equal and wide ones.
     """
-    edges = wide_edges()
+    n, unions = (N_BINS, wide_edges()) if edges is None else (len(edges) - 1, [0])
     # Intervals beyond all bins, or in the last ones that fill no wide bin, have no wide bin.
-    last = N_BINS + len(edges)
-    wide = np.full(N_BINS + 1, last)
-    wide[: edges[-1]] = N_BINS + np.repeat(np.arange(1, len(edges)), np.diff(edges))
-    engine, bins = find_engine(scene), (_width(scene, event), wide)
+    last = n + len(unions)
+    wide = np.full(n + 1, last)
+    wide[: unions[-1]] = n + np.repeat(np.arange(1, len(unions)), np.diff(unions))
+    edges = None if edges is None else np.array(edges)
+    engine, bins = find_engine(scene), (_width(scene, event), edges, wide)
     sums = np.zeros((engine.interval_sums, last + 1), np.int64)
     totals = engine.record_intervals(
         scene, event, seed, first, stop, CHAINS_PER_BLOCK, bins, sums, going
@@ -281,8 +282,9 @@ class IntervalsRun(Run):
     correlated, chains are independent.
 
     Bins have a power of two near τ/16 as width. Chains of more than two discs differ in their
-    number of intervals. Raises ``InputError`` for a hop that is blocked, and for one whose mean
-    time is not known.
+    number of intervals. Bins of your own have their ``edges``. With an ``error``, the relative
+    standard error of the mean, blocks are added until it is reached. Raises ``InputError`` for a
+    hop that is blocked, and for one whose mean time is not known.
     """
 
     scene: Scene
@@ -290,12 +292,18 @@ class IntervalsRun(Run):
     intervals: int
     seed: int
     budget: int = INTERVALS_BUDGET
+    edges: list | None = None
+    error: float | None = None
 
     @classmethod
     def of(cls, scene, settings):
         """Return the run of the ``settings`` of ``intervals``."""
         seed = job_seed(scene, IntervalsPoint.stage, settings["seed"], settings["name"])
-        return cls(scene, settings["hop"], settings["number"], seed, settings["budget"])
+        error = settings.get("error")
+        # An interval spreads about as much as its mean.
+        number = settings["number"] if error is None else math.ceil(error**-2)
+        budget, edges = settings["budget"], settings.get("bins")
+        return cls(scene, settings["hop"], number, seed, budget, edges, error)
 
     def __post_init__(self):
         scene = self.scene
@@ -339,7 +347,7 @@ class IntervalsRun(Run):
 
         def work(first, stop):
             totals, sums = record_blocks(
-                self.scene, self.event, self.seed, first, stop, self._going
+                self.scene, self.event, self.seed, first, stop, self._going, self.edges
             )
             totals, *numbers = np.atleast_2d(totals)
             # Integers in the finest unit that doubles have.
@@ -351,8 +359,18 @@ class IntervalsRun(Run):
                 moments += [joint, sum(n), sum(each * each for each in n)]
             return sums, np.array(moments, object)
 
-        ratio = find_engine(self.scene).chain_cost_ratio(self.scene)
-        return {"all": fixed(work, self._blocks, self._each * self._events, ratio)}
+        def error_over_target(sums, blocks):
+            found = self.point({"all": {(0, blocks): sums}})
+            return np.array([found.stderr / found.mean / self.error])
+
+        ratio, events = (
+            find_engine(self.scene).chain_cost_ratio(self.scene),
+            self._each * self._events,
+        )
+        run = fixed(work, self._blocks, events, ratio)
+        if self.error is not None:
+            run = replace(run, error_over_target=error_over_target, budget=self.budget)
+        return {"all": run}
 
     def point(self, ranges):
         """Return the ``IntervalsPoint``, given {"all": ranges of blocks with their sums}."""
@@ -363,6 +381,8 @@ class IntervalsRun(Run):
             "returns": RETURNS,
             "sums": ranges["all"],
         }
+        if self.edges is not None:
+            component["edges"] = self.edges
         return IntervalsPoint.of(self.scene, {"all": component})
 
     def run(self, progress=None, cores=1, resume_from=None):

@@ -177,6 +177,9 @@ def draw_world_lines(box, rows, radius=None):
 # Intervals ----------------------------------------------------------------------------------------
 
 
+#: Densities above this, in units of the mean rate, need logarithmic axes: hops are in bursts.
+STEEP_DENSITY = 8
+
 #: The number of bins that can show a density that changes with the room at a hop.
 FINE_BINS = 4
 
@@ -211,6 +214,9 @@ def draw_hop_histogram(box, rows):
         axes.set(xlim=(0, end), xlabel=r"interval $t/\tau$", ylabel=r"density $\tau\,p(t)$")
     whole.set(yscale="log", ylim=(low / 3, None))
     short.set_ylim(0, None)
+    if short.get_ylim()[1] > STEEP_DENSITY:
+        short.set(xlim=(edges[1] / 2, end), xscale="log", yscale="log")
+        short.set_ylim(np.exp(-end) / 2, 2 * density.max())
     whole.legend(loc="upper right")
     if is_marked:
         exact = Line2D([], [], color=BLACK, lw=DASH_WIDTH, label=r"exact density at $t=0$")

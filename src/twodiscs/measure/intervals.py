@@ -2,16 +2,29 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
+from dataclasses import replace
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from twodiscs.analysis.tables import HopHistogramTable
 from twodiscs.measure.measurements import Measurement, indexed_frame, text_table
 from twodiscs.measure.result import Result, note_of_number, work
 from twodiscs.model.calls import checked_call
-from twodiscs.model.checks import InputError, check_choice, check_count, check_integer
+from twodiscs.model.checks import (
+    InputError,
+    check_choice,
+    check_count,
+    check_error,
+    check_integer,
+    check_numbers,
+)
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.points.estimates import why_no_error
+from twodiscs.points.intervals_point import wide_edges
 from twodiscs.theory import laws
 
 if TYPE_CHECKING:
@@ -44,9 +57,9 @@ class Intervals(Result):
     intervals : int
         The number of intervals.
     overflow : int
-        The number of intervals beyond the bins.
+        The number of intervals outside of the bins.
     edges : list of float, length n + 1
-        The ends of equal bins from 0, in time.
+        The ends of the bins, in time.
     counts : list of int, length n
         The intervals in each bin.
     mean : Measurement
@@ -58,8 +71,8 @@ class Intervals(Result):
     -----
     The exact density at 0 is known in plain scenes. Its estimate is extrapolated by a parabola
     through the first two bins, so it has no z. For more than two discs it is a straight line,
-    because another pair may hop next. The width of bins is a fixed fraction of the mean interval.
-    If they are wider than ``RESOLVED_EVENTS`` events of the pair, as they are near a threshold,
+    because another pair may hop next. It needs two equal bins from 0 on, with ``RESOLVED_EVENTS``
+    of the pair or fewer in each. Without them, as in points of a build near a threshold,
     ``at_zero`` has no value and the status "not-resolved". Intervals of one chain are correlated,
     so all errors come from the spread between chains. If discs are tiny or hardly fit, a few long
     intervals make the errors skew. In four such scenes 65536 intervals gave scores with a mean of
@@ -87,10 +100,11 @@ class Intervals(Result):
         self.scene, self.hop = scene, point.event
         self.settings, self.components = settings, point.components
         self.intervals, self.overflow = point.intervals, point.overflow
-        self.note = note_of_number("intervals", settings["number"], self.intervals)
+        number = settings.get("number", self.intervals)
+        self.note = note_of_number("intervals", number, self.intervals)
         self.rows = HopHistogramTable.rows([point])
         self.counts = point.equal.counts
-        # Wide bins, which hold the same intervals again, come after the equal ones.
+        # Wide bins, which have the same intervals again, come after the others.
         self._bins = self.rows[: len(self.counts)]
         self.edges = [row["left"] for row in self._bins] + [self._bins[-1]["right"]]
         first, z = self.rows[0], self.rows[0]["z"]
@@ -104,10 +118,8 @@ class Intervals(Result):
         at_zero, error, status = density.value, density.stderr, "extrapolated"
         if why_no_error(intervals=min(self.counts[:2])):
             error, status = None, "too-few"
-        from twodiscs.dynamics.engine import find_engine
-
-        events_of_pair = find_engine(scene).expected_event_rate(scene) * 2 / scene.discs
-        if events_of_pair * point.bin_width > RESOLVED_EVENTS:
+        first, second, third = self.edges[:3] if len(self.edges) > 2 else (0.0, 1.0, 0.0)
+        if first or third != 2 * second or second > resolved_width(scene):
             at_zero, error, status = None, None, "not-resolved"
         values = at_zero, error, exact, None, sum(self.counts[:2]), status, "1/time"
         self.at_zero = Measurement("density_at_zero", *values)
@@ -142,12 +154,30 @@ class Intervals(Result):
         return indexed_frame([{n: row[n] for n in names} for row in self._bins], index="left")
 
 
+def resolved_width(scene):
+    """Return the width of a bin in which a pair of discs has ``RESOLVED_EVENTS`` on average."""
+    from twodiscs.dynamics.engine import find_engine
+
+    return RESOLVED_EVENTS * scene.discs / 2 / find_engine(scene).expected_event_rate(scene)
+
+
+def resolving_edges(scene, hop):
+    """Return edges of bins that resolve the start and widen in proportion to time, to 32 τ."""
+    from twodiscs.dynamics.engine import find_engine
+
+    mean = find_engine(scene).mean_interval(scene, hop)
+    width = 2.0 ** math.floor(math.log2(min(mean / 16, resolved_width(scene))))
+    return [width * edge for edge in wide_edges(32 * mean / width)]
+
+
 @checked_call
 def intervals(
     scene: Scene,
     hop: Hop,
-    number: float = 10**6,
+    number: float | None = None,
     *,
+    error: float | str | None = None,
+    bins: Iterable[float] | None = None,
     seed: int = 1,
     name: str | None = None,
     cores: int = 1,
@@ -161,10 +191,16 @@ def intervals(
         The box, the smooth discs and their effects.
     hop : str
         "vertical_hop" or "horizontal_hop"; for more than two discs a hop of any pair.
-    number : float, default 1e6
-        Intervals to draw, an integer from 1 on. It is rounded up to whole blocks of 2¹⁶ (for more
-        than two discs a block has about 2¹⁶ to 2¹⁷), within 1e11 events; ``note`` of the result has
-        the number that was drawn.
+    number : float, optional
+        Intervals to draw, an integer from 1 on; 1e6 if there is no ``error``. It is rounded up to
+        whole blocks of 2¹⁶ (for more than two discs a block has about 2¹⁶ to 2¹⁷), within 1e11
+        events; ``note`` of the result has the number that was drawn.
+    error : float or str, optional
+        The relative standard error of the mean instead, as in ``simulate``.
+    bins : iterable of float, optional
+        The edges of the bins, ascending from 0 or more, in time. If left out, the first bins
+        resolve how the density begins, and later ones are 8 % of their time wide, to 32 mean times.
+        Points of a build have 512 equal bins instead, about as wide as 1/16 of the mean.
     seed, name, cores, progress : optional
         See ``help(twodiscs)``.
 
@@ -176,8 +212,9 @@ def intervals(
     Raises
     ------
     InputError
-        For a blocked hop, for rough discs without friction, and for more than two discs if it is
-        not known whether they can hop.
+        For a blocked hop, for both ``number`` and ``error``, for edges that do not ascend, for
+        rough discs without friction, and for more than two discs if it is not known whether they
+        can hop.
 
     Examples
     --------
@@ -198,12 +235,26 @@ def make_intervals(scene, **asked):
             "scene must have smooth discs, because rough discs in a box are not ergodic and their "
             f"intervals have no exact mean, but moment_of_inertia is {scene.moment_of_inertia!r}"
         )
-    number, seed = check_count("number", asked["number"]), check_integer("seed", asked["seed"], 0)
+    number, error = asked.get("number"), asked.get("error")
+    if number is not None and error is not None:
+        raise InputError("number and error must not both be given: leave out one of them")
     from twodiscs.dynamics.runs import INTERVALS_BUDGET, IntervalsRun
 
-    settings = {"hop": hop, "number": number, "seed": seed, "name": asked["name"]}
+    settings = {"hop": hop, "seed": check_integer("seed", asked["seed"], 0), "name": asked["name"]}
+    if error is None:
+        settings["number"] = check_count("number", 10**6 if number is None else number)
+    else:
+        settings["error"] = check_error("error", error)
     settings["budget"] = check_count("budget", asked.get("budget", INTERVALS_BUDGET))
-    return Intervals(scene, work("intervals", IntervalsRun.of(scene, settings), asked), settings)
+    run = IntervalsRun.of(scene, settings)
+    if "bins" in asked:  # a point of a build has equal bins
+        bins = resolving_edges(scene, hop) if asked["bins"] is None else asked["bins"]
+        settings["bins"] = check_numbers(
+            "bins", bins, "two or more ascending edges from 0 on",
+            lambda t: t.size > 1 and t[0] >= 0 and t[-1] < np.inf and np.all(np.diff(t) > 0),
+        ).tolist()  # fmt: skip
+        run = replace(run, edges=settings["bins"])
+    return Intervals(scene, work("intervals", run, asked), settings)
 
 
 Intervals.makers = {"intervals": make_intervals}

@@ -26,10 +26,9 @@ def wide_edges(bins=N_BINS):
 
     They begin at zero, and each is one bin wide or wider than ``BIN_GROWTH`` times its left edge.
     """
-    edges = [0]
-    for i in range(1, bins + 1):
-        if i >= (1 + BIN_GROWTH) * edges[-1]:
-            edges.append(i)
+    edges = [0, 1]
+    while (edge := max(edges[-1] + 1, math.ceil((1 + BIN_GROWTH) * edges[-1]))) <= bins:
+        edges.append(edge)
     return edges
 
 
@@ -60,7 +59,8 @@ class HistogramBin(NamedTuple):
 class IntervalsPoint(Point):
     """Intervals of independent ``chains`` in ``equal`` bins from 0 on, ``overflow`` beyond them.
 
-    ``wide`` bins, which widen with time, have the same intervals again. ``mean`` is the mean of all
+    ``wide`` bins, which widen with time, have the same intervals again. Bins of your own are both
+    of them, and ``overflow`` is the number of intervals outside. ``mean`` is the mean of all
     ``intervals``, ``stderr`` its standard error over chains; ``intervals_squared`` is Σ n² if n
     differs.
     """
@@ -87,7 +87,11 @@ class IntervalsPoint(Point):
         Its sums are counts of the bins, equal ones, then wide ones, and Σ t and Σ t² over the times
         t of chains. If chains differ in their number n of intervals, there are Σ t n, Σ n and Σ n².
         """
-        component, edges = components["all"], wide_edges()
+        component = components["all"]
+        unit = component["bin_width"]
+        own = component.get("edges")
+        edges = wide_edges() if own is None else [edge / unit for edge in own]
+        n = N_BINS if own is None else len(edges) - 1
         (sums, moments), blocks = reached(component["sums"])
         chains, (total, squares, *more) = blocks * component["chains"], map(int, moments)
         if more:
@@ -95,22 +99,21 @@ class IntervalsPoint(Point):
             mean = Fraction(total, intervals)
             spread = squares - 2 * mean * joint + mean**2 * intervals_squared
             error = math.sqrt(spread * chains / (chains - 1)) / intervals
-            unit = component["bin_width"] * TIME_GRAIN
+            unit *= TIME_GRAIN
         else:
             intervals, intervals_squared, mean = chains * component["returns"], None, total / chains
             variance = (chains * squares - total * total) / (chains * chains * (chains - 1))
-            error, unit = (
-                math.sqrt(variance),
-                component["bin_width"] * TIME_GRAIN / component["returns"],
-            )
-        rows, wide = sums.tolist(), slice(N_BINS + 1, N_BINS + len(edges))
+            error, unit = math.sqrt(variance), unit * TIME_GRAIN / component["returns"]
+        rows = sums.tolist()
+        equal = Bins([*range(n + 1)] if own is None else edges, *(row[:n] for row in rows))
+        wide = equal if own else Bins(edges, *(row[n + 1 : n + len(edges)] for row in rows))
         return cls(
             scene=scene,
             event=component["event"],
             bin_width=component["bin_width"],
-            overflow=rows[0][N_BINS],
-            equal=Bins([*range(N_BINS + 1)], *(row[:N_BINS] for row in rows)),
-            wide=Bins(edges, *(row[wide] for row in rows)),
+            overflow=rows[0][n],
+            equal=equal,
+            wide=wide,
             intervals=intervals,
             intervals_squared=intervals_squared,
             chains=chains,

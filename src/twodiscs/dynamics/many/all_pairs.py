@@ -548,13 +548,13 @@ def record_intervals(states, seed, first, window, law, hops_x, bins, sums, going
 
     The hops are vertical ones, or horizontal ones if ``hops_x`` is True instead of None. All
     intervals that begin within a ``window`` of time are followed to their end. ``bins`` are
-    (width, wide) as in ``returns``. A replica has n intervals, c of them in a bin. Σ c, Σ c²
+    (width, edges, wide) as in ``returns``. A replica has n intervals, c of them in a bin. Σ c, Σ c²
     and Σ c n are added to ``sums`` (3, bins; int64). Returns their total time and number,
     (2, replicas) doubles. ``kicks`` are those of ``LANES`` lanes, with the streams of
     ``count_events``.
     """
-    discs, (width, wide) = discs_in(states, law.rough), bins
-    totals, per_width = np.zeros((2, states.shape[1])), 1.0 / width
+    discs, (width, edges, wide) = discs_in(states, law.rough), bins
+    totals = np.zeros((2, states.shape[1]))
     when = np.zeros(discs * (discs - 1) // 2)
     for start in range(0, states.shape[1], ensemble.LANES):
         some, own = states[:, start : start + ensemble.LANES].copy(), totals[:, start:]
@@ -580,7 +580,7 @@ def record_intervals(states, seed, first, window, law, hops_x, bins, sums, going
                         for k in range(hops_in_flight(before, after, l, times[l], when)):
                             interval = age[l] + (when[k] - at)
                             if 0.0 <= last[l] < window:
-                                index = min(np.int64(interval * per_width), wide.size - 1)
+                                index = ensemble.find_bin(interval, width, wide.size - 1, edges)
                                 counts[l, index] += 1
                                 counts[l, wide[index]] += 1
                                 own[0, l] += interval

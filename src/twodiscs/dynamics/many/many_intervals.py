@@ -69,7 +69,7 @@ def record_within(window, scene, hop, seed, first, stop, chains, bins, sums, goi
             seeds = np.uint64(seed), block * chains
             totals.append(all_pairs.record_intervals(states, *seeds, *given))
         return np.hstack(totals)
-    (width, wide), path, initial = bins, Followed(scene, (hop,)), make_initial(scene)
+    (width, edges, wide), path, initial = bins, Followed(scene, (hop,)), make_initial(scene)
     totals, state = np.zeros((2, (stop - first) * chains)), np.zeros((initial.rows, 1))
     for chain in range(totals.shape[1]):
         if chain % chains == 0:
@@ -86,7 +86,8 @@ def record_within(window, scene, hop, seed, first, stop, chains, bins, sums, goi
                 times = np.append(times, log.times[hops])
             step = window / ensemble.RETURNS
         intervals = np.diff(times)[times[:-1] < window]
-        index = np.minimum((intervals / width).astype(int), wide.size - 1)
+        edges = width * np.arange(wide.size) if edges is None else edges
+        index = (np.searchsorted(edges, intervals, side="right") - 1) % edges.size
         counts = np.bincount(np.append(index, wide[index]), minlength=sums.shape[1])
         totals[:, chain] = intervals.sum(), intervals.size
         sums += counts, counts**2, counts * intervals.size

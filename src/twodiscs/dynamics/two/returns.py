@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import LANES, RETURNS, SWEEPS
+from twodiscs.dynamics.ensemble import LANES, RETURNS, SWEEPS, find_bin
 from twodiscs.dynamics.law import crosses, crossing_time
 from twodiscs.dynamics.two.follow import follow, relative_motion
 from twodiscs.model.scene import hopping_along
@@ -19,13 +19,14 @@ class Returns(NamedTuple):
 
     The hops are vertical, or horizontal if ``horizontal`` is True instead of None. With c intervals
     of a chain in a bin, ``sums`` are Σ c and Σ c² over the chains (2, bins; int64). There are bins
-    of a width from 0 on, one for longer intervals, and wide bins; ``wide`` has the wide bin of each
+    between ``edges``, one for all other intervals, and wide bins; ``wide`` has the wide bin of each
     of the others. ``totals`` are the times of the chains, in order, from the chain ``first`` on.
     """
 
     horizontal: bool | None
     wanted: float
-    per_width: float  # 1 over the width of a bin
+    width: float  # of bins from 0 on
+    edges: np.ndarray | None  # of the bins, ascending, if they have no width
     wide: np.ndarray
     to_come: np.ndarray  # (lanes,), hops until the end of a chain
     age: np.ndarray  # (lanes,), the time since the last hop
@@ -69,7 +70,7 @@ class Returns(NamedTuple):
         for k in range(n):
             i = self.lane_of[k]
             self.elapsed[i] += self.finished[k]
-            index = min(np.int64(self.finished[k] * self.per_width), self.wide.size - 1)
+            index = find_bin(self.finished[k], self.width, self.wide.size - 1, self.edges)
             self.counts[i, index] += 1
             self.counts[i, self.wide[index]] += 1
 
@@ -89,9 +90,9 @@ def record_intervals(
     """Add the intervals of the blocks ``first`` … ``stop`` − 1 to ``sums``, as in ``Returns``.
 
     Each block has ``chains`` chains of as many intervals as ``returns``; ``bins`` are (width,
-    wide). ``going`` is an array to stop it with. Returns the total time of each chain.
+    edges, wide). ``going`` is an array to stop it with. Returns the total time of each chain.
     """
-    width, wide = bins
+    width, edges, wide = bins
     if scene.is_plain:  # initial states are drawn on the surface of vertical hops only
         scene, hop = hopping_along(scene, hop, "y")
     horizontal = True if hop == "horizontal_hop" else None
@@ -99,7 +100,7 @@ def record_intervals(
     finished, lane_of = np.zeros(lanes + 1), np.zeros(lanes + 1, np.int64)
     counts, totals = np.zeros((lanes, sums.shape[1]), np.int64), np.zeros((stop - first) * chains)
     recorded = Returns(
-        horizontal, float(returns), 1.0 / width, wide, to_come, age, interval, elapsed, finished,
+        horizontal, float(returns), width, edges, wide, to_come, age, interval, elapsed, finished,
         lane_of, counts, sums, totals, first * chains,
     )  # fmt: skip
     sampler = start_sampler(scene, surface=1 if horizontal is None else 0)
