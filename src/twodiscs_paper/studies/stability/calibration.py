@@ -89,6 +89,7 @@ SCENES = {
         for discs, where, periodic, packings in (
             (64, "", "", (0.1, 0.3, 0.6, 0.7)), (256, "", "", (0.3, 0.6)),
             (64, " on a ring", "x", (0.3, 0.6)), (64, " on a torus", "xy", (0.3, 0.6, 0.7)),
+            (1024, "", "", (0.6,)),
         )
         for packing in packings
     },
