@@ -155,6 +155,15 @@ td.trajectory(PAPER, start=td.starts(PAPER, 2)) → numbers x1, …; start[0] is
 td.trajectory(PAPER, start=td.trajectory(PAPER, 1)) → …; states_at(times)[0] is a state of a traj…
 td.trajectory(PAPER, start=td.trajectory(PAPER, 1).iloc[-1]) → …; states_at(times)[0] is a state of
 td.trajectory(PAPER, hops='no') → hops must be True or False, not 'no'
+td.frames(PAPER, [0, 1], 1e8) → number must be an integer from 1 to 7500000, not 100000000
+td.observe(PAPER, x1, [1e3], 1e9) → at most 270… for times up to 1000, with 1e11
+td.observe(PAPER, x1, [1], starts=td.starts(PAPER, 1)) → starts must be two states or more
+td.observe(PAPER, x1, [1], 3, starts=td.starts(PAPER, 3)) → replicas must be left out with starts
+td.observe(PAPER, x1, [1], starts=td.starts(FOUR, 3)) → an array of shape (number, 2, 4) of x, y, u
+td.observe(PAPER, x1, [1], starts=np.ones((2, 2, 4))) → must have disc 1 inside the box, with x1
+td.trajectory(PAPER, start='no.xyz') → start must be a file to read, not 'no.xyz': No such file
+td.trajectory(PAPER, start=__file__) → start must be an extended XYZ file with the columns pos and
+td.trajectory(PAPER, start=([[0.3, 0.5], [1.2, 0.5]], np.zeros((2, 2)))) → energy of 0.5, not 0.0
 td.trajectory(PAPER, 1e9) → must be below 2.71e6, where 1e7 events are due and fill 0.98 GB
 td.intervals(Scene(1.5, 1, 0.3), 'horizontal_hop') → has no intervals: it is blocked at radius 0.3
 td.intervals(Scene(1.6, 0.6, 0.18, discs=4), 'horizontal_hop') → is blocked
@@ -433,6 +442,7 @@ RIGHT = [
     (td.starts, {"scene": PAPER, "number": 1, **NAMED}),
     (td.trajectory, {"scene": PAPER, "start": [*START.values()], "duration": 1.0, **NAMED}),
     (td.observe, {"scene": PAPER, "function": x1, "times": [1], "replicas": 1, **NAMED}),
+    (td.frames, {"scene": PAPER, "times": [1], "number": 1, **NAMED}),
     (td.diffusion, {"scene": RING, "times": [1], "replicas": 1, **NAMED}),
     (td.plot, {"result": PAPER, "path": None}),
 ]

@@ -49,6 +49,7 @@ CALLS = {
     "load": lambda s: td.load(EXPECTED)["errata"],
     "load_result": lambda s: td.load_result(_saved(td.sample(s, 1))).more(2),
     "mean_times": lambda s: td.mean_times(s),
+    "frames": lambda s: td.frames(s, [0.1], 8)["x"],
     "observe": lambda s: td.observe(s, lambda _, now: now["u1"] ** 2, [0.1], 8).frame(),
     "plot": lambda s: td.plot(td.trajectory(s, 2), _file("pdf")),
     "pressure": lambda s: td.pressure(s),

@@ -4,6 +4,7 @@ Without these tests a file could lose a number, more work could repeat or skip s
 wrong.
 """
 
+import itertools
 import json
 import math
 import re
@@ -422,6 +423,19 @@ def test_what_is_observed_is_a_trajectory(scene, replicas):
             assert np.allclose([*state], [*now], rtol=0, atol=1e-5)
             gone += abs(now["x1"]) > scene.width / 2
     assert bool(gone) == bool(scene.periodic)
+    # Frames are the same states, and starts from which the same motion goes on.
+    frames = td.frames(scene, times, replicas)
+    for name, k in itertools.product(kept[0][0].dtype.names, (0, 1)):
+        due = frames[name[0]][:, k, int(name[1:]) - 1]
+        assert np.array_equal(kept[k][1][name], due)
+    kept.clear()
+    for given in (frames[:, 0], frames[:, 0].view((float, len(frames.dtype.names)))):
+        found = td.observe(scene, seen, [times[1] - times[0]], starts=given)
+        assert found.replicas == replicas
+        assert found.note.endswith("errors hold if they are independent")
+        for name in kept[-1][1].dtype.names:
+            due = frames[name[0]][:, 1, int(name[1:]) - 1]
+            np.testing.assert_allclose(kept[-1][1][name], due, rtol=0, atol=1e-5)
 
 
 def test_blocks_of_replicas_have_different_kicks():

@@ -16,7 +16,7 @@ from .measure.pressure import free_energy as free_energy, pressure as pressure
 # The motion: one trajectory, averages over many, their initial states.
 from .measure.trajectory import Trajectory as Trajectory, trajectory as trajectory
 from .measure.observe import Observed as Observed, observe as observe, starts as starts
-from .measure.observe import diffusion as diffusion
+from .measure.observe import diffusion as diffusion, frames as frames
 
 # Counts with errors: dynamics, Monte Carlo, hops; over radii; their cost.
 from .measure.measurements import Measurement as Measurement, Measurements as Measurements

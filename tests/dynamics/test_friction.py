@@ -107,7 +107,7 @@ def test_states_of_two_blocks_are_kicked_as_those_of_one_that_is_twice_as_large(
     scene = Scene(1.5, 1.0, 0.1, discs=discs, friction=2.0)
     new = find_engine(scene).new_kicks
     whole = open_block_kicks(new(scene, 8), 3).waits
-    assert np.array_equal(open_block_kicks(new(scene, 4), 3, block=1).waits, whole[4:])
+    assert np.array_equal(open_block_kicks(new(scene, 4), 3, first=4).waits, whole[4:])
     assert len({*whole}) == 8
 
 

@@ -70,6 +70,14 @@ def test_ase_reads_it(path, tmp_path):
     assert [frame.info["Time"] for frame in frames] == [*path["time"]]
     assert first.get_kinetic_energy() == pytest.approx(0.5) or scene.field
     assert second.info["Time"] == 2.5
+    # A path goes on from the last frame, or from the same arrays with any energy.
+    arrays = (
+        second.positions[:, :axes],
+        second.get_velocities()[:, :axes] * (3 - 2 * bool(scene.field)),
+    )
+    for start in (tmp_path / "a.xyz", arrays):
+        (state,) = td.trajectory(scene, 1, start=start).states_at(0.0)
+        assert np.allclose([*state], [*path.states_at(2.5)[0]], atol=1e-15)
 
 
 def test_a_trajectory_is_a_table_as_before(path):

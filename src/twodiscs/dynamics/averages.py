@@ -3,27 +3,36 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import islice
+from itertools import islice, repeat
 
 import numpy as np
 
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import open_block_kicks
-from twodiscs.dynamics.paths import MOST_PATH_EVENTS
+from twodiscs.dynamics.paths import MOST_PATH_EVENTS, move_into_cell
 from twodiscs.model.checks import InputError, check_numbers, has_units
 from twodiscs.model.formats import format_number, quote
 from twodiscs.model.many_geometry import LARGE
 from twodiscs.model.scene import Scene
 from twodiscs.points.base import reached
-from twodiscs.sampling.initial_states import components, make_records, states
+from twodiscs.sampling.initial_states import (
+    STATE_ROWS,
+    components,
+    disc_fields,
+    make_records,
+    states,
+)
 from twodiscs.sampling.rounds import Run, fixed
-from twodiscs.sampling.threads import map_in_threads
+from twodiscs.sampling.threads import draw_in_calls, map_in_threads
 
 #: Replicas with one random stream. ``LARGE`` numbers of discs have the blocks of ``simulate``.
 BLOCK = 4096
 
 #: The most numbers of the states of a block at several times that are in memory together.
 MOST_STATE_NUMBERS = 2**22
+
+#: The most events of all replicas together, as of intervals: hours to days.
+MOST_EVENTS = 1e11
 
 #: Values of a function are smaller, so that their squares can be added.
 LARGEST = 1e140
@@ -140,6 +149,8 @@ class ObserveRun(Run):
     values at the last time before these, None if there is none. ``steps`` are the differences of
     successive times. ``names`` are then the names of the averages.
 
+    ``starts`` are states (components, replicas) in place of those of the invariant measure.
+
     Sums are the number of replicas, the mean and the sum of squared deviations.
     """
 
@@ -150,6 +161,7 @@ class ObserveRun(Run):
     function: Callable | None
     names: tuple = ()
     over_times: Callable | None = None
+    starts: np.ndarray | None = None
 
     def __post_init__(self):
         most, last = MOST_PATH_EVENTS / self._rate, self.times[-1]
@@ -158,6 +170,12 @@ class ObserveRun(Run):
                 f"times must be below {format_number(most, '.3g')}, where "
                 f"{format_number(MOST_PATH_EVENTS, 'g')} events are due, not "
                 f"{format_number(last, 'g')}"
+            )
+        if self.replicas * last * self._rate > MOST_EVENTS:
+            raise InputError(
+                f"replicas must be at most {int(MOST_EVENTS / last / self._rate)} for times up to "
+                f"{format_number(last, 'g')}, with {format_number(MOST_EVENTS, 'g')} events due in "
+                f"all, not {self.replicas}"
             )
 
     @property
@@ -182,18 +200,55 @@ class ObserveRun(Run):
         ratio = find_engine(self.scene).cost_ratio(self.scene)
         return {"all": fixed(self._work, blocks, max(events, 1.0), ratio, join)}
 
-    def _snapshots(self, block):
-        """Yield (states at time 0, states at a time) of a block, for all times."""
-        scene, engine, each = self.scene, find_engine(self.scene), self._each
-        filled, wraps = states(scene, each, self.seed, block), engine.new_wraps(scene, each)
-        kicks = open_block_kicks(engine.new_kicks(scene, each), self.seed, block)
-        start = make_records(scene, filled)
-        for step in np.diff(self.times, prepend=0.0):
+    def _number(self, block):
+        """The number of replicas of a block: all of a whole one, or the rest of given starts."""
+        left = self.replicas - block * self._each
+        return self._each if self.starts is None else min(self._each, left)
+
+    def _states(self, block, number):
+        """Yield the first states of a block at time 0 and at all times, (components, number)."""
+        scene, engine, first = self.scene, find_engine(self.scene), block * self._each
+        names, shifts = components(scene), {}
+        if self.starts is None:
+            filled = states(scene, number, self.seed, block)
+        else:
+            filled = np.zeros((max(STATE_ROWS, len(names)), number))
+            filled[: len(names)] = self.starts[:, first : first + number]
+            shifts = move_into_cell(scene, dict(zip(names, filled, strict=False)))
+        wraps = engine.new_wraps(scene, number)
+        kicks = open_block_kicks(engine.new_kicks(scene, number), self.seed, first)
+        for step in (0.0, *np.diff(self.times, prepend=0.0)):
             if step:
                 engine.advance_all(scene, filled, wraps, step, kicks)
-            now = make_records(scene, filled)
-            engine.unwrap(scene, now, wraps)
-            yield start, now
+            now = filled[: len(names)].copy()
+            rows = dict(zip(names, now, strict=True))
+            engine.unwrap(scene, rows, wraps)
+            for name, shift in shifts.items():
+                rows[name] += shift
+            yield now
+
+    def _snapshots(self, block):
+        """Yield (states at time 0, states at a time) of a block, for all times."""
+        every = (make_records(self.scene, now) for now in self._states(block, self._number(block)))
+        start = next(every)
+        yield from zip(repeat(start), every)
+
+    def frames(self, progress=None, cores=1):
+        """Return the states of all replicas at all times, see ``observe.frames``."""
+        names, each = components(self.scene), self._each
+        shape = self.replicas, self.times.size, self.scene.discs
+        found = np.empty(shape, [(letter, float) for letter in disc_fields(self.scene)])
+
+        def fill(block):
+            into = found[block * each : (block + 1) * each]
+            for k, now in enumerate(islice(self._states(block, len(into)), 1, None)):
+                for name, row in zip(names, now, strict=True):
+                    into[name[0]][:, k, int(name[1:]) - 1] = row
+            return block * each + len(into)
+
+        calls = ((block,) for block in range(-(-self.replicas // each)))
+        draw_in_calls(fill, calls, self.replicas, progress, cores)
+        return found
 
     def _work(self, first, stop, cores, waiting):
         """Yield the sums of the blocks ``first`` … ``stop`` − 1, see ``SequentialRun``.
@@ -217,7 +272,7 @@ class ObserveRun(Run):
                     if at + together >= self.times.size:
                         moments = zip(*parts.pop(block), strict=True)
                         _, mean, square = map(np.concatenate, moments)
-                        yield self._each, mean, square
+                        yield self._number(block), mean, square
 
     def _moments(self, pairs, before, at, block):
         """Return the last values of a block, and means and Σ squared deviations of some times.
@@ -253,7 +308,8 @@ class ObserveRun(Run):
         names = self.names or next(iter(self._forms))[0]
         check_names(names)
         shape = self.times.shape + ((len(names),) if names else mean.shape[1:])
-        is_right = number == blocks * self._each and mean.shape == square.shape == shape
+        replicas = blocks * self._each if self.starts is None else self.replicas
+        is_right = number == replicas and mean.shape == square.shape == shape
         if not is_right or not np.all(square >= 0):
             raise InputError("sums must be those of all replicas, times and names")
         return {

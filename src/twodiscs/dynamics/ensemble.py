@@ -116,8 +116,8 @@ def open_all(seed, first, kicks):
         open_kicks(i, seed, first + i, kicks)
 
 
-def open_block_kicks(kicks, seed, block=0):
-    """Return ``kicks`` (None stays None) with those of a ``block`` of as many states begun."""
+def open_block_kicks(kicks, seed, first=0):
+    """Return ``kicks`` (None stays None), begun for the replicas from the ``first`` on."""
     if kicks is not None:
-        open_all(np.uint64(seed), block * kicks.waits.size, kicks)
+        open_all(np.uint64(seed), first, kicks)
     return kicks

@@ -44,44 +44,71 @@ def check_start(scene, start):
     image serves, and it stays. Raises ``InputError`` for anything else, for discs that overlap or
     lie outside, and for another energy than 1/2.
     """
-    state = dict(zip(components(scene), given_state(scene, start), strict=True))
+    state = given_state(scene, start)
+    check_states(scene, np.array(state)[:, None])
+    return tuple(state)
 
-    def values(name):
-        return np.array([state[f"{name}{disc}"] for disc in range(1, scene.discs + 1)])
 
-    radii, masses, distances = np.array(scene.radii), np.array(scene.masses), 0.0
+def check_states(scene, states, name="start"):
+    """Raise ``InputError`` unless all ``states`` (components, number) are states of the scene."""
+    rows = dict(zip(components(scene), states, strict=True))
+
+    def values(letter):
+        return np.array([rows[f"{letter}{disc}"] for disc in range(1, scene.discs + 1)])
+
+    radii, masses, centres = np.array(scene.radii), np.array(scene.masses), {}
     for axis in scene.axes:
-        side, centres = scene.side(axis), values(axis)
-        apart = centres[:, None] - centres
-        if axis in scene.periodic:
-            apart -= side * np.round(apart / side)
-        distances = np.hypot(distances, apart)
+        side, centres[axis] = scene.side(axis), values(axis)
         most = side / 2 - radii
-        for disc in np.flatnonzero(np.abs(centres) > most + ROUNDING_OF_STATES * side):
-            if axis in scene.walled:
-                raise InputError(
-                    f"start must have disc {disc + 1} inside the box, with {axis}{disc + 1} "
-                    f"between {-float(most[disc])!r} and {float(most[disc])!r}, not "
-                    f"{float(centres[disc])!r}"
-                )
-    distance, contact = distances[np.triu_indices(scene.discs, 1)].min(), scene.contact_distance
-    if distance < contact * (1 - ROUNDING_OF_STATES):
+        outside = np.abs(centres[axis]) > most[:, None] + ROUNDING_OF_STATES * side
+        if axis in scene.walled and outside.any():
+            disc, state = np.argwhere(outside)[0]
+            raise InputError(
+                f"{name} must have disc {disc + 1} inside the box, with {axis}{disc + 1} between "
+                f"{-float(most[disc])!r} and {float(most[disc])!r}, not "
+                f"{float(centres[axis][disc, state])!r}"
+            )
+    least, contact = math.inf, scene.contact_distance
+    for disc in range(1, scene.discs):
+        distances = 0.0
+        for axis in scene.axes:
+            side, apart = scene.side(axis), centres[axis][disc] - centres[axis][:disc]
+            if axis in scene.periodic:
+                apart -= side * np.round(apart / side)
+            distances = np.hypot(distances, apart)
+        least = min(least, float(distances.min()))
+    if least < contact * (1 - ROUNDING_OF_STATES):
         raise InputError(
-            f"start must have the discs apart, with {contact!r} or more between their centres, not "
-            f"{float(distance)!r}"
+            f"{name} must have the discs apart, with {contact!r} or more between their centres, "
+            f"not {least!r}"
         )
-    energy = masses @ sum(values(name) ** 2 for name in "uvw"[: len(scene.axes)]) / 2
+    energies = masses @ sum(values(letter) ** 2 for letter in "uvw"[: len(scene.axes)]) / 2
     if scene.moment_of_inertia is not None:
-        energy += scene.moment_of_inertia * (masses @ values("s") ** 2) / 2
+        energies += scene.moment_of_inertia * (masses @ values("s") ** 2) / 2
     if scene.field:
-        energy += scene.field * (masses @ (values("y") + scene.height / 2 - radii))
-    if abs(energy - ENERGY) > ROUNDING_OF_STATES:
+        energies += scene.field * (masses @ (values("y") + scene.height / 2 - radii[:, None]))
+    wrong = np.abs(energies - ENERGY) > ROUNDING_OF_STATES
+    if wrong.any():
         zero = "; in a field the potential energy of a disc on the floor is 0"
         raise InputError(
-            f"start must have a total energy of {ENERGY}, not {float(energy)!r}"
+            f"{name} must have a total energy of {ENERGY}, not {float(energies[wrong][0])!r}"
             f"{zero if scene.field else ''}"
         )
-    return tuple(state.values())
+
+
+def move_into_cell(scene, columns):
+    """Move centres, {name: array}, along periodic axes to images; return {name: how far}.
+
+    Kernels take N discs in the cell, and of two discs the image of disc 2 nearest to disc 1.
+    """
+    shifts = {}
+    for axis in scene.periodic:
+        near = columns[f"{axis}1"].copy() if scene.discs == 2 else 0.0
+        for name in [f"{axis}{disc}" for disc in range(1, scene.discs + 1)]:
+            side = scene.side(axis)
+            shifts[name] = side * np.round((columns[name] - near) / side)
+            columns[name] -= shifts[name]
+    return shifts
 
 
 def require_bounces(scene, rows):

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +16,13 @@ from twodiscs.model.checks import InputError, check_count
 from twodiscs.model.formats import format_number, quote, texts_with_error
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.model.seeds import job_seed
-from twodiscs.sampling.initial_states import MOST_NUMBERS, components, make_records, states
+from twodiscs.sampling.initial_states import (
+    MOST_NUMBERS,
+    components,
+    given_states,
+    make_records,
+    states,
+)
 from twodiscs.sampling.rounds import FinishedComponents
 
 if TYPE_CHECKING:
@@ -73,6 +80,63 @@ def starts(
 
     with progress_bar(progress, f"starts r = {scene.radius:g}") as progress:
         return make_records(scene, states(scene, number, seed, progress=progress))
+
+
+@checked_call
+def frames(
+    scene: Scene,
+    times: float | Iterable[float],
+    number: float,
+    *,
+    seed: int = 1,
+    name: str | None = None,
+    cores: int = 1,
+    progress: bool | None = None,
+) -> np.ndarray:
+    """Return the states of many replicas at given times: an array with named fields.
+
+    The replicas are those of ``observe`` with the same seed: independent trajectories that start in
+    the invariant measure.
+
+    Parameters
+    ----------
+    scene : Scene
+        The box, the discs and their effects.
+    times : float or iterable of float
+        Ascending, from 0 on, in time.
+    number : float
+        The number of replicas, an integer from 1 on. All states together have at most 1.2e8
+        numbers.
+    seed, name, cores, progress : optional
+        See ``help(twodiscs)``.
+
+    Returns
+    -------
+    structured array, shape (number, times, discs)
+        Fields x and y are the centres, from the centre of the box and beyond the cell on periodic
+        axes; u and v are the velocities. Balls also have z and w, and rough discs s, the speed of
+        the surface. ``frames(…).view((float, 4))`` is a plain array (number, times, discs, 4).
+        ``numpy.save`` writes it.
+
+    Raises
+    ------
+    InputError
+        For a number out of range, and for times of more than 10⁷ events and kicks.
+
+    Examples
+    --------
+    >>> found = td.frames(scene, [0, 1, 2], 100, seed=1)
+    >>> found.shape, found.dtype.names
+    ((100, 3, 2), ('x', 'y', 'u', 'v'))
+    >>> found["x"].mean(axis=(0, 2)).shape  # an average at each time
+    (3,)
+    """
+    seed, times = job_seed(check_scene(scene), "observe", seed, name), check_times(times)
+    most = max(1, MOST_NUMBERS // (len(components(scene)) * times.size))
+    run = ObserveRun(scene, seed, times, check_count("number", number, most=most), None)
+
+    with progress_bar(progress, f"frames r = {scene.radius:g}") as progress:
+        return run.frames(progress, cores)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -180,8 +244,9 @@ def observe(
     scene: Scene,
     function: Function | Mapping[str, Function],
     times: float | Iterable[float],
-    replicas: float = 2**16,
+    replicas: float | None = None,
     *,
+    starts: np.ndarray | Sequence[np.ndarray] | str | PathLike[str] | None = None,
     seed: int = 1,
     name: str | None = None,
     cores: int = 1,
@@ -200,9 +265,16 @@ def observe(
         function} is the same. On periodic axes positions go on beyond the cell.
     times : float or iterable of float
         Ascending, from 0 on, in time.
-    replicas : float, default 2¹⁶
-        Trajectories, an integer from 1 to 1e9. It is rounded up to whole blocks: of 4096, and
-        of fewer for 20 discs or more. ``note`` of the result has the number that was followed.
+    replicas : float, optional
+        Trajectories, an integer from 1 to 1e9 and with at most 1e11 events and kicks in all; 2¹⁶ if
+        left out. It is rounded up to whole blocks: of 4096, and of fewer for 20 discs or more.
+        ``note`` of the result has the number that was followed.
+    starts : array, pair of arrays or path-like, optional
+        Initial states in place of the invariant measure, two or more: in the form of ``starts``,
+        of ``frames`` at one time, as an array (replicas, discs, 4) or as ``start`` of
+        ``trajectory``, with all frames of a file. All of them are followed, and ``replicas`` must
+        be left out. The error holds if the states are independent, not for origins along one path
+        that remember each other.
     seed, name, cores, progress : optional
         See ``help(twodiscs)``.
 
@@ -216,7 +288,8 @@ def observe(
     Raises
     ------
     InputError
-        For times of more than 10⁷ events and kicks, and for a function that returns anything else.
+        For times of more than 10⁷ events and kicks, for a function that returns anything else, and
+        for starts that are no states.
 
     Examples
     --------
@@ -227,13 +300,27 @@ def observe(
     return make_observed(**locals())
 
 
-def make_observed(scene, function, **asked):
+def make_observed(scene, function, starts=None, **asked):
     """Return the ``Observed`` of the arguments that are ``asked``, see ``Result``.
 
-    For a result from a file the function is its name, a text.
+    For a result from a file the function is its name, a text, and ``starts`` are true if there
+    were some.
     """
+    own = {"starts": True} if starts is not None else {}
     if isinstance(asked.get("resume_from"), FinishedComponents):
-        return _averages("observe", scene, {"function": function}, asked, None)
+        own["function"] = function
+        return _averages("observe", scene, own, asked, None, starts=starts)
+    if starts is not None and (asked["replicas"] is not None or "resume_from" in asked):
+        raise InputError("replicas must be left out with starts, which are all followed")
+    if starts is not None:
+        from twodiscs.dynamics.paths import check_states
+        from twodiscs.measure.trajectory import from_corner
+
+        starts = given_states(scene, from_corner(check_scene(scene), starts))
+        check_states(scene, starts, "starts")
+        asked["replicas"] = starts.shape[1]
+    elif asked["replicas"] is None:
+        asked["replicas"] = 2**16
     if function is None and "resume_from" in asked:
         raise InputError(
             "function must be given again to go on from a file, which does not hold it: "
@@ -247,18 +334,23 @@ def make_observed(scene, function, **asked):
     def called(start, now):
         return {name: one(start, now) for name, one in functions.items()}
 
-    own, taken = {"function": ", ".join(map(str, functions))}, called if by_name else function
-    return replace(_averages("observe", scene, own, asked, taken), function=function)
+    own["function"], taken = ", ".join(map(str, functions)), called if by_name else function
+    found = _averages("observe", scene, own, asked, taken, starts=starts)
+    return replace(found, function=function)
 
 
-def _averages(kind, scene, own, asked, *given):
+def _averages(kind, scene, own, asked, *given, starts=None):
     """Return the ``Observed`` of a ``kind``, with its ``own`` settings; see ``ObserveRun``."""
     seed = job_seed(check_scene(scene), "observe", asked["seed"], asked["name"])
     times, replicas = check_times(asked["times"]), asked["replicas"]
     replicas = check_count("replicas", replicas, most=10**9)
-    found = work(kind, ObserveRun(scene, seed, times, replicas, *given), asked)
+    if starts is not None and replicas < 2:
+        raise InputError("starts must be two states or more, for an error, not 1")
+    found = work(kind, ObserveRun(scene, seed, times, replicas, *given, starts=starts), asked)
     settings = own | {"times": times.tolist(), "replicas": replicas, "seed": int(asked["seed"])}
     settings["name"], note = asked["name"], note_of_number("replicas", replicas, found["replicas"])
+    if starts is not None:
+        note = f"{replicas} given starts: errors hold if they are independent"
     return Observed(kind, scene, times, **found, settings=settings, note=note)
 
 

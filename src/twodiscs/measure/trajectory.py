@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import shlex
 from collections.abc import Iterable, Sequence
 from os import PathLike
 
@@ -18,7 +19,8 @@ from twodiscs.model.checks import InputError, check_numbers, make_list, writing_
 from twodiscs.model.formats import quote
 from twodiscs.model.scene import Scene
 from twodiscs.model.seeds import job_seed
-from twodiscs.sampling.initial_states import components
+from twodiscs.model.two_geometry import ENERGY
+from twodiscs.sampling.initial_states import components, disc_fields
 
 
 class Trajectory(pd.DataFrame):
@@ -198,30 +200,30 @@ class Trajectory(pd.DataFrame):
         >>> len(open("two.xyz").readlines())  # three frames, each of two lines and two discs
         12
         """
-        scene = self.scene
-        at = self["time"].to_numpy() if times is None else np.atleast_1d(make_list(times))
+        scene, times = self.scene, None if times is None else make_list(times)
         centres, velocities = self.positions(times), self.velocities(times)
-        discs, radii, masses = scene.discs, scene.radii, scene.masses
-        sides = [scene.side(axis) for axis in scene.axes]
+        at = self["time"].to_numpy(float) if times is None else np.atleast_1d(times)
+        rough, sides = scene.moment_of_inertia is not None, list(map(scene.side, scene.axes))
+        spins = self._along_axes(times, "s") if rough else np.empty((*centres.shape[:2], 0))
         if len(sides) == 2:
-            sides.append(2 * max(radii))
+            sides.append(2 * max(scene.radii))
             flat = (0, 0), (0, 0), (0, 1)
             centres, velocities = np.pad(centres, flat), np.pad(velocities, flat)
-        centres = centres + np.array(sides) / 2
+        masses, radii = (np.array(column)[:, None] for column in (scene.masses, scene.radii))
         lattice = " ".join(repr(float(side)) for side in np.diag(sides).flat)
         periodic = " ".join("T" if axis in scene.periodic else "F" for axis in "xyz")
-        properties = "species:S:1:pos:R:3:masses:R:1:momenta:R:3:radius:R:1:id:I:1"
+        properties = "species:S:1:pos:R:3:masses:R:1:momenta:R:3:radius:R:1"
+        properties += f"{':spin:R:1' if rough else ''}:id:I:1"
         opened = gzip.open if str(path).lower().endswith(".gz") else open
         with writing_to(path) as new, opened(new, "wt", encoding="utf-8", newline="\n") as file:
-            for time, places, speeds in zip(at, centres, velocities, strict=True):
+            for time, places, speeds, turns in zip(at, centres, velocities, spins, strict=True):
                 file.write(
-                    f'{discs}\nLattice="{lattice}" Properties={properties} pbc="{periodic}" '
-                    f"Time={float(time)!r}\n"
+                    f'{scene.discs}\nLattice="{lattice}" Properties={properties} '
+                    f'pbc="{periodic}" Time={float(time)!r}\n'
                 )
-                for disc in range(discs):
-                    numbers = (*places[disc], masses[disc], *(masses[disc] * speeds[disc]))
-                    texts = (repr(float(number)) for number in (*numbers, radii[disc]))
-                    file.write(f"X {' '.join(texts)} {disc + 1}\n")
+                columns = places + np.array(sides) / 2, masses, masses * speeds, radii, turns
+                for disc, numbers in enumerate(np.hstack(columns).tolist(), 1):
+                    file.write(f"X {' '.join(map(repr, numbers))} {disc}\n")
 
 
 #: The largest distance of a row from the end of the free flight that begins at the row before it,
@@ -279,7 +281,7 @@ def trajectory(
     duration: float | None = None,
     *,
     seed: int = 1,
-    start: Sequence[float] | np.ndarray | np.void | None = None,
+    start: Sequence[float | np.ndarray] | np.ndarray | np.void | str | PathLike[str] | None = None,
     hops: bool = True,
     name: str | None = None,
     progress: bool | None = None,
@@ -301,10 +303,14 @@ def trajectory(
     seed : int, default 1
         Seed of the random numbers, from 0 to 2⁶³ − 1. The initial state is the first one of
         ``starts`` with this seed.
-    start : sequence of float or state, optional
-        An initial state in the form of ``starts``, or its numbers, in this order or by their names
-        (a dict, a ``Series``, a namedtuple): discs inside the box, without overlap, with the energy
-        1/2.
+    start : state, sequence of float, pair of arrays or path-like, optional
+        An initial state in the form of ``starts`` or of ``frames``, or its numbers, in this order
+        or by their names (a dict, a ``Series``, a namedtuple): discs inside the box, without
+        overlap, with the energy 1/2. Its centres are from the centre of the box. Those of a pair
+        (centres, velocities), each (discs, axes), and of an extended XYZ file, whose last frame
+        counts, are from the corner. Their velocities are scaled to the energy 1/2, which only
+        changes the unit of time; in a field they must have it, if the potential energy of a disc on
+        the floor is 0.
     hops : bool, default True
         Whether hops are rows. For many discs most rows are hops, which change no state: a table
         without them is shorter and ``states_at`` gives the same states.
@@ -336,8 +342,99 @@ def trajectory(
         raise InputError(f"hops must be True or False, not {quote(hops)}")
     seed = job_seed(scene, "trajectory", seed, name)
     with progress_bar(progress, f"trajectory r = {scene.radius:g}") as progress:
+        if start is not None:
+            start = from_corner(scene, start)
+            start = start[-1] if getattr(start, "ndim", 0) == 3 else start
         rows = follow_trajectory(scene, seed, start, duration, progress, hops)
         return trajectory_table(scene, rows)
+
+
+def from_corner(scene, given):
+    """Return states that ``start`` and ``starts`` take, which are from the centre of the box.
+
+    The path of an extended XYZ file and a pair (centres, velocities) are from the corner. Without a
+    field their velocities get the energy 1/2, which only changes the unit of time. Anything else is
+    returned as it is.
+    """
+    discs, axes = scene.discs, len(scene.axes)
+    if isinstance(given, str | PathLike):
+        parts = read_xyz(scene, given)
+    else:
+        try:
+            shapes = {np.shape(part) for part in given} if np.size(given) else set()
+        except (TypeError, ValueError):
+            return given
+        sizes = {shape[-2:] for shape in shapes}
+        if len(given) != 2 or not sizes or not sizes <= {(discs, axes), (discs, 3)}:
+            return given
+        parts = given
+    sides = np.array([scene.side(axis) for axis in scene.axes])
+    centres, velocities = (np.asarray(part, float)[..., :axes] for part in parts[:2])
+    moving = [*np.moveaxis(velocities, -1, 0), *parts[2:]]
+    weights = [1.0] * axes + [scene.moment_of_inertia] * len(parts[2:])
+    if not scene.field:
+        squares = sum(weight * part**2 for weight, part in zip(weights, moving, strict=True))
+        twice = (squares @ np.array(scene.masses))[..., None]
+        moving = [part * np.sqrt(2 * ENERGY / np.where(twice, twice, 1.0)) for part in moving]
+    names = ["x", "y", "z"][:axes] + ["u", "v", "w"][:axes] + ["s"] * len(parts[2:])
+    known = dict(zip(names, [*np.moveaxis(centres - sides / 2, -1, 0), *moving], strict=True))
+    if missing := [field for field in disc_fields(scene) if field not in known]:
+        raise InputError(f"start must have the spins of rough discs, {missing[0]} of each disc")
+    return np.stack([known[field] for field in disc_fields(scene)], axis=-1)
+
+
+def read_xyz(scene, path):
+    """Return centres and velocities (frames, discs, 3) in an extended XYZ file, maybe spins.
+
+    ASE reads these files, too, but takes a second to import, and only the columns that it knows.
+    """
+    frames, opened = [], gzip.open if str(path).lower().endswith(".gz") else open
+    try:
+        with opened(path, "rt", encoding="utf-8") as file:
+            while line := file.readline().strip():
+                about = dict(part.split("=", 1) for part in shlex.split(file.readline()))
+                kinds, columns, at = about["Properties"].split(":"), {}, 0
+                lines = [file.readline().split() for _ in range(int(line))]
+                for name, kind, width in zip(kinds[::3], kinds[1::3], kinds[2::3], strict=True):
+                    if kind in "RI":
+                        columns[name] = np.array(
+                            [row[at : at + int(width)] for row in lines], float
+                        )
+                    at += int(width)
+                frames.append(_frame_of(scene, about, columns))
+    except OSError as error:
+        why = error.strerror or error
+        raise InputError(f"start must be a file to read, not {str(path)!r}: {why}") from None
+    except (IndexError, KeyError, EOFError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        frames = []
+    if not frames:
+        raise InputError(
+            "start must be an extended XYZ file with the columns pos and momenta (or velo), not "
+            f"{str(path)!r}"
+        )
+    return [np.array(part) for part in zip(*frames, strict=True)]
+
+
+def _frame_of(scene, about, columns):
+    """Return centres, velocities and maybe spins of a frame, if its box and its discs are right."""
+    sides = [scene.side(axis) for axis in scene.axes]
+    lattice = np.array(about["Lattice"].split(), float)[::4][: len(sides)]
+    radii = columns.get("radius", np.array(scene.radii))
+    is_right = len(columns["pos"]) == scene.discs and np.allclose(lattice, sides, 1e-9, 0.0)
+    if not is_right or not np.allclose(radii.ravel(), scene.radii, 1e-9, 0.0):
+        raise InputError(
+            f"start must have the box and the discs of the scene, not {len(columns['pos'])} discs "
+            f"of the radii {quote(radii.ravel().tolist())} in a box of {lattice.tolist()}"
+        )
+    if "momenta" in columns:
+        masses = columns.get("masses", np.array(scene.masses)[:, None])
+        columns["velo"] = columns["momenta"] / masses
+    order = np.argsort(columns["id"].ravel()) if "id" in columns else slice(None)
+    names = ["pos", "velo", "spin"] if scene.moment_of_inertia is not None else ["pos", "velo"]
+    centres, velocities, *spins = (columns[name][order] for name in names)
+    return centres, velocities, *(spin[:, 0] for spin in spins)
 
 
 def trajectory_table(scene, rows):

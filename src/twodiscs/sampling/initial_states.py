@@ -80,6 +80,11 @@ def components(scene):
     return ("x1", "y1", "x2", "y2", "u1", "v1", "u2", "v2", *balls, *rough)
 
 
+def disc_fields(scene):
+    """Return the letters of a disc's components: x, y, u, v, of balls z, w, of rough discs s."""
+    return tuple(dict.fromkeys(name[0] for name in components(scene)))
+
+
 def labels_of(start):
     """Return the names in a record, a namedtuple, a dict or a ``Series``, [] for anything else."""
     names = getattr(getattr(start, "dtype", None), "names", None) or getattr(start, "_fields", None)
@@ -89,9 +94,13 @@ def labels_of(start):
 def given_state(scene, start):
     """Return a ``start`` that a user gives as floats, one for each of the ``components``.
 
-    If its numbers have names, their order does not matter.
+    If its numbers have names, their order does not matter. An array with an axis of the discs is
+    one of ``given_states``.
     """
     names, labels = components(scene), labels_of(start)
+    discs, fields = scene.discs, disc_fields(scene)
+    if getattr(start, "shape", ()) == (discs, len(fields)) or {*labels} == {*fields}:
+        return given_states(scene, np.asarray(start)[None], "start")[:, 0].tolist()
     try:
         values = start.values() if isinstance(start, Mapping) else start
         # NumPy warns of a masked number.
@@ -109,6 +118,33 @@ def given_state(scene, start):
     elif hasattr(start, "iloc"):
         hint = "; states_at(times)[0] is a state of a trajectory"
     raise InputError(f"start must be the numbers {', '.join(names)}, not {quote(start)}{hint}")
+
+
+def given_states(scene, given, name="starts"):
+    """Return states that a user gives as an array (components, number).
+
+    They have the form of ``starts`` (number,), or the form of ``frames`` at one time, (number,
+    discs) with named fields or (number, discs, fields) without.
+    """
+    names, fields = components(scene), disc_fields(scene)
+    labels = getattr(getattr(given, "dtype", None), "names", None) or ()
+    try:
+        if {*labels} == {*names}:
+            found = np.array([given[name] for name in names])
+        else:
+            columns = [given[field] for field in fields] if labels else np.moveaxis(given, -1, 0)
+            by_field = np.asarray(columns, float)  # field, state, disc
+            rows = {name: by_field[fields.index(name[0]), :, int(name[1:]) - 1] for name in names}
+            is_right = by_field.shape[::2] == (len(fields), scene.discs)
+            found = np.array([*rows.values()] if is_right else [])
+        if found.ndim == 2 and np.isfinite(found).all():
+            return found
+    except (IndexError, KeyError, TypeError, ValueError):
+        pass
+    raise InputError(
+        f"{name} must be states as starts or frames returns them, or an array of shape (number, "
+        f"{scene.discs}, {len(fields)}) of {', '.join(fields)}, not {quote(given)}"
+    )
 
 
 class StartSampler(NamedTuple):

@@ -67,9 +67,9 @@ def map_in_threads(work, arguments, cores=1, waiting=None):
             calls.put(None)
 
 
-def draw_in_calls(work, calls, number, progress):
+def draw_in_calls(work, calls, number, progress, cores=1):
     """Do ``work`` in ``calls``; ``progress``, if given, gets what each returns, and ``number``."""
-    for done in map_in_threads(work, calls, waiting=lambda: progress and progress(None, number)):
+    for done in map_in_threads(work, calls, cores, lambda: progress and progress(None, number)):
         if progress is not None:
             progress(done, number)
 
