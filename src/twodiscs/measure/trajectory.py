@@ -174,7 +174,7 @@ class Trajectory(pd.DataFrame):
     ) -> None:
         """Write the trajectory as an extended XYZ file, which ASE and OVITO read.
 
-        MDAnalysis reads the centres only: give it the box, ``universe.dimensions``.
+        MDAnalysis reads the centres only: give it the box and the step of time, ``dt``.
 
         A frame has the time, the box as its lattice and, for each disc, the species X, its centre,
         mass, momentum, radius and number. Coordinates begin at a corner of the box. Discs in the
