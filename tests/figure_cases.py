@@ -42,10 +42,7 @@ PAPER = BOXES["paper"]
 
 #: With effects, as many as a figure has to name with three digits each, and with many discs.
 EFFECTS = {"radius_ratio": 0.625, "mass_ratio": 0.125, "moment_of_inertia": 0.375}
-OTHERS = {
-    "effects": Box(1.55, 1.05, periodic="x", **EFFECTS),
-    "five": Box(1.5, 1.0, discs=5),
-}
+OTHERS = {"effects": Box(1.55, 1.05, periodic="x", **EFFECTS), "five": Box(1.5, 1.0, discs=5)}
 
 
 def draw(name, box, tables):

@@ -13,22 +13,11 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from twodiscs.dynamics.law import (
-    WALL_X1,
-    Law,
-    after_event,
-    contact_quotient,
-    crosses,
-    crossing_time,
-    divided,
-    next_event,
-    two_disc_law,
-    wall_quotient,
-)
+from twodiscs.dynamics import law as event_law
 from twodiscs.model.scene import Scene
 
 #: Python runs these two, and their inner functions are compiled.
-next_event, after_event = next_event.py_func, after_event.py_func
+next_event, after_event = event_law.next_event.py_func, event_law.after_event.py_func
 
 EPS = 2.0**-52
 HALF_X, HALF_Y = 0.55, 0.3
@@ -59,7 +48,7 @@ def exact_contact(x, v, sigma):
 
 
 def contact_time(x, v, sigma):
-    gap, speed, approach = contact_quotient(*[*x, None][:3], *[*v, None][:3], sigma)
+    gap, speed, approach = event_law.contact_quotient(*[*x, None][:3], *[*v, None][:3], sigma)
     return max(gap / speed, 0.0) if approach and speed > 0 else None
 
 
@@ -127,7 +116,7 @@ def test_grazing_within_some_roundings(direction, room, ulps, speed):
 @settings(max_examples=400, deadline=None, derandomize=True)
 def test_wall_time(limit, place, velocity):
     position = limit * place
-    gap, speed = wall_quotient(position, velocity, limit)
+    gap, speed = event_law.wall_quotient(position, velocity, limit)
     assert gap >= 0
     assert speed == abs(velocity)
     if velocity != 0:
@@ -138,7 +127,7 @@ def test_wall_time(limit, place, velocity):
 
 
 def step(state, remaining=math.inf, half_x=HALF_X, half_y=HALF_Y, sigma=SIGMA):
-    law = Law(half_x, half_y, sigma)
+    law = event_law.Law(half_x, half_y, sigma)
     time, code = next_event(state, remaining, law)
     after = after_event(state, time, code, law)
     assert math.isfinite(time)
@@ -153,7 +142,7 @@ def test_a_disc_put_behind_its_wall_by_a_rounding_bounces_at_once(beyond):
     for _ in range(abs(beyond)):
         x = math.nextafter(x, math.inf if beyond > 0 else -math.inf)
     time, code, after = step((x, 0.2, -HALF_X, -HALF_Y, 0.5, 0.0, 0.0, 0.5))
-    assert code == WALL_X1
+    assert code == event_law.WALL_X1
     assert time <= 8 * EPS
     assert after[0] == HALF_X
     assert after[4] == -0.5
@@ -181,21 +170,21 @@ def test_grazing_contact_never_repeats_for_ever(seed, approach):
 
 
 def test_hops_are_counted_once():
-    assert crosses(0.1, -0.1)
-    assert not crosses(0.1, 0.0)
-    assert not crosses(0.0, 0.1)
-    assert crosses(0.0, -0.1)
-    assert crosses(-0.1, 0.0)
+    assert event_law.crosses(0.1, -0.1)
+    assert not event_law.crosses(0.1, 0.0)
+    assert not event_law.crosses(0.0, 0.1)
+    assert event_law.crosses(0.0, -0.1)
+    assert event_law.crosses(-0.1, 0.0)
     # From + to exactly 0 and on to −, or back to +: one hop, or none.
-    assert sum(map(crosses, (0.1, 0.0), (0.0, -0.1))) == 1
-    assert sum(map(crosses, (0.1, 0.0), (0.0, 0.1))) == 0
-    assert crossing_time(0.3, -0.6) == 0.5
+    assert sum(map(event_law.crosses, (0.1, 0.0), (0.0, -0.1))) == 1
+    assert sum(map(event_law.crosses, (0.1, 0.0), (0.0, 0.1))) == 0
+    assert event_law.crossing_time(0.3, -0.6) == 0.5
 
 
 def test_the_law_of_a_plain_scene_has_no_effects():
     """An effect that is None is not compiled."""
-    law = two_disc_law(Scene(1.5, 1.0, 0.2))
-    assert law == Law(0.55, 0.3, 0.4)
+    law = event_law.two_disc_law(Scene(1.5, 1.0, 0.2))
+    assert law == event_law.Law(0.55, 0.3, 0.4)
     assert all(value is None for value in law[3:])
 
 
@@ -203,7 +192,7 @@ def test_the_law_of_a_plain_scene_has_no_effects():
 @settings(max_examples=200, deadline=None, derandomize=True)
 def test_a_division_has_parts_whose_sum_is_the_whole(whole, first, second):
     """To the last bit; a rounding in the sum would be the same at every event, and add up."""
-    parts = divided(whole, first, second)
+    parts = event_law.divided(whole, first, second)
     assert sum(map(mp, parts)) == mp(whole)
     for part, share in zip(parts, (first, second), strict=True):
         assert part == pytest.approx(whole * share / (first + second), abs=2 * EPS * whole)

@@ -23,14 +23,7 @@ from mpmath import mp, mpf
 from twodiscs.dynamics import law as event_law
 from twodiscs.dynamics import paths
 from twodiscs.dynamics.engine import find_engine
-from twodiscs.dynamics.law import (
-    DISC,
-    END_OF_TIME,
-    after_event,
-    fall_quotient,
-    next_event,
-    two_disc_law,
-)
+from twodiscs.dynamics.law import DISC, END_OF_TIME, fall_quotient, two_disc_law
 from twodiscs.dynamics.two import follow
 from twodiscs.model.events import DECLARED_EVENTS, EVENT_AXES, EVENTS, HOPS, WALLS
 from twodiscs.model.scene import Scene
@@ -51,7 +44,7 @@ def fall(position, velocity, limit, field):
 
 
 #: Python runs these two, and their inner functions are compiled: a whole law takes seconds.
-next_event, after_event = next_event.py_func, after_event.py_func
+next_event, after_event = event_law.next_event.py_func, event_law.after_event.py_func
 
 #: Friction is no part of the law.
 LAWS = [scene for name, scene in SCENES.items() if name != "friction"]

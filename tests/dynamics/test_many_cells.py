@@ -65,10 +65,8 @@ def test_a_few_events_are_the_same_ones(scene):
     """From the same states, before roundings have grown: the same counts, every one of them."""
     replicas, duration = 256, many_rates.expected_duration(scene, 2 * scene.discs)
     hops_y, hops_x = (None if axis in scene.periodic else True for axis in "yx")
-    given, law = (
-        (many_initial_states.states(scene, replicas, 4), np.uint64(4), 0),
-        many.many_disc_law(scene),
-    )
+    given = many_initial_states.states(scene, replicas, 4), np.uint64(4), 0
+    law = many.many_disc_law(scene)
     one = many_cells.count_events(
         *given, duration, duration / 3, law, make_grid(scene), hops_y, hops_x, None
     )

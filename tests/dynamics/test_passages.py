@@ -21,11 +21,7 @@ from twodiscs.dynamics.many import many_hop_clusters as of_many
 from twodiscs.dynamics.transmission import cluster_coefficient, odd_clusters_per_passage, plateau
 from twodiscs.dynamics.two import hop_clusters
 from twodiscs.model.scene import Scene
-from twodiscs_paper.studies.passages.near import (
-    coefficients_at_times,
-    order_correlation,
-    passing_rate,
-)
+from twodiscs_paper.studies.passages import near
 
 HOP = "horizontal_hop"
 TIMES = [0.2, 1.0, 5.0, 10.0]
@@ -42,14 +38,13 @@ def test_correlations_are_those_of_another_program(inertia, periodic):
         assert events > 0
         other, _ = sample(scene, 20_000, 4, times=TIMES)
         means, errors = other.mean(axis=0), other.std(axis=0) / math.sqrt(len(other))
-        for estimate, mean, error in zip(coefficients_at_times(sums), means, errors, strict=True):
+        found = near.coefficients_at_times(sums)
+        for estimate, mean, error in zip(found, means, errors, strict=True):
             five(estimate.value, mean, math.hypot(estimate.stderr, error) + 1e-12)
 
 
-ROUGH, KICKED = (
-    Scene(1.5, 1.0, 0.247, moment_of_inertia=0.1),
-    Scene(1.5, 1.0, NARROW, friction=20.0),
-)
+ROUGH = Scene(1.5, 1.0, 0.247, moment_of_inertia=0.1)
+KICKED = Scene(1.5, 1.0, NARROW, friction=20.0)
 
 
 @pytest.mark.parametrize(
@@ -93,13 +88,11 @@ EFFECTS = {
 def test_both_estimates_of_effects_agree(name):
     """By clusters and by κ(t), where passages are rare; corrected for those in the gap."""
     (hop, scene), gap = EFFECTS[name], 6.0
-    mean = 1 / passing_rate(scene, hop)
+    mean = 1 / near.passing_rate(scene, hop)
     early = cluster_coefficient(hop_clusters.cluster_sizes(scene, hop, gap, 128, 6)[0])
-    (late,) = coefficients_at_times(hop_clusters.hop_sums(scene, hop, [gap], 256, 7)[0])
-    kappa, other = (
-        plateau(early, gap, mean, odd_clusters_per_passage),
-        plateau(late, gap, mean, order_correlation),
-    )
+    (late,) = near.coefficients_at_times(hop_clusters.hop_sums(scene, hop, [gap], 256, 7)[0])
+    kappa = plateau(early, gap, mean, odd_clusters_per_passage)
+    other = plateau(late, gap, mean, near.order_correlation)
     five(kappa.value, other.value, math.hypot(kappa.stderr, other.stderr))
     assert 0 < kappa.value < 1
 
@@ -110,16 +103,16 @@ def test_hops_on_a_ring_have_their_exact_rate(effects):
     scene = Scene(1.5, 1.0, 0.2, periodic="x", **effects)
     sums, _ = hop_clusters.hop_sums(scene, HOP, [20.0], 256, 8, on_surface=False)
     counts = sums[:, 2, 0] / (20.0 * hop_clusters.HOPS_PER_BLOCK)
-    five(counts.mean(), passing_rate(scene, HOP), counts.std(ddof=1) / 16)
+    five(counts.mean(), near.passing_rate(scene, HOP), counts.std(ddof=1) / 16)
 
 
 def test_displacements_grow_as_the_correlations_say():
     """d⟨n²⟩/dt = Γ C(t), between t = 20 and 40 where C has its limit."""
     scene = Scene(1.5, 1.0, 0.22, periodic="x")
     sums, _ = hop_clusters.hop_sums(scene, HOP, [20.0, 40.0], 512, 9, on_surface=False)
-    rate = passing_rate(scene, HOP)
+    rate = near.passing_rate(scene, HOP)
     grown = (sums[:, 1, 1] - sums[:, 1, 0]) / (20.0 * hop_clusters.HOPS_PER_BLOCK * rate)
-    (due,) = coefficients_at_times(hop_clusters.hop_sums(scene, HOP, [30.0], 512, 10)[0])
+    (due,) = near.coefficients_at_times(hop_clusters.hop_sums(scene, HOP, [30.0], 512, 10)[0])
     error = grown.std(ddof=1) / math.sqrt(len(grown))
     five(grown.mean(), due.value, math.hypot(error, due.stderr))
 

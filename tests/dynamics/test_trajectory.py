@@ -99,11 +99,7 @@ def test_an_image_of_disc_2_moves_as_disc_2_does(scene):
 
 @pytest.mark.parametrize(
     "scene",
-    [
-        Scene(1.5, 1.0, 0.2, friction=1.0),
-        MANY,
-        slow(Scene(6.0, 4.0, 0.2, discs=20, friction=0.1)),
-    ],
+    [Scene(1.5, 1.0, 0.2, friction=1.0), MANY, slow(Scene(6.0, 4.0, 0.2, discs=20, friction=0.1))],
     ids=repr,
 )
 def test_rows_do_not_depend_on_how_many_are_made_at_a_time(scene, monkeypatch):

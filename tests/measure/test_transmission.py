@@ -137,10 +137,8 @@ def test_more_discs_have_a_coefficient_too():
     assert found.neighbour_mean == pytest.approx(2 * found.exact_mean, rel=1e-14)
     sizes = np.zeros(hop_clusters.LARGEST_CLUSTER + 1, np.int64)
     sizes[[*found.clusters]] = [*found.clusters.values()]
-    raw, law = (
-        transmission.cluster_coefficient(sizes),
-        partial(transmission.odd_clusters_per_passage, others=1.0),
-    )
+    raw = transmission.cluster_coefficient(sizes)
+    law = partial(transmission.odd_clusters_per_passage, others=1.0)
     assert found.coefficient == transmission.plateau(raw, found.gap, found.neighbour_mean, law)
     # By 2¹⁸ hops, which do not depend on the gap.
     assert abs(found.coefficient.value - 0.838) <= 5 * found.coefficient.stderr < 0.05

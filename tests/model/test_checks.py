@@ -11,14 +11,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from twodiscs.model.checks import (
-    InputError,
-    check_choice,
-    check_fraction,
-    check_integer,
-    check_length,
-    check_number,
-)
+from twodiscs.model import checks
 from twodiscs.model.effects import ABSENT_VALUES, EFFECTS
 from twodiscs.model.scene import Box, Scene
 from twodiscs.model.seeds import stream_seed
@@ -26,13 +19,13 @@ from twodiscs.model.seeds import stream_seed
 
 def test_what_is_allowed_is_returned_in_its_plain_type():
     for found, expected in (
-        (check_number("x", np.float32(0.5), 0.1, 1), 0.5),
-        (check_length("x", Fraction(1, 4)), 0.25),
-        (check_fraction("x", np.float64(0.5)), 0.5),
-        (check_integer("x", np.int64(3)), 3),
-        (check_integer("x", 0, 0), 0),
-        (check_integer("x", 2**63 - 1), 2**63 - 1),
-        (check_choice("x", "a", ("a", "b")), "a"),
+        (checks.check_number("x", np.float32(0.5), 0.1, 1), 0.5),
+        (checks.check_length("x", Fraction(1, 4)), 0.25),
+        (checks.check_fraction("x", np.float64(0.5)), 0.5),
+        (checks.check_integer("x", np.int64(3)), 3),
+        (checks.check_integer("x", 0, 0), 0),
+        (checks.check_integer("x", 2**63 - 1), 2**63 - 1),
+        (checks.check_choice("x", "a", ("a", "b")), "a"),
     ):
         assert found == expected
         assert type(found) is type(expected)
@@ -61,12 +54,12 @@ def test_odd_values_are_named_in_a_short_sentence(value):
         *(lambda name=name: Box(1.5, 1.0, **{name: value}) for name in ABSENT_VALUES),
         *(lambda name=name: Scene(1.5, 1.0, 0.2, **{name: value}) for name in ABSENT_VALUES),
         lambda: box.scene(0.2).is_possible(value),
-        lambda: check_fraction("x", value),
-        lambda: check_choice("x", value, ["a"]),
+        lambda: checks.check_fraction("x", value),
+        lambda: checks.check_choice("x", value, ["a"]),
         lambda: stream_seed(value, "a", "dynamics", "0.1"),
     ]
     for call in calls:
-        with pytest.raises(InputError, match=r"must|does not fit") as caught:
+        with pytest.raises(checks.InputError, match=r"must|does not fit") as caught:
             call()
         assert len(str(caught.value)) < 300
 

@@ -26,11 +26,7 @@ from twodiscs.theory import exact
 from twodiscs_paper.configuration.yaml_files import load, read
 from twodiscs_paper.studies.effects import figure, price
 from twodiscs_paper.studies.effects import measure as effects
-from twodiscs_paper.studies.effects.study import (
-    SCENES,
-    EffectsCostTable,
-    EffectsTable,
-)
+from twodiscs_paper.studies.effects.study import SCENES, EffectsCostTable, EffectsTable
 from twodiscs_paper.studies.single import tail_constant
 
 NAMES = [*SCENES]

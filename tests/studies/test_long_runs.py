@@ -18,12 +18,7 @@ from twodiscs_paper.pipeline.results.verify import long_run_tables
 from twodiscs_paper.studies.more_discs import tori
 from twodiscs_paper.studies.more_discs.study import ToriTable
 from twodiscs_paper.studies.passages import brownian, measure
-from twodiscs_paper.studies.passages.parts import (
-    in_the_limit,
-    long_files,
-    long_run,
-    with_friction,
-)
+from twodiscs_paper.studies.passages.parts import in_the_limit, long_files, long_run, with_friction
 from twodiscs_paper.studies.passages.study import BrownianTable, PassagesTable
 from twodiscs_paper.studies.tails import measure as tails
 from twodiscs_paper.studies.tails.study import TailsTable

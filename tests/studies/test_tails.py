@@ -33,8 +33,7 @@ def in_mean_times(scene, event, times):
 
 
 @pytest.mark.parametrize(
-    ("radius", "event"),
-    [(0.24, "disc_collision"), (0.1, "vertical_hop"), (0.1, "horizontal_hop")],
+    ("radius", "event"), [(0.24, "disc_collision"), (0.1, "vertical_hop"), (0.1, "horizontal_hop")]
 )
 def test_weighted_starts_agree_with_plain_counting(radius, event):
     """In the common range, from one to ten mean times."""
