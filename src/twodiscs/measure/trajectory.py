@@ -361,7 +361,7 @@ def from_corner(scene, given):
         parts = read_xyz(scene, given)
     else:
         try:
-            shapes = {np.shape(part) for part in given} if np.size(given) else set()
+            shapes = {np.shape(part) for part in given}
         except (TypeError, ValueError):
             return given
         sizes = {shape[-2:] for shape in shapes}
