@@ -184,22 +184,8 @@ def test_chains_have_the_kicks_of_their_numbers(monkeypatch):
     opened, chains = [], LANES + 2
     monkeypatch.setattr(ensemble, "open_kicks", lambda *given: opened.append(given[:3]))
     monkeypatch.setattr(all_pairs, "record_intervals", all_pairs.record_intervals.py_func)
-    bins, sums, going = (0.1, np.full(65, 65)), np.zeros((3, 66), np.int64), np.zeros(1, np.bool_)
-    many_intervals.record_within(8.0, FEW, "vertical_hop", 3, 2, 4, chains, bins, sums, going)
+    bins, sums = (0.1, None, np.full(65, 65)), np.zeros((3, 66), np.int64)
+    ended = np.zeros(1, np.bool_)
+    many_intervals.record_within(8.0, FEW, "vertical_hop", 3, 2, 4, chains, bins, sums, ended)
     due = [(chain % chains % LANES, 3, chain) for chain in range(2 * chains, 4 * chains)]
     assert opened == due
-
-
-@pytest.mark.slow
-def test_chains_of_different_blocks_have_different_kicks(monkeypatch):
-    """From one and the same state, chains differ by their kicks alone, in all blocks."""
-    chains, mean = 4, many_intervals.mean_interval(FEW, "vertical_hop")
-    states = many_initial_states.block_states(many_initial_states.make_initial(FEW), 1, 3, 0)
-    monkeypatch.setattr(
-        many_intervals, "block_states", lambda *given: np.repeat(states, chains, axis=1)
-    )
-    bins = mean / 16, np.arange(65) // 8 + 65
-    sums = np.zeros((3, 74), np.int64)
-    given = 8 * mean, FEW, "vertical_hop", 3, 0, 2, chains, bins, sums
-    times, _ = many_intervals.record_within(*given, np.ones(1, np.bool_))
-    assert np.unique(times).size == 2 * chains
