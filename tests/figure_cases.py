@@ -169,16 +169,6 @@ def bars(axes, colour, marker):
     return sorted(found)
 
 
-def covered(axes):
-    """Return the lines with a vertex, or a piece between two, beneath the legend of drawn axes."""
-    if axes.get_legend() is None:  # it stands outside
-        return []
-    extent = axes.get_legend().get_window_extent()
-    lines = [line for line in axes.lines if line.get_zorder() > 1]  # those behind mark limits
-    paths = [(line, line.get_transform().transform_path(line.get_path())) for line in lines]
-    return [line for line, path in paths if path.intersects_bbox(extent, filled=False)]
-
-
 # Texts --------------------------------------------------------------------------------------------
 
 

@@ -9,7 +9,7 @@ from itertools import groupby
 import numpy as np
 import pytest
 from factory import of
-from figure_cases import BOXES, OTHERS, PAPER, bars, covered, draw, points, tables_of, unclear
+from figure_cases import BOXES, OTHERS, PAPER, bars, draw, points, tables_of, unclear
 from matplotlib.legend import Legend
 from matplotlib.markers import CARETUPBASE
 
@@ -64,9 +64,6 @@ def drawn(name, box):
 def test_texts_stand_clear(name, box):
     figure = drawn(name, box)
     assert unclear(figure) == []
-    # In the tiny box every place of the legend crosses a line: that of a limit or a curve.
-    if name == "mean_collision_time" and box != "tiny":
-        assert covered(figure.axes[0]) == []
     assert figure.get_size_inches()[0] == (7.0 if name == "all_areas" else style.COLUMN)
 
 

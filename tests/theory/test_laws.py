@@ -5,7 +5,6 @@ Without these tests a closed form or a law of a limit could have another constan
 
 import math
 
-import numpy as np
 import pytest
 from theory.antiderivatives import TURNED
 
@@ -120,24 +119,6 @@ def test_tail_constants_of_blocked_drifts():
         assert tail_constant(scene, event) == pytest.approx(turned, rel=1e-13)
 
 
-def rows_apart(rng, height, sigma, time, n):
-    """Return how many of ``n`` starts keep |y1 − y2| ≥ σ for a time, by reflecting both discs.
-
-    Heights are uniform in [0, ``height``] and velocities in the unit disc, as the invariant measure
-    has them. Between reflections the distance is linear, so its least is at one of them or an end.
-    """
-    y = rng.uniform(0, height, (2, n))
-    speed, angle = np.sqrt(rng.uniform(0, 1, n)), rng.uniform(0, 2 * math.pi, n)
-    v = speed * np.array([np.cos(angle), np.sin(angle)])
-    with np.errstate(divide="ignore"):
-        hits = (np.arange(-9, 10)[:, None, None] * height - y) / v
-    times = np.clip(hits.reshape(-1, n), 0, time)
-    times = np.concatenate([times, np.full((1, n), time)])
-    folded = np.abs((y[:, None] + v[:, None] * times + height) % (2 * height) - height)
-    apart = folded[0] - folded[1]
-    return int(np.sum(np.all(apart >= sigma, axis=0) | np.all(apart <= -sigma, axis=0)))
-
-
 def chance(scene, hop, time):
     """Return the probability of drifts in separate rows that avoid a ``hop``, from its tail C/t³.
 
@@ -145,29 +126,6 @@ def chance(scene, hop, time):
     """
     area, volume = exact.areas(scene)[hop], exact.volume(scene)
     return 2 * tail_constant(scene, hop) * area / (3 * math.pi * volume * time**2)
-
-
-@pytest.mark.parametrize(
-    ("hop", "radius", "factor"),
-    [
-        ("vertical_hop", 0.05, 1.05), ("vertical_hop", 0.15, 1.05), ("horizontal_hop", 0.1, 1.05),
-        ("horizontal_hop", 0.2, 1.05), ("vertical_hop", 0.1, 1.0),
-    ],
-)  # fmt: skip
-def test_drifts_last_with_the_probability_of_the_tail(hop, radius, factor):
-    """From the time on at which a drift in its square ends, the law is exact.
-
-    One standard error is some one per cent; five tests at five of them.
-    """
-    scene, n = Scene(1.5, 1.0, radius), 6 * 10**4
-    ranges = scene.range_x, scene.range_y
-    along, height = ranges if hop == "vertical_hop" else ranges[::-1]
-    time = factor * 2 * (height - scene.contact_distance)
-    found = rows_apart(np.random.default_rng(3), height, scene.contact_distance, time, n)
-    # Free along the axis, and none of these starts overlaps.
-    share = (along * height) ** 2 / exact.volume(scene)
-    due = chance(scene, hop, time) / share
-    assert abs(found / n - due) < 5 * math.sqrt(due * (1 - due) / n)
 
 
 def test_drifts_make_the_bound_of_the_tail():
