@@ -117,8 +117,6 @@ td.intervals(FOUR, 'horizontal_hop') → axis x are those of neighbours, see tra
 td.sample(PAPER, quantities='any_wall') → did you mean any_wall_area?
 td.sample(PAPER, 1).save('\\0') → path must be a file to write, not '\\x00': it has a
 td.sample(PAPER, 1).save('no/a.json') → path must be a file to write, not 'no/a.json'
-td.plot(BOX, 'no/a.png') → path must be a file to write, not 'no/a.png'
-td.animate(td.trajectory(PAPER, 1), 'no/a.gif') → path must be a file to write, not 'no/a.gif'
 td.load_result('\\0') → path must be the path of a file, not '\\x00'
 td.load_result('absent.json') → path must be a file to read
 td.load('nothere') → tables of results, but 'nothere' does not exist
@@ -183,7 +181,6 @@ start(x1=0.2) → have the discs apart, with 0.4 or more between their centres, 
 td.trajectory(td.Scene(1.5e-15, 1e-15, 2e-16), start=[-6e-16, 0, 5e-16, 0, 1, 0, 0, 0]) → inside
 start(x1=-0.6) → disc 1 inside the box, with x1 between -0.55 and 0.55, not -0.6
 td.trajectory(RING, start=[-0.8, 0, 0, 0.31, 1, 0, 0, 0]) → disc 2 inside the box, with y2
-start(y2=0.31) → disc 2 inside the box, with y2 between -0.3 and 0.3, not 0.31
 start(u1=2.0) → start must have a total energy of 0.5, not 2.0
 fall() → not bring disc 1 to rest on the floor, as it does at the time 0.0: in a field a disc
 fall(v1=-1e-17) → not bring disc 1 to rest on the floor, as it does at the time 0.0
@@ -236,7 +233,6 @@ td.plot([td.sample(s, 1) for s in (PAPER, RING)]) → for several boxes call plo
 td.plot(td.trajectory(PAPER, 1), ax=Figure().add_subplot()) → must be over the radius to be drawn in
 td.plot([td.intervals(PAPER, hop, 1) for hop in td.EVENTS[:2]]) → not horizontal_hop and verti…
 td.plot(FIELD) → scene must be two plain discs for a drawing, but it has field
-td.plot(Box(1.5, 1.0, discs=3)) → for a drawing, but it has discs 3
 td.animate(PAPER, 'a.gif') → trajectory must be a result of trajectory()
 td.animate(td.trajectory(PAPER, 0.01), 'a.gif') → trajectory must last two frames
 """

@@ -84,8 +84,6 @@ def test_a_trajectory_is_a_table_as_before(path):
     assert isinstance(path[path["event"] != "end"], td.Trajectory)
     assert isinstance(path["time"], pd.Series)
     assert [*path[["time", "u1"]]] == ["time", "u1"]
-    with pytest.raises(td.InputError, match="path must be a file to write"):
-        path.to_xyz("/nowhere/a.xyz")
 
 
 def test_hops_of_one_flight_in_the_wrong_order_are_refused():
