@@ -106,17 +106,10 @@ def test_counts_of_events_are_those_of_their_classes():
     assert np.array_equal(products, np.triu(by_event.T @ by_event))
 
 
-@pytest.mark.parametrize(
-    "scene",
-    [
-        THREE,
-        CHANNEL,
-        UPRIGHT,
-        Scene(3.0, 0.6, 0.14, discs=4, periodic="x"),
-        Scene(3.0, 0.6, 0.2, discs=4, periodic="x"),
-    ],
-    ids=repr,
-)
+RINGS = [Scene(3.0, 0.6, radius, discs=4, periodic="x") for radius in (0.14, 0.2)]
+
+
+@pytest.mark.parametrize("scene", [THREE, CHANNEL, UPRIGHT, *RINGS], ids=repr)
 def test_orders_are_those_of_the_ergodic_components(scene):
     """From one of them, of labels along the longer side, all are reached that are in one part."""
     n, start = scene.discs, 0 if scene.width > scene.height else scene.discs

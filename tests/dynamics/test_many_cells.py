@@ -101,19 +101,12 @@ def test_which_kernel_runs():
     assert make_grid(TORI[0]).y.size == 3
 
 
-@pytest.mark.parametrize(
-    "scene",
-    [
-        BORDER[3],
-        *SHORT,
-        TORI[1],
-        slow(BORDER[0]),
-        ROUGH_TOO,
-        slow(Scene(48.0, 1.0, 0.1, discs=64)),
-        ROUGH,
-    ],
-    ids=repr,
-)
+#: Of these a trip there and back is compared.
+RETURNED = [BORDER[3], *SHORT, TORI[1], ROUGH_TOO, ROUGH]
+RETURNED += [slow(BORDER[0]), slow(Scene(48.0, 1.0, 0.1, discs=64))]
+
+
+@pytest.mark.parametrize("scene", RETURNED, ids=repr)
 def test_advanced_states_are_those_of_the_other_kernel(scene):
     """After some events of each disc, and there and back again; rounds of a ring as well."""
     start = many_initial_states.states(scene, 20, 9)
@@ -133,17 +126,12 @@ def test_advanced_states_are_those_of_the_other_kernel(scene):
     assert states == pytest.approx(start, abs=1e-7 * scene.width)
 
 
-@pytest.mark.parametrize(
-    "scene",
-    [
-        *KICKED,
-        slow(KICKED_TORUS),
-        slow(BORDER[0]),
-        ROUGH_TOO,
-        slow(Scene(8.75, 0.6, 0.18, discs=20, friction=4.0)),
-    ],
-    ids=repr,
-)
+#: Of these the events of a trajectory are compared.
+FOLLOWED = [*KICKED, slow(KICKED_TORUS), slow(BORDER[0]), ROUGH_TOO]
+FOLLOWED += [slow(Scene(8.75, 0.6, 0.18, discs=20, friction=4.0))]
+
+
+@pytest.mark.parametrize("scene", FOLLOWED, ids=repr)
 def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
     """In the same order, hops as well, before roundings have grown; also past a full log."""
     state = many_initial_states.states(scene, 1, 1)[:, 0]

@@ -123,19 +123,13 @@ def test_ways_to_draw_agree(scene, one, other):
     assert difference(scene, found, same) < 5
 
 
-@pytest.mark.parametrize(
-    "scene",
-    [
-        box(20, 0.5, "x"),
-        slow(box(20, 0.55)),
-        slow(Scene(9.6, 0.75, 0.18, discs=24)),
-        slow(Scene(0.54, 5.0, 0.13, discs=20, periodic="x")),
-        slow(Scene(0.7, 3.0, 0.1, discs=24, periodic="x")),
-        slow(box(20, 0.1)),
-        slow(box(32, 0.6)),
-    ],
-    ids=repr,
-)
+#: Squares, a channel and two short rings, whose single moves take long.
+MOVED_SINGLY = [box(20, 0.55), box(20, 0.1), box(32, 0.6), Scene(9.6, 0.75, 0.18, discs=24)]
+MOVED_SINGLY += [Scene(0.54, 5.0, 0.13, discs=20, periodic="x")]
+MOVED_SINGLY += [Scene(0.7, 3.0, 0.1, discs=24, periodic="x")]
+
+
+@pytest.mark.parametrize("scene", [box(20, 0.5, "x"), *map(slow, MOVED_SINGLY)], ids=repr)
 def test_chains_of_events_have_the_law_of_chains_of_single_moves(scene):
     chain = many_initial_states._chain(scene)
     singly = many_initial_states.Chain(chain.centres, 4000, 0, chain.scales)

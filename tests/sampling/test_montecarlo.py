@@ -53,16 +53,11 @@ MORE_SCENES = [
 ]
 
 
+EACH_EFFECT = [slow(s) if n in ("torus", "channel") else s for n, s in SCENES.items()]
+
+
 @pytest.mark.parametrize("thick", [False, True])
-@pytest.mark.parametrize(
-    "scene",
-    [
-        *PLAIN,
-        *(slow(s) if n in ("torus", "channel") else s for n, s in SCENES.items()),
-        *MORE_SCENES,
-    ],
-    ids=repr,
-)
+@pytest.mark.parametrize("scene", [*PLAIN, *EACH_EFFECT, *MORE_SCENES], ids=repr)
 def test_hits_have_their_exact_probability(scene, thick):
     """Also for thick shells, whose bias is large: the expectation is that of the shell.
 
