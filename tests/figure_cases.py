@@ -271,6 +271,8 @@ def unnamed_looks(figure):
         and line.get_marker() != "None"
         and axes.bbox.count_contains(line.get_transform().transform(line.get_xydata()))
     }
+    if not keys and len(drawn) == 1:  # the label of the axis names it
+        return set()
     markers = {marker for _, marker, _ in named}
     return {
         (colour, marker, filling)
