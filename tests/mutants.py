@@ -84,7 +84,7 @@ MUTANTS = [
     ("one disc too few across", "per_height = n / channel.height", "per_height = (n - 1) / channel.height"),
     ("two blocks, one stream", "np.uint64(block) * MIX_2", "np.uint64(block // 2) * MIX_2"),
     ("law of the flux through a hop", "rest = draw_largest(state, 3)", "rest = draw_largest(state, 2)"),
-    ("orders of x and y as one", "else (1 if bits & np.uint64(1 << 61) else -1)", "else (1 if bits & np.uint64(1 << 62) else -1)"),
+    ("orders of x and y as one", "order_y = 1 if bits & np.uint64(1 << 61)", "order_y = 1 if bits & np.uint64(1 << 62)"),
     ("power of the energy on a surface", "(2 if axis < 0 else 1)", "(2 if axis < 0 else 2)"),
     ("momentum not conserved", "= -relative * prism.fractions[1]\n            used", "= relative * prism.fractions[1]\n            used"),
     ("height of the wrong disc", "weights[1] * (y2 + half2)", "weights[1] * (y2 + half1)"),

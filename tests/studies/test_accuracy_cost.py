@@ -109,7 +109,7 @@ def test_it_is_the_plain_simulation(radius, step):
     sums = timestepping.step_blocks(
         np.uint64(4), 0, 1, replicas, 8, steps, step, scene.contact_distance, draw
     )
-    draw_starts(open_stream(np.uint64(4), 0), draw, 0, 0, starts)
+    draw_starts(open_stream(np.uint64(4), 0), draw, starts)
     expected = np.sum([plain(scene, start, steps, step) for start in starts.T], axis=0)
     assert sums.tolist() == expected.tolist()
     assert sums[-1] > 50
@@ -123,7 +123,7 @@ def test_the_scalar_engine_counts_the_same(radius):
     """
     scene = PAPER.with_radius(radius)
     duration = find_engine(scene).replica_duration(scene)
-    arguments = (duration, scene.contact_distance, conditioned_sampler(scene), (0, 0))
+    arguments = duration, scene.contact_distance, conditioned_sampler(scene)
     usual = scalar.count_blocks(np.uint64(3), 0, 1, 1024, *arguments)
     sums, products = find_engine(scene).run_blocks(scene, EVENTS, 3, 0, 1, duration)[:2]
     at = [EVENTS.index(event) for event in scalar.COUNTED]

@@ -160,16 +160,15 @@ def pair_at_distance(state, half, missing, order):
 
 
 @compiled
-def draw_configuration(state, sampler, sign_x, sign_y):
+def draw_configuration(state, sampler):
     """Return centres (x1, y1, x2, y2), uniform over the allowed configurations.
 
-    ``sign_x`` > 0 means x1 > x2, < 0 means x1 < x2, and 0 either with probability 1/2; ``sign_y``
-    likewise. If a hop is blocked, this chooses the ergodic component.
+    If hops are blocked, the ergodic components have the same probability.
     """
     corner_x, corner_y, _ = draw_separation(state, sampler)
     bits = next_bits(state)
-    order_x = sign_x if sign_x != 0 else (1 if bits & np.uint64(1 << 62) else -1)
-    order_y = sign_y if sign_y != 0 else (1 if bits & np.uint64(1 << 61) else -1)
+    order_x = 1 if bits & np.uint64(1 << 62) else -1
+    order_y = 1 if bits & np.uint64(1 << 61) else -1
     x1, x2 = pair_at_distance(state, sampler.half_x, corner_x, order_x)
     y1, y2 = pair_at_distance(state, sampler.half_y, corner_y, order_y)
     return x1, y1, x2, y2

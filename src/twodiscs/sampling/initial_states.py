@@ -150,18 +150,16 @@ def given_states(scene, given, name="starts"):
 class StartSampler(NamedTuple):
     """How initial states of two discs are drawn: by one of two samplers, the other one is None.
 
-    ``order`` chooses the ergodic component of a plain scene (see ``draw_configuration``). On a
-    ``surface`` (0 for x1 = x2, 1 for y1 = y2) states have the law of the flux through it; with None
-    they are of the invariant measure. Plain scenes have the surface y1 = y2 only.
+    On a ``surface`` (0 for x1 = x2, 1 for y1 = y2) states have the law of the flux through it; with
+    None they are of the invariant measure. Plain scenes have the surface y1 = y2 only.
     """
 
     separations: ConditionedSampler | None
     prism: RejectionSampler | None
-    order: tuple = (0, 0)
     surface: int | None = None
 
 
-def start_sampler(scene, hop=None, within=None, order=(0, 0), surface=None):
+def start_sampler(scene, hop=None, within=None, surface=None):
     """Return the ``StartSampler`` of two discs.
 
     With a ``hop`` their states are ``within`` a distance of its surface, at most √2 times the
@@ -169,8 +167,8 @@ def start_sampler(scene, hop=None, within=None, order=(0, 0), surface=None):
     ``require_initial_states`` first, because draws from its prism may hardly ever be accepted.
     """
     if scene.is_plain:
-        return StartSampler(conditioned_sampler(scene, within), None, order, surface)
-    return StartSampler(None, rejection_sampler(scene, hop, within), order, surface)
+        return StartSampler(conditioned_sampler(scene, within), None, surface)
+    return StartSampler(None, rejection_sampler(scene, hop, within), surface)
 
 
 @inlined
@@ -181,10 +179,10 @@ def put_in(states, i, state):
 
 
 @compiled
-def draw_starts(state, sampler, sign_x, sign_y, initial_states):
+def draw_starts(state, sampler, initial_states):
     """Fill the first 8 rows of ``initial_states`` with states of the invariant measure."""
     for i in range(initial_states.shape[1]):
-        centres = draw_configuration(state, sampler, sign_x, sign_y)
+        centres = draw_configuration(state, sampler)
         put_in(initial_states, i, centres + draw_velocity(state))
 
 
@@ -201,7 +199,7 @@ def set_pair(initial_states, i, k, a, b, present):
 
 
 def _draw_plain(stream, sampler, initial_states, surface):
-    draw_starts(stream, sampler.separations, sampler.order[0], sampler.order[1], initial_states)
+    draw_starts(stream, sampler.separations, initial_states)
 
 
 @optional(_draw_plain)
@@ -237,12 +235,11 @@ def draw_states(stream, sampler, initial_states):
     draw_with(stream, sampler, initial_states, sampler.prism)
 
 
-def states(scene, number, seed, block=0, order=(0, 0), progress=None):
+def states(scene, number, seed, block=0, progress=None):
     """Return ``number`` states of the invariant measure of a ``Scene``, one a column.
 
     They are the first states of the stream of ``seed`` for ``block``, integers ≥ 0, in an array of
-    ``STATE_ROWS`` rows. ``order`` chooses the ergodic component of a plain scene (see
-    ``draw_configuration``). N > 2 discs have the rows of ``components``. ``progress``, if given, is
+    ``STATE_ROWS`` rows. N > 2 discs have the rows of ``components``. ``progress``, if given, is
     called repeatedly with the number of drawn states, and ``number``.
     """
     require_initial_states(scene)
@@ -251,7 +248,7 @@ def states(scene, number, seed, block=0, order=(0, 0), progress=None):
 
         return labelled(scene, number, seed, block, progress)
     filled = np.zeros((STATE_ROWS, number))
-    sampler = start_sampler(scene, order=order)
+    sampler = start_sampler(scene)
     stream = call_in_thread(open_stream, np.uint64(seed), block)
 
     # The kernel fills whole arrays, continues the stream, and does not use all rows.

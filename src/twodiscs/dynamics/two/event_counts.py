@@ -190,16 +190,12 @@ def unpack(counting, i):
         ) & 255
 
 
-def run_blocks(
-    scene, events, seed, first, stop, duration, *,
-    replicas=REPLICAS, lanes=LANES, order=(0, 0),
-):  # fmt: skip
+def run_blocks(scene, events, seed, first, stop, duration, *, replicas=REPLICAS, lanes=LANES):
     """Count ``events`` in the blocks ``first`` … ``stop`` − 1 of the stream ``seed``.
 
-    A block is ``replicas`` starts from the invariant measure, each followed for ``duration``;
-    ``order`` chooses the component (see ``draw_configuration``). Only these ``events`` are
-    detected: without a hop among them no crossing is searched. Returns (sums, products) as
-    ``Counts`` does, integers that shards can add.
+    A block is ``replicas`` starts from the invariant measure, each followed for ``duration``. Only
+    these ``events`` are detected: without a hop among them no crossing is searched. Returns (sums,
+    products) as ``Counts`` does, integers that shards can add.
     """
     hops = any(event in HOPS for event in events) or None
     walls = any(event in WALLS for event in events) or None
@@ -218,6 +214,6 @@ def run_blocks(
         sums=np.zeros(N_EVENTS, np.int64),
         products=np.zeros((N_EVENTS, N_EVENTS), np.int64),
     )
-    sampler = start_sampler(scene, order=order)
+    sampler = start_sampler(scene)
     follow(counting, scene, sampler, seed, first, stop, replicas, lanes, SWEEPS)
     return counting.sums, counting.products

@@ -109,7 +109,7 @@ def lockstep_method(scene, seed, blocks=1):
 def scalar_method(scene, seed):
     """Return the ``Method`` of one trajectory after the other."""
     given = FEW_REPLICAS, find_engine(scene).replica_duration(scene), scene.contact_distance
-    given += conditioned_sampler(scene), (0, 0)
+    given += (conditioned_sampler(scene),)
 
     def block(i):
         return scalar.count_blocks(np.uint64(seed), i, i + 1, *given)[0]

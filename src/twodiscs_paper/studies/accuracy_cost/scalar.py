@@ -26,12 +26,12 @@ def simulated_events(counts):
 
 
 @compiled
-def count_blocks(seed, first, stop, replicas, duration, sigma, draw, order):
+def count_blocks(seed, first, stop, replicas, duration, sigma, draw):
     """Return (sums, products) of ``COUNTED`` as ``dynamics.two.event_counts`` does."""
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
     starts = np.zeros((8, replicas))
     for block in range(first, stop):
-        draw_starts(open_stream(seed, block), draw, order[0], order[1], starts)
+        draw_starts(open_stream(seed, block), draw, starts)
         for replica in range(replicas):
             start = starts[:, replica]
             counts = count_replica(

@@ -54,7 +54,7 @@ def step_blocks(seed, first, stop, replicas, lanes, steps, step, sigma, draw):
     touching = np.zeros(lanes, np.bool_)
     half_x, half_y, reach = draw.half_x, draw.half_y, sigma * sigma
     for block in range(first, stop):
-        draw_starts(open_stream(seed, block), draw, 0, 0, starts)
+        draw_starts(open_stream(seed, block), draw, starts)
         for group in range(0, replicas, lanes):
             for k in range(8):
                 for i in range(lanes):

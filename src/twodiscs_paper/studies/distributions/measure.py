@@ -97,7 +97,7 @@ def draw_passages(seed, first, stop, intervals, passages, cut, law, draw, width,
             sums[1] += time * time
             sums[2] += time * time - beyond * beyond
         for _ in range(passages):
-            start = draw_configuration(state, draw, 0, 0) + draw_velocity(state)
+            start = draw_configuration(state, draw) + draw_velocity(state)
             time = time_to_next(start, law, True, np.inf)
             sums[3] += time
             sums[4] += min(time, cut)

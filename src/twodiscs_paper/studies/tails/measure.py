@@ -122,7 +122,7 @@ def length_biased(seed, first, stop, strata, samples, times, law, draw, hop):
             starts = samples << ((strata - 1 - stratum) // 2)
             weight, sums = 2.0 * (largest - least) / starts, rows[block - first, stratum]
             for _ in range(starts):
-                x1, y1, x2, y2 = draw_configuration(state, draw, 0, 0)
+                x1, y1, x2, y2 = draw_configuration(state, draw)
                 u1, v1, u2, v2 = draw_drifting_velocity(state, largest, least)
                 ahead, marked = marked_time((x1, y1, x2, y2, u1, v1, u2, v2), law, hop, lowest)
                 since, more = marked_time((x1, y1, x2, y2, -u1, -v1, -u2, -v2), law, hop, lowest)
@@ -146,7 +146,7 @@ def count_long(seed, first, stop, replicas, window, times, law, draw, hop):
     counts = np.zeros(((stop - first) * replicas, times.size + 1), np.int64)
     starts = np.zeros((8, replicas))
     for block in range(first, stop):
-        draw_starts(open_stream(seed, block), draw, 0, 0, starts)
+        draw_starts(open_stream(seed, block), draw, starts)
         for replica in range(replicas):
             count = counts[(block - first) * replicas + replica]
             state = state_at(starts, replica, law)
