@@ -1,5 +1,6 @@
 """Cases for tests of figures: boxes, tables drawn from the exact theory, the texts in figures."""
 
+import re
 from functools import cache
 from itertools import combinations, pairwise
 from unittest.mock import patch
@@ -190,25 +191,48 @@ def shown_texts(figure):
 #: Pixels of the rim by which texts may overlap and touch a line; the least contrast on white.
 RIM, CONTRAST = 6, 4.5
 
+#: What a label names if it needs a unit.
+QUANTITY = re.compile(r"(?<!\\)\b(times?|radius|area|volume|distance|interval)\b|^\$[xyz](_|\$)")
+
 
 def unclear(figure):
     """Return the faults of a figure, each as its kind and what has it.
 
-    A text is "beyond" the figure, "pale" on white, on an "other" text, or on a "line", an edge or
-    a symbol, if no white box or rim of the text covers them. Symbols are "unnamed" if no legend has
-    their colour, marker and filling. Each may stand in another entry, and a filling in a grey one.
+    A label of an axis has no "unit". A text is "beyond" the figure, "pale" on white, on an "other"
+    text, or on a "line", an edge or a symbol, if no white box or rim of the text covers them.
+    Symbols are "unnamed" if no legend has their colour, marker and filling. Each may stand in
+    another entry, and a filling in a grey one.
     """
     texts = shown_texts(figure)
     (width, height), named = figure.bbox.size, [(t.get_text(), b) for t, b in texts]
     edges = [edge for axes in figure.axes for edge in edges_of(axes)]
     bare = [(t, b) for t, b in texts if t.get_bbox_patch() is None and not t.get_path_effects()]
+    labels = [
+        one.get_label_text()
+        for axes in figure.axes
+        if axes.axison
+        for one in (axes.xaxis, axes.yaxis)
+    ]
     return [
+        *(("unit", label) for label in labels if lacks_unit(label)),
         *(("beyond", t) for t, b in named if min(b.p0) < 0 or b.x1 > width or b.y1 > height),
         *(("pale", t.get_text()) for t, _ in texts if contrast(t.get_color()) < CONTRAST),
         *(("other", s, t) for (s, a), (t, b) in combinations(named, 2) if shared(a, b)),
         *(("line", t.get_text()) for t, b in bare if any(on(shared(b, c), e) for e, c in edges)),
         *(("unnamed", *one) for one in sorted(unnamed_looks(figure))),
     ]
+
+
+def lacks_unit(label):
+    """Return whether a ``label`` has a time, a length or so with no unit, and not as a ratio.
+
+    Residuals and exponents of a quantity have none.
+    """
+    text, formulas = re.sub(r"\$.*?\$", "", label), re.findall(r"\$(.*?)\$", label)
+    if re.match("residual|exponent", text):
+        return False
+    ratio = " / " in text or (formulas and all("/" in formula for formula in formulas))
+    return bool(QUANTITY.search(label)) and not re.search(r"\((length|s\))", text) and not ratio
 
 
 def shared(one, other):

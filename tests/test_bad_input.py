@@ -92,7 +92,7 @@ field: 1.0e-70 → field must lie between 1e-60 and 1e60, not 1e-70
 field: -0.3 → field must be …, the uniform acceleration along −y, not -0.3
 field: 1, periodic: y → field must be 0 if y is periodic
 field: 100, radius: 0.38 → field 100.0 is too strong at radius 0.38
-field: 1, mass_ratio: 2, radius: 0.378 → radius 0.378 is too large: in a field unequal discs must
+field: 1, mass_ratio: 2, radius: 0.378 → radius 0.378 is too large: … here below radius 0.375
 periodic: z → periodic must be some of the axes x and y (z needs a depth), each once
 depth: 1, moment_of_inertia: 0.4 → moment_of_inertia must be left out in a box with a depth
 """

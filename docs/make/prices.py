@@ -17,7 +17,7 @@ ROWS = (
     (0.249975, "horizontal_hop_time", "strips"),
     (0.38, "volume", "rejection"),
     (0.38, "volume", "conditioned"),
-    (0.2, "all of these", "exact"),
+    (0.2, "all exact values", "exact"),
 )
 
 ERRORS = (1e-3, 1e-4, 1e-5)

@@ -13,7 +13,7 @@ from typst import TypstError
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.figures import style
 from twodiscs.figures.scene_figures import FIGURES
-from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES
+from twodiscs_paper.catalogue import ALL_FIGURES, STUDY_FIGURES, STUDY_TABLES
 from twodiscs_paper.pipeline.documents import manuscript
 
 PAPER = Path(__file__).resolve().parents[2] / "paper"
@@ -150,3 +150,7 @@ def test_what_captions_explain_alike_is_split_off():
     assert "In a square box" in square["mean_hop_time"][0]
     assert "square" not in "".join(found["mean_hop_time"])
     assert found.keys() == FIGURES.keys() | STUDY_FIGURES.keys()
+    # The first sentence is the alt text in a report, where the title stands beside it.
+    titles = {name: " ".join(entry.title.split()[:3]) for name, entry in ALL_FIGURES.items()}
+    again = [n for n, title in titles.items() if ALL_FIGURES[n].caption().startswith(title)]
+    assert again == []

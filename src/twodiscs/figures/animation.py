@@ -181,7 +181,7 @@ def draw_separation(strip, motion):
     times = motion.path_times(motion.frames[0], motion.frames[-1])
     separation = motion.separation(times)
     most = 1.1 * np.abs(separation).max()
-    strip.set(ylim=(-most, most), ylabel=f"${motion.axis}_2-{motion.axis}_1$")
+    strip.set(ylim=(-most, most), ylabel=f"${motion.axis}_2-{motion.axis}_1$ (length)")
     strip.axhline(0, color=GREY, lw=0.5)
     strip.plot(times, separation, color="#C8C8C8", lw=0.8)
 
@@ -190,7 +190,7 @@ def draw_positions(strip, motion, colours):
     """Draw the positions of many discs along the longer side over the whole time."""
     axis = longer_axis(motion.box)
     times, side = motion.path_times(motion.frames[0], motion.frames[-1]), motion.sides[axis]
-    strip.set_ylabel(f"${axis}$")
+    strip.set_ylabel(f"${axis}$ (length)")
     if axis not in motion.periodic:  # on it positions go on beyond the box
         strip.set_ylim(-side / 2, side / 2)
     for disc, colour in enumerate(colours, 1):

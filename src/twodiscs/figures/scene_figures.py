@@ -242,10 +242,10 @@ FIGURES = {
         "Configuration space",
         GEOMETRY,
         """
-        Let x = (x1 − x2)/√2, X = (x1 + x2)/√2 and likewise y and Y; the
-        discs overlap if x² + y² < 2r². (a) The section Y = 0, in which the centres are as far
-        above the middle as below it. It is a prism without a cylinder, whose axis is the
-        diagonal of x1 and x2. (b) The whole is a product of two squares, one for x1 and x2 and
+        (a) A prism without a cylinder, whose axis is the diagonal of x1 and x2: the section Y = 0,
+        in which one centre is as far above the middle as the other one is below it. Here x = (x1 −
+        x2)/√2, X = (x1 + x2)/√2, likewise y and Y, and the discs overlap if x² + y² < 2r². (b) The
+        whole is a product of two squares, one for x1 and x2 and
         one for y1 and y2, without the overlaps. The dotted band of each square is excluded by
         the point shown in the other one; dashed lines are its widest bounds, at ±√2 r. The
         hatched quarters, in which all four coordinates are positive, hold a sixteenth of the
@@ -256,8 +256,8 @@ FIGURES = {
         "Volume of configuration space",
         SPACE,
         """
-        Volume of configuration space against the radius of the discs: exact (line) and by Monte
-        Carlo sampling (symbols).
+        The volume V of all positions without overlap against the radius of the discs: exact (line)
+        and by Monte Carlo sampling (symbols).
         """,
         SAMPLED,
         **_radius_fields(
@@ -323,10 +323,10 @@ FIGURES = {
         DYNAMICS,
         Caption(
             """
-            Mean times between successive hops: exact (lines) and by event-driven molecular dynamics
-            (symbols). Full symbols come from initial states in a strip around the surface of the
-            hop, where the flux is measured and not the waiting time. In (b) the same times approach
-            the radius r_c at which the hop ends.
+            Mean times from one hop to the next: exact (lines) and by event-driven molecular
+            dynamics (symbols). Full symbols come from initial states in a strip around the surface
+            of the hop, where the flux is measured and not the waiting time. In (b) the same times
+            approach the radius r_c at which the hop ends.
             """,
             plain="""
             Dashed lines in (a) are the laws for small discs, to first order in r. In (b) they are
@@ -350,8 +350,8 @@ FIGURES = {
         DYNAMICS,
         Caption(
             """
-            Mean time between collisions of the discs: exact (line) and by event-driven molecular
-            dynamics (symbols).
+            Mean time from one collision of the discs to the next: exact (line) and by event-driven
+            molecular dynamics (symbols).
             """,
             plain="""
             Dashed lines are the first two orders of the law for small discs, which starts as
@@ -373,8 +373,8 @@ FIGURES = {
         DYNAMICS,
         Caption(
             """
-            Mean times between hits of walls: exact (lines) and by event-driven molecular dynamics
-            (symbols).
+            Mean times from one hit of a wall to the next: exact (lines) and by event-driven
+            molecular dynamics (symbols).
             """,
             plain="""
             Times of disc 1 are averages over trajectories that can reach the wall. The time of the
@@ -476,7 +476,7 @@ ANIMATION = Figure(
     "The discs, animated",
     DYNAMICS,
     Caption(
-        "The discs as they move. Traces are the latest paths of the centres.",
+        "Two or more discs move in their box. Traces are the latest paths of the centres.",
         plain="""
         Beneath is the separation of the discs against time. The picture stops at a hop, of the
         rarer kind if there are two, which changes the sign of the separation.

@@ -288,7 +288,7 @@ def _price_of_exact(scene):
     start = time.perf_counter()
     exact.exact(other)
     seconds, floor = time.perf_counter() - start, PRECISION.get(scene.discs, OF_CHANNEL)
-    yield Price("all of these", "exact", floor**2 * seconds, seconds, floor)
+    yield Price("all exact values", "exact", floor**2 * seconds, seconds, floor)
 
 
 def _price_of_trajectory(scene):

@@ -40,9 +40,19 @@ def _check_energy(scene):
         )
     if (scene.radius_ratio, scene.mass_ratio) != (1.0, 1.0) and not scene.vertical_hops:
         raise InputError(
-            f"radius {scene.radius!r} is too large: in a field unequal discs must have room and "
-            "energy for a vertical hop"
+            f"radius {scene.radius!r} is too large: in a field unequal discs must be able to hop "
+            f"vertically, here below radius {_last_of_vertical_hops(scene)!r}"
         )
+
+
+def _last_of_vertical_hops(scene):
+    """Return the radius of disc 1 at which unequal discs in a field lose the vertical hop.
+
+    At this hop the separation along y is zero, and the potential that of the centres on one height.
+    """
+    mass, excess = scene.masses[scene.radius_ratio < 1], abs(scene.radius_ratio - 1)
+    limit = _largest_with_effects(scene, without="y")
+    return min(limit, ENERGY / (scene.field * mass * excess)) if excess else limit
 
 
 def _lowest_potential(scene, spread):
@@ -128,13 +138,13 @@ def _largest_plain(scene):
     return (width + height - math.sqrt(2 * width) * math.sqrt(height)) / 2
 
 
-def _largest_with_effects(scene):
-    """Return the radius of disc 1 at which two discs just fit.
+def _largest_with_effects(scene, without=""):
+    """Return the radius of disc 1 at which two discs just fit, with the axis ``without`` closed.
 
     The equation for σ is Σ over walls of (side − σ)² + Σ over periodic axes of (side/2)² = σ²,
     unless a disc spans a side before.
     """
-    walls, ratio = [scene.side(axis) for axis in scene.walled], scene.radius_ratio
+    walls, ratio = [scene.side(q) for q in scene.walled if q != without], scene.radius_ratio
     n, total = len(walls), math.fsum(walls)
     squares = math.fsum(side * side for side in walls)
     squares += math.fsum(scene.side(axis) ** 2 / 4 for axis in scene.periodic)

@@ -134,11 +134,11 @@ def figure(folder, path, scenes):
     about = scene or main
     text = entry.caption(about and described_box(about))
     if scene:
-        text += f" The box is {scene['box']}, the scene {scene['name']} of the configuration."
+        text += f" The box is {scene['box']} (scene “{scene['name']}” of the configuration)."
     with Image.open(Path(folder, path)) as image:
         width = image.width // DENSITY
     return {
-        "alt": f"{entry.title}. {SENTENCE.match(text)[0]}",
+        "alt": SENTENCE.match(text)[0],
         "caption": Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text)))),
         "file": path.with_suffix(".gif" if entry == ANIMATION else ".pdf"),
         "name": path.stem,
@@ -196,17 +196,13 @@ def section(folder, paths, scenes, scene=None):
     movies = [path for path in pictures if path.stem == "animation"]
     key = key_figures(pictures, scene is not None)
     others = [path for path in pictures if path not in key and path not in movies]
-    effects = [
-        f"{value} discs" if name == "discs" else f"{name.replace('_', ' ')} {value}"
-        for name, value in ((scene or {}).get("effects") or {}).items()
-    ]
+    effects = (scene or {}).get("effects") or {}
     return {
         "animation": movie(folder, movies[0], scenes) if movies else None,
         "box": scene and scene["box"],
-        "compiled": [text for text in effects if not text.endswith(" discs")],
+        "compiled": [f"{n.replace('_', ' ')} {v}" for n, v in effects.items() if n != "discs"],
         "discs": scene and _discs(described_box(scene)),
         "detected": [event.replace("_", " ") for event in (scene or {}).get("detected", ())],
-        "effects": effects,
         "figures": [figure(folder, path, scenes) for path in key],
         "name": scene and scene["name"],
         "tables": [path for path in paths if path.suffix == ".csv"],

@@ -159,7 +159,8 @@ def _times(axes, box, hop, limit, rows):
         name = "smooth" if inertia is None else f"$I={inertia:g}$"
         distance, value, error = columns(own, "distance", "estimate", "stderr")
         points(axes, distance, value, error, look, rf"$\tau/\kappa$, {name}")
-    scale(axes, (4e-5, 0.25), (0.3, None), r"times $\tau$ and $\tau/\kappa$", loc="lower left")
+    label = r"times $\tau$ and $\tau/\kappa$ (length/speed)"
+    scale(axes, (4e-5, 0.25), (0.3, None), label, loc="lower left")
 
 
 def residuals(axes, rows, looks):

@@ -260,7 +260,7 @@ STUDY = Study(
             "Passages with friction",
             DYNAMICS,
             """
-            Passages with friction: all velocities are drawn anew at random times of the rate γ. (a)
+            Velocities of both discs are drawn anew at random times of the rate γ (friction). (a)
             The fraction κ of hops that are passages, near the radius r_c = h/4. The abscissa is x =
             γ√(εσ), with the room ε = h − 4r that the discs leave in the neck and σ = 2r. Crosses
             are the limit of a narrow neck. Dashed: 1 of one flight, and 3/(4x) of diffusion. Line:
