@@ -16,7 +16,7 @@ from marks import slow
 from twodiscs.analysis.tables import MeanTimesTable
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.paths import path_events
-from twodiscs.figures import curves, style
+from twodiscs.figures import style
 from twodiscs.model.events import EVENTS, WALLS
 from twodiscs.model.scene import Box, Scene
 from twodiscs.model.seeds import key, stream_seed
@@ -163,8 +163,7 @@ def costs():
     return [empty(EffectsCostTable, instructions=4000 + i, **row) for i, row in enumerate(rows)]
 
 
-def test_curves_go_through_the_exact_ratios(rows, monkeypatch):
-    monkeypatch.setattr(curves, "FEWER", 28)
+def test_curves_go_through_the_exact_ratios(rows):
     names = "rough", "torus"  # whose exact values take less time
     boxes = {name: Box(**BOXES[name]) for name in names}
     plain = Box(boxes["rough"].width, boxes["rough"].height)
@@ -184,7 +183,7 @@ def test_costs_are_the_times_over_the_package_without_effects():
     """A symbol is at its ratio, which stands beside it, and so does the number of instructions."""
     axes = style.new_figure(2.0).subplots()
     figure._costs(axes, costs(), {})
-    ratios = [line.get_xdata()[0] for line in axes.lines if line.get_marker() == "o"]
+    ratios = [line.get_xdata()[1] for line in axes.lines[: len(costs())]]
     assert ratios == pytest.approx([1 / row["ratio"] for row in costs()])
     numbers = {(text.get_text(), text.xy[1]) for text in axes.texts}
     for i, row in enumerate(costs()):

@@ -191,7 +191,7 @@ def test_order_changes_by_exchanges_alone():
 @pytest.mark.parametrize("inertia", [None, slow(0.5)])
 def test_long_files_have_the_law_of_their_density(inertia, small, monkeypatch):
     """F within five standard errors of theory and, where discs pass, of the measured density."""
-    monkeypatch.setattr(displacements, "OPEN", (4,))
+    monkeypatch.setattr(displacements, "OPEN_HALVINGS", (4,))
     monkeypatch.setattr(displacements, "ONE_INERTIA", inertia)
     rows = list(displacements.displacements("long", 1.5, 1.0, [0.28, 0.3], 1, 16))
     judged = [row for row in rows if row.get("z") is not None]

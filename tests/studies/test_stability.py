@@ -340,7 +340,7 @@ def test_errors_of_few_are_what_they_say(make, monkeypatch):
     """64 fresh seeds tell mean squares of 4 and of 1/4 from 1, for seven quantities of a study."""
     monkeypatch.setattr(near, "MOST_HOPS", 2**11)
     monkeypatch.setattr(near_threshold, "MOST_HOPS", 2**11)
-    monkeypatch.setattr(distributions, "FEWEST", 100)
+    monkeypatch.setattr(distributions, "FEWEST_ENDED", 100)
     monkeypatch.setattr(distributions, "FEWEST_IN_BIN", 30)
     monkeypatch.setattr(calibration, "STUDIES", {("few", ""): make})
     rows = [row for row in calibration.rows(64, 990_000, calls=("few",)) if row["scores"] >= 32]

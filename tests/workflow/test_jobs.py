@@ -75,7 +75,8 @@ NO_JOB = {
 }
 
 #: Modules that are imported without an effect on a table: the start of a job, titles and captions.
-NO_NUMBER = {"src/twodiscs_paper/pipeline/job.py", "src/twodiscs/figures/scene_figures.py"}
+NO_NUMBER = {"src/twodiscs_paper/pipeline/job.py"}
+NO_NUMBER |= {f"src/twodiscs/figures/{name}.py" for name in ("scene_figures", "curves")}
 
 #: The modules that import every study and every figure of a study: a job uses one of them, and
 #: no build counts calibration again.

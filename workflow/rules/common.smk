@@ -97,7 +97,11 @@ CODE = {
         *(f"twodiscs/figures/*.{kind}" for kind in ("py", "mplstyle", "html")),
         "twodiscs_paper/draw.py",
     ),
-    "documents": modules("twodiscs/figures/scene_figures.py", "twodiscs_paper/pipeline/**/*.py"),
+    "documents": modules(  # with the captions, and the names of the lines that they explain
+        "twodiscs/figures/scene_figures.py",
+        "twodiscs/figures/curves.py",
+        "twodiscs_paper/pipeline/**/*.py",
+    ),
     "benchmark": modules("twodiscs_paper/benchmark.py"),
 }
 # Modules that several studies import.

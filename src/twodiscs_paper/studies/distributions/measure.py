@@ -45,6 +45,9 @@ BLOCKS, BINS = 128, 512
 #: intervals.
 EVENTS, MOST_INTERVALS, MOST_PASSAGES = 2**22, 2**22, 2**18
 
+#: The fewest intervals that must end for a test of constancy.
+FEWEST_ENDED = 1000
+
 #: Relative distances below the radius at which a hop becomes blocked.
 DISTANCES = (0.16, 0.08, 0.04, 0.02, 0.01)
 
@@ -256,8 +259,7 @@ def measured(start, scene, hop, seed, events=EVENTS):
 
 def _constancy(start, bins, mean):
     """Yield the rows that test whether the hazard is constant over ``bins``, if these suffice."""
-    # The fewest intervals that must end for a test of constancy.
-    if len(bins) < 3 or sum(part.count for part in bins) < 1000:
+    if len(bins) < 3 or sum(part.count for part in bins) < FEWEST_ENDED:
         return
     fit, trend, chi2, degrees = constant_hazard(bins)
     ends = start | {"first": bins[0].first, "last": bins[-1].last, "count": fit.n}
