@@ -6,6 +6,7 @@ folder of the site, into which pictures go, and returns the whole text.
 
 import re
 from base64 import b64decode
+from html import escape
 from io import BytesIO
 from pathlib import Path
 
@@ -20,6 +21,7 @@ from twodiscs_paper.catalogue import ALL_FIGURES, STUDIES, STUDY_FIGURES, TABLES
 from twodiscs_paper.configuration.schema import described_keys
 from twodiscs_paper.pipeline.documents import explorer
 from twodiscs_paper.pipeline.documents.manuscript import PaperNumbersTable
+from twodiscs_paper.pipeline.documents.report import SENTENCE
 
 ROOT = Path(__file__).resolve().parents[2]
 EXPECTED = ROOT / "paper" / "expected"
@@ -65,10 +67,10 @@ def tutorial(text, site):
     return re.sub(r"^```python\n.*?^```\n", with_figure, text, flags=re.DOTALL | re.MULTILINE)
 
 
-def shown(png, name, title, site):
+def shown(png, name, alt, site):
     """Write a picture into the folder of the site; return the line that shows it in a page."""
     Path(site, name).write_bytes(png)
-    return f'\n<p><img src="../{name}" alt="{title}" loading="lazy"></p>\n'
+    return f'\n<p><img src="../{name}" alt="{escape(alt)}" loading="lazy"></p>\n'
 
 
 def reference(text, site):
@@ -143,7 +145,7 @@ def target(name):
     return next((study.name for study in STUDIES.values() if name in study.figures), name)
 
 
-def picture(name, title, site):
+def picture(name, alt, site):
     """Return the lines that show a figure: drawn, or one panel of it from ``docs``, or none."""
     panels = {figure: f"{panel}.png" for panel, (figure, *_) in PANELS.items()}
     if FEW_ROWS.isdisjoint(ALL_FIGURES[name].tables):
@@ -151,11 +153,11 @@ def picture(name, title, site):
             if figure := draw(name, EXPECTED):
                 png = BytesIO()
                 figure.savefig(png, dpi=100, facecolor="white")
-                return shown(png.getvalue(), f"{name}.png", title, site)
+                return shown(png.getvalue(), f"{name}.png", alt, site)
     if name == "animation":
-        return f"![{title}](animation.gif)"
+        return f"![{alt}](animation.gif)"
     if name in panels:
-        return f"![{title}]({panels[name]})\n\nThis is one panel of the figure."
+        return f"![{alt}]({panels[name]})\n\nThis is one panel of the figure."
     return "[The tutorial](python.md) shows such a figure."
 
 
@@ -163,7 +165,8 @@ def gallery(text, site):
     """Return the page of all figures, each with its caption and the lines that draw it."""
     for name, entry in ALL_FIGURES.items():
         caption = _plain(entry.caption(BOX))
-        text += f"\n## {entry.title}\n\n{picture(name, entry.title, site)}\n\n{caption}\n"
+        alt = SENTENCE.match(entry.caption(BOX))[0]
+        text += f"\n## {entry.title}\n\n{picture(name, alt, site)}\n\n{caption}\n"
         text += f"\n```text\nsnakemake --cores 2 {target(name)}\n```\n"
         if line := in_python(name):
             text += f"\n```python\n{line}\n```\n"
