@@ -1,8 +1,7 @@
-"""The settings of all tests: threads, garbage collection, order of the files, last lines."""
+"""The settings of all tests: threads, garbage collection, order of the files."""
 
 import gc
 import os
-from collections import Counter
 
 # Threads of OpenBLAS wait for each other by spinning: small products take ten times as long where
 # other processes have work for the cores. Only modules that are imported later use the setting.
@@ -30,10 +29,3 @@ def pytest_collection_modifyitems(items):
     built = {file_scene(item) for item in items if "complete" in item.fixturenames}
     first = min(built, key=lambda file: ("test_build" not in file, file), default=None)
     items.sort(key=lambda item: file_scene(item) != first)
-
-
-def pytest_terminal_summary(terminalreporter):
-    """One line for each reason for which tests were skipped, with their number."""
-    skipped = Counter(report.longrepr[2] for report in terminalreporter.stats.get("skipped", ()))
-    for reason, number in skipped.items():
-        terminalreporter.write_line(f"{number} tests skipped: {reason.removeprefix('Skipped: ')}")
