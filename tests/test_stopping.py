@@ -44,7 +44,7 @@ CALLS = [
     "td.trajectory(scene, duration=2.5e6 if large else 3)",
     "td.transmission(rare, 'horizontal_hop', 1e9 if large else 1)",
     "td.observe(scene, lambda a, b: a['x1'], [0, 1], 1e9 if large else 1)",
-    "td.frames(scene, [1e5 if large else 1], 1e6 if large else 1)",
+    "td.frames(scene, [1e5 if large else 1], 2e5 if large else 1)",
 ]
 
 
