@@ -56,6 +56,14 @@ def test_a_pilot_has_the_errors_of_a_run_of_the_same_blocks(blocks, scene):
         assert error == pytest.approx(measured[f"{event}_time"].relative_stderr, rel=1e-3)
 
 
+def test_a_pilot_has_the_replicas_of_the_budget(blocks):
+    """A small budget has shorter replicas, and more of them in a block."""
+    run = new_run(td.Scene(40.0, 40.0, 0.5, discs=64), 1.0, 1)
+    pilot = cost.pilots(run)["all"]
+    events = find_engine(run.scene).expected_event_rate(run.scene) * run.replica_duration
+    assert pilot.events / pilot.replicas == pytest.approx(events, rel=0.1)
+
+
 def test_a_rare_hop_has_a_price_from_ordinary_states_too(blocks):
     found = td.cost(NEAR)
     strips, ordinary = (found["horizontal_hop_time", m] for m in ("strips", "dynamics"))
