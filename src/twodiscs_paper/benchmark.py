@@ -36,10 +36,10 @@ from twodiscs_paper.studies.effects.price import (
 from twodiscs_paper.studies.effects.price import rows as cost_rows
 
 
-def count_in_square(discs, packing, with_states):
+def count_in_square(discs, packing, periodic, with_states):
     """Count the events of a block of N discs in a square, with the time for their states or not."""
     side = math.sqrt(discs * math.pi / packing) * SCENE.radius
-    scene = Scene(side, side, SCENE.radius, discs=discs)
+    scene = Scene(side, side, SCENE.radius, discs=discs, periodic=periodic)
     duration, replicas = many_rates.replica_duration(scene), many_rates.block_replicas(scene)
     if discs >= LARGE and not with_states:  # one state, whose time does not depend on ``time``
         duration, replicas = duration * replicas, 1
@@ -112,14 +112,18 @@ def numpy_sampler(chunks=1000, chunk=16384):
     return chunks * chunk, seconds
 
 
-#: Numbers of discs in a square, 8 in lock step and more in cells, and their packing fractions. All
-#: hops are counted, with initial states as in a call of ``simulate``, and without.
+#: Numbers of discs in a square box or torus, 8 in lock step and more in cells, and their packing
+#: fractions. All hops are counted, with initial states as in a call of ``simulate``, and without:
+#: the share of time of initial states is 1 − called/kernel.
 NUMBERS, PACKINGS = (8, 64, 256, 1024, 4096), (0.3, 0.6)
 TWO = replace(SCENE, radius=SCENE.radius / 2)
 BY_NUMBER = {"lockstep": partial(lockstep, BLOCKS // 8, TWO)} | {
-    f"discs_{discs}_packing_{packing}_{name}": partial(count_in_square, discs, packing, with_states)
+    f"discs_{discs}_packing_{packing}{shape}_{name}": partial(
+        count_in_square, discs, packing, periodic, with_states
+    )
     for discs in NUMBERS
     for packing in PACKINGS
+    for shape, periodic in (("", ""), ("_torus", "xy"))
     for name, with_states in (("called", True), ("kernel", False))
 }
 
