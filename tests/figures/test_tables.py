@@ -83,7 +83,7 @@ def cases():
         law = own[0]["law"]
         due = [symbol(r["time"] / r["exact_mean"], r, 1 / r["law"] if law else 1.0) for r in own]
         yield "tails", "ratio" if law else "exponential", look, due
-    rows = [row for row in table("more_discs") if row["dynamics"]]
+    rows = [row for row in select(table("more_discs"), periodic=None) if row["dynamics"]]
     for radius in {row["radius"] for row in rows}:
         for event, look in LOOKS.items():
             due = []

@@ -276,7 +276,11 @@ BY_HAND = {
     ),
     "long_files_last_reach": reach,
     "more_discs_exact": lambda t: (
-        t["more_discs"].query("event != 'virial'")[["exact", "z"]].notna().all(axis=1).sum()
+        t["more_discs"]
+        .query("periodic != 'xy' and event != 'virial'")[["exact", "z"]]
+        .notna()
+        .all(axis=1)
+        .sum()
     ),
     "longest_run": lambda t: t["stability"].query("part == 'dynamics'")["count"].max(),
     "overlap": lambda t: -t["stability"].query("quantity == 'smallest_gap'").value.min(),

@@ -14,7 +14,8 @@ from twodiscs_paper.studies.more_discs.study import MoreDiscsTable
 @pytest.fixture(scope="module")
 def rows(tmp_path_factory):
     path = tmp_path_factory.mktemp("more") / "more_discs.csv"
-    MoreDiscsTable.write(path, measure.rows(300_000, 60_000, 1, discs=(2, 3, 4), radii=(0.1, 0.28)))
+    shape = {"discs": (2, 3, 4), "radii": (0.1, 0.28), "on_tori": ((3, 0.3),)}
+    MoreDiscsTable.write(path, measure.rows(300_000, 60_000, 1, **shape))
     return MoreDiscsTable.read(path)
 
 

@@ -2,6 +2,7 @@
 
 from twodiscs.figures import panels
 from twodiscs.figures.style import BLACK, GREY, LOOKS, event_name
+from twodiscs_paper.study import select
 
 #: Inches: heights of a panel of one radius and of the residuals.
 PANEL, RESIDUALS = 1.5, 1.3
@@ -19,13 +20,13 @@ DOTTED = (0, (1, 1.5))
 
 
 def draw(box, tables):
-    """Draw more_discs.csv: full lines are exact values, dotted lines Monte Carlo without them.
+    """Draw the boxes of more_discs.csv: lines are exact values, dotted ones only Monte Carlo.
 
     Times are per pair of discs that has the event, or per disc at the right wall, so that they
     depend little on the number of discs. Open symbols are dynamics, with their standard errors.
     Residuals are beneath.
     """
-    rows = tables["more_discs"]
+    rows = select(tables["more_discs"], periodic=None)
     radii = sorted({row["radius"] for row in rows})
     heights = {f"radius {radius}": PANEL for radius in radii}
     figure, (*upper, lower) = panels.stacked(**heights, residuals=RESIDUALS)

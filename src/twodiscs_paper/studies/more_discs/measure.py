@@ -15,6 +15,7 @@ from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import insertions, many_initial_states
 from twodiscs.theory import flux, n_discs, plain, virial
 from twodiscs.theory.flux import rates
+from twodiscs_paper.studies.more_discs import tori
 from twodiscs_paper.study import row
 
 #: The box per disc, 0.75 × 1: two discs have the box 1.5 × 1.
@@ -27,6 +28,10 @@ DISCS, RADII = (2, 3, 4, 8, 16, 32, 64), (0.1, 0.2, 0.28)
 #: ones, which are followed for longer. They have an eighth of the events, and no insertions, which
 #: take too long.
 FEWER, SHARE = {16: 128, 32: 96, 64: 48}, 1 / 8
+
+#: (number of discs on a torus, their packing fraction): three, whose rate of collisions is exact,
+#: and a fluid.
+ON_TORI = tuple((discs, packing) for discs in (3, 64) for packing in (0.1, 0.3, 0.45))
 
 
 def known_derivatives(scene, hops=True):
@@ -47,7 +52,8 @@ def known_derivatives(scene, hops=True):
 
 def virial_weights(scene):
     """Return ``virial.weights`` of the rates of all events of a class, as in ``flux.rates``."""
-    return {e: weight / copies(scene, e) for e, weight in virial.weights(scene).items()}
+    weights = virial.weights(scene) or {}
+    return {e: weight / copies(scene, e) for e, weight in weights.items()}
 
 
 def virial_sum(scene, rates):
@@ -97,12 +103,38 @@ def _deviate(value, error, other, spread=0.0):
     return (value - other) / size if size else None
 
 
-def rows(events, samples, seed, discs=DISCS, radii=RADII):
+def rows(events, samples, seed, discs=DISCS, radii=RADII, on_tori=ON_TORI):
     """Yield the rows of more_discs.csv, from about ``events`` and ``samples`` for each scene."""
     for radius in radii:
         for number in discs:
             scene = Scene(WIDTH_PER_DISC * number, HEIGHT, radius, discs=number)
             yield from _of_scene(scene, events, samples, seed)
+    for number, packing in on_tori:
+        yield _on_torus(tori.torus(number, packing, "1:1"), events, seed)
+
+
+def _on_torus(scene, events, seed):
+    """Return the row of Z of discs on a torus: three have an exact rate, more the virial series."""
+    (name,), per_rate, known = scene.events, tori.per_collision(scene), known_derivatives(scene)
+    found, errors, _ = dynamics_rates(scene, events, seed)
+    due, spread = (
+        (1 + per_rate * rates(scene, known)[name], 0.0)
+        if known
+        else tori.virial_series(tori.packing_fraction(scene), scene.discs)
+    )
+    value, error = 1 + per_rate * found[name], per_rate * errors[name]
+    return row(
+        _start(scene, "three" if known else "series"), event="compressibility_factor", exact=due,
+        dynamics=value, dynamics_stderr=error, z=_deviate(value, error, due, spread),
+    )  # fmt: skip
+
+
+def _start(scene, theory):
+    return {
+        "discs": scene.discs, "width": scene.width, "height": scene.height, "radius": scene.radius,
+        "periodic": scene.periodic or None, "theory": theory,
+        "states": many_initial_states.method(scene),
+    }  # fmt: skip
 
 
 def _of_scene(scene, events, samples, seed):
@@ -116,10 +148,7 @@ def _of_scene(scene, events, samples, seed):
         else ({}, {})
     )
     found, errors, virial_error = dynamics_rates(scene, events, seed)
-    start = {
-        "discs": scene.discs, "width": scene.width, "height": scene.height, "radius": scene.radius,
-        "theory": theory, "states": many_initial_states.method(scene),
-    }  # fmt: skip
+    start = _start(scene, theory)
     for event in CLASSES:
         time, _ = _time(scene, event, true.get(event))
         sampled_time, spread = _time(scene, event, sampled.get(event), errors_of_samples.get(event))

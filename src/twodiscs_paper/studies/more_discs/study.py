@@ -8,7 +8,7 @@ from twodiscs_paper.study import AS_EXACT, Study, scaled
 class MoreDiscsTable(Table):
     """
     One row per number of discs, radius and event, in boxes whose width is in proportion to the
-    number of discs, at the energy per disc of two discs.
+    number of discs, at the energy per disc of two discs. Six tori have a row each.
     """
 
     columns = {
@@ -16,20 +16,23 @@ class MoreDiscsTable(Table):
         "width": WIDTH,
         "height": HEIGHT,
         "radius": RADIUS,
+        "periodic": TEXT("axes without walls: xy on a torus, otherwise empty"),
         "theory": TEXT(
-            "the theory that gives exact values: plain, three, channel, or none if none is known"
+            "the theory that gives exact values: plain, three, channel, or none if none is known; "
+            "series: the virial series to the tenth coefficient, with the correction of the order "
+            "1/N"
         ),
         "states": TEXT(
             "how initial states are drawn: rejection and channel are exact, chain is tested"
         ),
         "event": TEXT(
             "collisions and hops of any pair of discs, hits of one disc at one wall; virial: the "
-            "sum of rates that is 1"
+            "sum of rates that is 1; compressibility_factor: Z = PA/(N kT) on a torus"
         ),
         "exact": Column(
             float,
-            "time, 1 for virial",
-            "exact mean time over all initial conditions; empty if none is known",
+            "time, 1 for virial and compressibility_factor",
+            "exact mean time over all initial conditions, or Z; empty if none is known",
         ),
         "monte_carlo": AS_EXACT(
             "mean time from volume and area by insertion; empty for 16 discs and more, for which "

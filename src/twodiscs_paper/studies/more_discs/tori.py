@@ -177,6 +177,11 @@ def compressibility(count):
     n = count["replicas"]
     mean = count["sum"] / n
     error = math.sqrt((count["squares"] / n - mean**2) / (n - 1))
-    factor = scene.contact_distance / count["duration"] / math.sqrt(2) / scene.discs
-    factor /= flux_constant(scene.velocity_components)
+    factor = per_collision(scene, count["duration"])
     return 1 + factor * mean, factor * error
+
+
+def per_collision(scene, time=1.0):
+    """Return Z − 1 for each collision in a ``time``, by default for the rate of collisions."""
+    factor = scene.contact_distance / time / math.sqrt(2) / scene.discs
+    return factor / flux_constant(scene.velocity_components)

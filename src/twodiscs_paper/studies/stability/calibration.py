@@ -87,6 +87,7 @@ SCENES = {
     **{
         f"{discs} discs{where}, packing {packing}": packed(discs, packing, periodic)
         for discs, where, periodic, packings in (
+            (8, " on a torus", "xy", (0.3,)),
             (64, "", "", (0.1, 0.3, 0.6, 0.7)), (256, "", "", (0.3, 0.6)),
             (64, " on a ring", "x", (0.3, 0.6)), (64, " on a torus", "xy", (0.3, 0.6, 0.7)),
             (1024, "", "", (0.6,)),
@@ -107,11 +108,12 @@ SIZES = {
     },
     "sample": {
         "least": {"samples": 1}, "usual": {"samples": 3e6}, "error": {"error": 0.03, "budget": 1e7},
+        "torus": {"samples": 2e5},
     },
     "intervals": {"least": {"number": 1}, "usual": {"number": 2**17}},
     "transmission": {"least": {"hops": 1}, "usual": {"hops": 2**15}},
-    "observe": {"least": {"replicas": 1}, "usual": {"replicas": 2**13}},
-    "diffusion": {"least": {"replicas": 1}, "usual": {"replicas": 2**13}},
+    "observe": {"least": {"replicas": 1}, "usual": {"replicas": 2**13}, "torus": {"replicas": 1}},
+    "diffusion": {"least": {"replicas": 1}, "usual": {"replicas": 2**13}, "torus": {"replicas": 1}},
     "cost": {"least": {}},
 }  # fmt: skip
 
@@ -349,7 +351,7 @@ def power_rows(seed):
 
 def rate_rows(seed):
     """Yield rows of more_discs.csv, a row for each method."""
-    for one in more_discs.rows(2**16, 2**16, seed, (2, 3, 4, 8), (0.1, 0.28)):
+    for one in more_discs.rows(2**16, 2**16, seed, (2, 3, 4, 8), (0.1, 0.28), ()):
         for method in ("monte_carlo", "dynamics"):
             values = {"estimate": one.get(method), "stderr": one.get(f"{method}_stderr")}
             yield one | values | {"quantity": "rate", "method": method}
@@ -388,7 +390,7 @@ def _sizes(scene):
     """Return the names of the sizes of calls of a ``Scene``."""
     if scene.discs > MORE:
         packing = scene.discs * math.pi * scene.radius**2 / (scene.width * scene.height)
-        return ("dense",) if packing > 0.65 else ("small",)
+        return ("dense",) if packing > 0.65 else ("small",) if scene.walled else ("small", "torus")
     return ("least",) if scene.discs > MANY else ("least", "usual", "long", "error")
 
 
