@@ -5,13 +5,15 @@ or its limits.
 """
 
 import math
+import warnings
 
 import numpy as np
 import pytest
 from marks import slow
 
+import twodiscs as td
 from twodiscs.model.scene import Scene
-from twodiscs.theory import channel, three
+from twodiscs.theory import channel, exact, three
 from twodiscs.theory.flux import Derivatives
 from twodiscs_paper.studies.more_discs.measure import known_derivatives
 from twodiscs_paper.studies.passages.models.file import limit
@@ -159,3 +161,27 @@ def test_residue_at_close_packing_in_a_channel(share):
 
     extrapolated = 2 * residue(2e5) - residue(1e5)
     assert extrapolated == pytest.approx(2, rel=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("scene", "is_slow"),
+    [
+        (Scene(1.15, 0.5, 0.14, discs=4), True),
+        (Scene(0.5, 1.0, 0.14, discs=4), True),
+        (Scene(1.3, 0.5, 0.14, discs=4), False),
+        (Scene(2.0, 0.5, 0.14, discs=8), False),
+        (Scene(1.5, 1.0, 0.2), False),
+    ],
+    ids=repr,
+)
+def test_exact_says_before_it_begins_that_it_takes_minutes(scene, is_slow, monkeypatch):
+    def begun(scene):
+        raise RuntimeError("begun")
+
+    monkeypatch.setattr(exact, "exact", begun)
+    with (
+        warnings.catch_warnings(record=True, action="always") as found,
+        pytest.raises(RuntimeError, match="begun"),
+    ):
+        td.exact(scene)
+    assert ["may take some minutes" in str(one.message) for one in found] == [True] * is_slow

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Mapping
 from itertools import product
 from typing import TYPE_CHECKING, Any, Unpack
@@ -11,8 +12,9 @@ from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import InputError, check_length
 from twodiscs.model.events import EVENTS
 from twodiscs.model.formats import did_you_mean, quote
-from twodiscs.model.scene import Box
+from twodiscs.model.scene import Box, check_scene
 from twodiscs.theory import exact as theory
+from twodiscs.theory import n_discs
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -118,13 +120,20 @@ def exact(scene: Scene) -> Exact:
     Notes
     -----
     It takes milliseconds for two discs, and less than a second for three and for most channels of
-    more. If a channel is shorter than the row of its discs, it may take some minutes.
+    more. Four to seven discs in a channel that is hardly longer than their row, or shorter, may
+    take minutes; a ``UserWarning`` then says this before the work begins.
 
     Examples
     --------
     >>> td.exact(scene)["regime"]
     'all-hops'
     """
+    if n_discs.takes_minutes(check_scene(scene)):
+        warnings.warn(
+            f"the exact numbers of {scene.discs} discs in a channel that is hardly longer than "
+            "their row may take some minutes; simulate and sample take seconds",
+            stacklevel=2,
+        )
     return theory.exact(scene) | {"areas": areas(scene), "mean_times": mean_times(scene)}
 
 

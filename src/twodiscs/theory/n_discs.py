@@ -27,6 +27,18 @@ def exact_method(scene):
     return "channel" if is_ordered(scene) or is_ordered(scene.turned()) else None
 
 
+def takes_minutes(scene):
+    """Return whether the exact numbers of a ``Scene`` may take minutes instead of seconds.
+
+    These are channels in which A is near a length at which S is stationary (see ``channel``). For
+    eight discs or more the terms of the inverse fall fast: .3 s where four discs take 36 s.
+    """
+    if scene.discs > 7 or exact_method(scene) != "channel":
+        return False
+    length = scene.width if is_ordered(scene) else scene.height
+    return length < 1.1 * scene.discs * 2 * scene.radius
+
+
 @lru_cache(maxsize=1024)
 def known_derivatives(scene, hops=True):
     """Return the ``Derivatives`` of a ``Scene``, None if no exact value is known here.
