@@ -57,8 +57,8 @@ def test_a_pilot_has_the_errors_of_a_run_of_the_same_blocks(blocks, scene):
 
 
 def test_a_pilot_has_the_replicas_of_the_budget(blocks):
-    """A small budget has shorter replicas, and more of them in a block."""
-    run = new_run(td.Scene(40.0, 40.0, 0.5, discs=64), 1.0, 1)
+    """A small budget has shorter replicas, and here 108 of them in a block in place of 25."""
+    run = new_run(td.Scene(9.2, 9.2, 0.5, discs=64), 1.0, 1)
     pilot = cost.pilots(run)["all"]
     events = find_engine(run.scene).expected_event_rate(run.scene) * run.replica_duration
     assert pilot.events / pilot.replicas == pytest.approx(events, rel=0.1)
