@@ -65,7 +65,9 @@ def test_ase_reads_it(path, tmp_path):
     assert [*first.cell.lengths()] == [*sides, 2 * max(scene.radii)][:3]
     assert [*first.pbc] == [axis in scene.periodic for axis in "xyz"]
     assert (*first.get_masses(),) == (scene.masses if scene.discs == 2 else (1.0,) * 3)
-    path.to_xyz(tmp_path / "all.xyz.gz")
+    for name in ("all.xyz.gz", "again.xyz.gz"):
+        path.to_xyz(tmp_path / name)
+    assert (tmp_path / "all.xyz.gz").read_bytes() == (tmp_path / "again.xyz.gz").read_bytes()
     frames = read(tmp_path / "all.xyz.gz", ":", format="extxyz")
     assert [frame.info["Time"] for frame in frames] == [*path["time"]]
     assert first.get_kinetic_energy() == pytest.approx(0.5) or scene.field

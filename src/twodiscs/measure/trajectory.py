@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import gzip
+import io
 import shlex
 from collections.abc import Iterable, Sequence
+from contextlib import ExitStack
 from os import PathLike
 
 import numpy as np
@@ -214,8 +216,11 @@ class Trajectory(pd.DataFrame):
         periodic = " ".join("T" if axis in scene.periodic else "F" for axis in "xyz")
         properties = "species:S:1:pos:R:3:masses:R:1:momenta:R:3:radius:R:1"
         properties += f"{':spin:R:1' if rough else ''}:id:I:1"
-        opened = gzip.open if str(path).lower().endswith(".gz") else open
-        with writing_to(path) as new, opened(new, "wt", encoding="utf-8", newline="\n") as file:
+        with ExitStack() as opened:
+            raw = opened.enter_context(open(opened.enter_context(writing_to(path)), "wb"))
+            if str(path).lower().endswith(".gz"):  # without a name and a time: always equal bytes
+                raw = gzip.GzipFile("", "wb", fileobj=raw, mtime=0)
+            file = opened.enter_context(io.TextIOWrapper(raw, encoding="utf-8", newline="\n"))
             for time, places, speeds, turns in zip(at, centres, velocities, spins, strict=True):
                 file.write(
                     f'{scene.discs}\nLattice="{lattice}" Properties={properties} '
