@@ -133,7 +133,7 @@ MUTANTS = [
     ("costs over the plain scene", 'repetitions), "without_effects")', 'repetitions), "plain")'),
     ("a bound that is hidden", 'else found["z"] or None', "else None"),
     ("the normal law of half as many", "law = number * np.diff", "law = number / 2 * np.diff"),
-    ("discs as an effect that is compiled", 'for text in effects if not text.endswith(" discs")', "for text in effects"),
+    ("discs as an effect that is compiled", 'for n, v in effects.items() if n != "discs"]', "for n, v in effects.items()]"),
     ("one stream for two estimates", 'self._seed("states"), on_surface', 'self._seed("times"), on_surface'),
     ("exponents of the first distances", 'found.sort(key=lambda one: -one["distance"])', 'found.sort(key=lambda one: one["distance"])'),
     ("length of a ring for a disc", "per_disc = scene.width / scene.discs", "per_disc = scene.width / 2"),
