@@ -178,7 +178,7 @@ def test_a_small_budget_has_an_error_bar(discs, packing):
         md = td.simulate(scene, budget=budget, seed=1)
     if packing == 0.7:
         assert "of the 100 replicas that an error needs" in md.note
-        budget = float(md.note.split("a budget of ")[1].split()[0])
+        budget = float(md.note.split("A budget of ")[1].split()[0])
         with pytest.warns(td.AccuracyWarning):
             md = md.more(budget=budget)
     assert 100 <= md.point.replicas < 300
