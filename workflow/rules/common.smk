@@ -44,9 +44,12 @@ SCENES = CONFIGURATION.folders
 RESULTS = CONFIGURATION.results
 CONFIGURED = [scene.name for scene in CONFIGURATION.scenes]
 
-# The command that pages name: it builds this configuration if it is complete, else that of this folder.
-RUN = f"twodiscs run {shlex.quote(str(workflow.configfiles[-1]))}" if workflow.configfiles else ""
-if not RUN or RUN.endswith(" config/config.yaml"):
+# The command that pages name: it builds this configuration if it is complete, else that of this folder. A path has
+# one form, whether the command line or a Snakefile names it: another text would make the report again.
+RUN = "".join(
+    f"twodiscs run {shlex.quote(os.path.relpath(path))}" for path in workflow.configfiles[-1:]
+)
+if RUN in ("", f"twodiscs run {os.path.join('config', 'config.yaml')}"):
     RUN = "snakemake --cores 1"
 
 # The studies that the scenes allow, and their parts.
