@@ -191,7 +191,7 @@ def shown_texts(figure):
 #: Pixels of the rim by which texts may overlap and touch a line; the least contrast on white.
 RIM, CONTRAST = 6, 4.5
 
-#: What a label names if it needs a unit.
+#: A label with one of these quantities needs a unit.
 QUANTITY = re.compile(r"(?<!\\)\b(times?|radius|area|volume|distance|interval)\b|^\$[xyz](_|\$)")
 
 

@@ -103,7 +103,7 @@ def with_code(text):
     return re.sub("<([^<>]+)>", lambda name: code()[name[1]], text)
 
 
-# What must hold -----------------------------------------------------------------------------------
+# Promises of the page -----------------------------------------------------------------------------
 
 
 def compared(scene):

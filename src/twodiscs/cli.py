@@ -6,7 +6,6 @@ import json
 import os
 import signal
 import sys
-from functools import partial
 from inspect import signature
 from io import StringIO, TextIOWrapper
 from warnings import simplefilter
@@ -222,7 +221,7 @@ def _parser():
 
     of_scene("exact", _exact, "exact volume, areas and mean times of one scene")
     text = "mean times by molecular dynamics, beside the exact ones"
-    add = of_scene("simulate", partial(_measure, "simulate"), text)
+    add = of_scene("simulate", _simulate, text)
     text = f"relative standard error, or {', '.join(NAMED_ERRORS)} (1e-3)"
     add("--error", type=value, help=text, completer=ChoicesCompleter(NAMED_ERRORS))
     add("--duration", type=value, help="the time to simulate, instead of an error")
@@ -231,7 +230,7 @@ def _parser():
     add("--events", nargs="+", metavar="EVENT", help=text, completer=ChoicesCompleter(EVENTS))
     _add_shared(add, "--method", "--seed", "--name", "--cores")
     text = "volume and areas by Monte Carlo, beside the exact ones"
-    add = of_scene("sample", partial(_measure, "sample"), text)
+    add = of_scene("sample", _sample, text)
     add("--samples", type=value, help="number of samples, rounded up to whole blocks (1e7)")
     text = f"relative standard error, or {', '.join(NAMED_ERRORS)}, instead of samples"
     add("--error", type=value, help=text, completer=ChoicesCompleter(NAMED_ERRORS))
@@ -326,10 +325,17 @@ def _arguments(options, names):
     return {name: getattr(options, name) for name in names}
 
 
-def _measure(name, scene, options):
-    """Print the result of a function of the face, to which ``options`` give arguments."""
+def _simulate(scene, options):
+    _measure(twodiscs.simulate, scene, options)
+
+
+def _sample(scene, options):
+    _measure(twodiscs.sample, scene, options)
+
+
+def _measure(function, scene, options):
+    """Print the result of a ``function`` of the face, to which ``options`` give arguments."""
     simplefilter("ignore", twodiscs.AccuracyWarning)  # the note has the same sentence
-    function = getattr(twodiscs, name)
     names = signature(function).parameters.keys() & vars(options).keys()
     result = function(scene, **_arguments(options, names))
     if result.note and (options.csv or options.json):

@@ -102,7 +102,7 @@ def test_which_kernel_runs():
     assert make_grid(TORI[0]).y.size == 3
 
 
-#: Of these a trip there and back is compared.
+#: Scenes in which both kernels go there and back.
 RETURNED = [BORDER[3], *SHORT, TORI[1], ROUGH_TOO, ROUGH]
 RETURNED += [slow(BORDER[0]), slow(Scene(48.0, 1.0, 0.1, discs=64))]
 
@@ -127,7 +127,7 @@ def test_advanced_states_are_those_of_the_other_kernel(scene):
     assert states == pytest.approx(start, abs=1e-7 * scene.width)
 
 
-#: Of these the events of a trajectory are compared.
+#: Scenes whose trajectories have the events of the other kernel.
 FOLLOWED = [*KICKED, slow(KICKED_TORUS), slow(BORDER[0]), ROUGH_TOO]
 FOLLOWED += [slow(Scene(8.75, 0.6, 0.18, discs=20, friction=4.0))]
 

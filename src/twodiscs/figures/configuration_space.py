@@ -114,7 +114,7 @@ def _cylinder(axes, half_length, radius):
         along = end * (half_length - abs(across))
         return _seen((*_turned(across, along), radius * sin(angle)))
 
-    # Where light falls on it or not.
+    # Colours of the side in the shade and of the side in the light.
     dark, light = np.array((0.72, 0.60, 0.32)), np.array((0.99, 0.95, 0.82))
     for angle, later in pairwise(angles):
         middle = (angle + later) / 2

@@ -12,7 +12,8 @@ _SHORT_REPR.maxlevel = 2
 #: {a word of other programs: the name here, or a sentence if there is none}.
 SYNONYMS = {
     **dict.fromkeys(("g", "gravity"), "field"),
-    **dict.fromkeys(("r", "diameter"), "radius"),
+    "r": "radius",
+    "diameter": "give the radius, half of the diameter",
     **dict.fromkeys(("n", "particles"), "discs"),
     **dict.fromkeys(("restitution", "elasticity"), "collisions are elastic, without a restitution"),
     **dict.fromkeys(("tol", "rtol", "precision"), "error"),

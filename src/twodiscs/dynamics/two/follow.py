@@ -26,7 +26,7 @@ The experiment then takes a note of the flight. The separation y1 − y2 was −
 flight had a vertical hop. An experiment that counts (``event_counts.Counts``) adds 1 for the hop
 and 256⁴ for the hit of a wall at an end of y: six counts share one double, and each has eight bits.
 Other experiments are strips (``strip.HopsInStrip``), intervals (``returns.Returns``) and passages
-(``passages.NetHops``, ``passages.Clusters``). The page docs/change-it.md adds one.
+(``hop_clusters.NetHops``, ``hop_clusters.Clusters``). The page docs/change-it.md adds one.
 
 In plain Python, one trajectory after the other, the same stands in ``count_replica`` of
 twodiscs_paper/studies/accuracy_cost/scalar.py for counts, and in ``follow`` of
