@@ -11,9 +11,11 @@ import pytest
 from effect_scenes import SCENES
 from marks import slow
 
+import twodiscs as td
 from twodiscs.dynamics import ensemble, paths, runs
 from twodiscs.dynamics.many import many_intervals, many_paths
 from twodiscs.dynamics.two import returns
+from twodiscs.measure.intervals import make_intervals
 from twodiscs.model.scene import Scene
 from twodiscs.points.intervals_point import BIN_GROWTH, N_BINS, wide_edges
 from twodiscs.sampling.many import many_initial_states
@@ -69,6 +71,16 @@ def test_wide_bins_widen():
     growth = np.diff(edges) / np.maximum(edges[:-1], 1)
     assert (growth >= BIN_GROWTH).all()
     assert edges[-1] <= N_BINS < (1 + BIN_GROWTH) * edges[-1]
+
+
+def test_intervals_that_a_budget_ends_say_their_error():
+    """A block of the usual budget is enough for ten per cent, and not for a thousandth."""
+    given = {"seed": 1, "name": None, "bins": None, "hop": "vertical_hop"}
+    short = make_intervals(PAPER, error=0.1, budget=1e6, **given)
+    assert short.note is None
+    with pytest.warns(td.AccuracyWarning, match=r"an error of 0.001 of the mean, but the budget"):
+        short = make_intervals(PAPER, error=1e-3, budget=1e6, **given)
+    assert f"ended the run at {short.mean.relative_stderr:.2g}" in short.note
 
 
 # More than two discs -----------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -14,6 +15,7 @@ from twodiscs.measure.measurements import Measurement, indexed_frame, text_table
 from twodiscs.measure.result import Result, note_of_number, work
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import (
+    AccuracyWarning,
     InputError,
     check_choice,
     check_count,
@@ -22,6 +24,7 @@ from twodiscs.model.checks import (
     check_numbers,
 )
 from twodiscs.model.events import HOPS
+from twodiscs.model.formats import format_number
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.points.estimates import why_no_error
 from twodiscs.points.intervals_point import wide_edges
@@ -102,6 +105,13 @@ class Intervals(Result):
         self.intervals, self.overflow = point.intervals, point.overflow
         number = settings.get("number", self.intervals)
         self.note = note_of_number("intervals", number, self.intervals)
+        reached, asked = point.stderr / point.mean, settings.get("error")
+        if asked is not None and reached > asked:
+            self.note = (
+                f"You asked for an error of {format_number(asked, 'g')} of the mean, but the "
+                f"budget of {format_number(settings['budget'], 'g')} events ended the run at "
+                f"{format_number(reached, '.2g')}."
+            )
         self.rows = HopHistogramTable.rows([point])
         self.counts = point.equal.counts
         # Wide bins, which have the same intervals again, come after the others.
@@ -216,6 +226,11 @@ def intervals(
         rough discs without friction, and for more than two discs if it is not known whether they
         can hop.
 
+    Warns
+    -----
+    AccuracyWarning
+        If 1e11 events end the run before it has the ``error``.
+
     Examples
     --------
     >>> abs(td.intervals(scene, "vertical_hop", 1e5, seed=1).mean.z) < 5
@@ -254,7 +269,10 @@ def make_intervals(scene, **asked):
             lambda t: t.size > 1 and t[0] >= 0 and t[-1] < np.inf and np.all(np.diff(t) > 0),
         ).tolist()  # fmt: skip
         run = replace(run, edges=settings["bins"])
-    return Intervals(scene, work("intervals", run, asked), settings)
+    found = Intervals(scene, work("intervals", run, asked), settings)
+    if found.note and error is not None:
+        warnings.warn(found.note, AccuracyWarning, stacklevel=4)
+    return found
 
 
 Intervals.makers = {"intervals": make_intervals}
