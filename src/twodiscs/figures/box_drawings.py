@@ -13,6 +13,9 @@ from twodiscs.figures.curves import limits
 from twodiscs.figures.style import BLACK, BLUE, COLUMN, GREY, VERMILLION, new_figure
 from twodiscs.model.scene import Box
 
+#: The white rim of a label that may stand on a line.
+RIM = {"path_effects": [withStroke(linewidth=2, foreground="w")]}
+
 # The billiard -------------------------------------------------------------------------------------
 
 
@@ -43,7 +46,7 @@ def draw_model(box):
         (lambda x, away: (x, top + away), (0, a), "a=w/2-r", (0, 6), 0),
         (lambda y, away: (right + away, y), (0, b), "b=h/2-r" if tall else "b", (7, 0), 90 * tall),
     ):
-        drawing.dimensions(axes, at, stops, [text], offset, beyond=4, rotation=turn)
+        drawing.dimensions(axes, at, stops, [text], offset, beyond=4, rotation=turn, **RIM)
     return figure
 
 
@@ -53,16 +56,16 @@ def _disc(axes, number, centre, radius, velocity):
     colour = drawing.DISCS[number - 1][1]
     drawing.disc(axes, number, centre, radius)
     drawing.arrow(axes, centre, (x - radius, y), width=0.5, size=5)
-    drawing.label(axes, "$r$", (x - radius, y), (-5, 0))
+    drawing.label(axes, "$r$", (x - radius, y), (-5, 0), **RIM)
     head = (x + velocity[0], y + velocity[1])
     size = hypot(*velocity) / 6
     drawing.arrow(axes, centre, head, colour=colour, width=1)
     beyond = (velocity[0] / size, velocity[1] / size)
-    drawing.label(axes, rf"$\mathbf{{v}}_{number}$", head, beyond)
+    drawing.label(axes, rf"$\mathbf{{v}}_{number}$", head, beyond, **RIM)
     # On the side towards the middle of the box, which is empty.
     rim = (x - 0.6 * radius, y + copysign(0.8 * radius, velocity[1]))
     offset = (-4, copysign(5, velocity[1]))
-    drawing.label(axes, rf"$\mathbf{{x}}_{number}$", rim, offset)
+    drawing.label(axes, rf"$\mathbf{{x}}_{number}$", rim, offset, **RIM)
 
 
 # The largest radius -------------------------------------------------------------------------------
@@ -141,7 +144,7 @@ def _map(axes, box):
     if shape < last:
         axes.plot([shape, shape], [0, end], color=GREY, lw=0.8, ls=(0, (3, 2)), clip_on=False)
         axes.plot(shape, end, "o", color=BLACK, clip_on=False, zorder=5, label="this box")
-        axes.legend(loc="lower right", handlelength=1)
+        axes.legend(loc="lower left" if shape > 2.5 else "lower right", handlelength=1)
     else:
         drawing.arrow(axes, (last - 0.25, 0.46), (last, 0.46))
         drawing.label(axes, f"${long}/{short}={shape:g}$", (last - 0.25, 0.46), (-4, 0), ha="right")
@@ -242,7 +245,7 @@ def _angle(axes, name, angle, radius, above=0.0):
     size, middle = 2 * radius, (angle + above) / 2
     axes.add_patch(Arc((0, 0), size, size, theta2=degrees(angle), lw=0.7, clip_on=False))
     at = (radius * cos(middle), radius * sin(middle))
-    drawing.label(axes, name, at, (6, 0), path_effects=[withStroke(linewidth=2, foreground="w")])
+    drawing.label(axes, name, at, (6, 0), **RIM)
 
 
 def _ends(axes, name, end, sigma, points, at, offset):
