@@ -170,7 +170,8 @@ def test_residue_at_close_packing_in_a_channel(share):
         (Scene(0.5, 1.0, 0.14, discs=4), True),
         (Scene(1.3, 0.5, 0.14, discs=4), False),
         (Scene(2.0, 0.5, 0.14, discs=8), False),
-        (Scene(1.5, 1.0, 0.2), False),
+        (Scene(0.6, 0.5, 0.14), False),
+        (Scene(1.5, 1.0, 0.2, field=0.3), False),
     ],
     ids=repr,
 )
