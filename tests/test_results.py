@@ -535,3 +535,17 @@ def test_a_density_that_the_bins_do_not_resolve_has_no_value():
     resolved = td.intervals(scene, "horizontal_hop", error=0.01)
     assert abs(resolved.at_zero.value - near.exact) < 5 * resolved.at_zero.stderr
     assert resolved.mean.relative_stderr < 0.01
+
+
+def test_bins_of_your_own_are_one_kind_and_may_be_empty():
+    """A figure then begins with the first bin that has intervals."""
+    scene = td.Scene(1.5, 1.0, 0.2)
+    for bins in ([0, 1e-9, 1, 2], [0, 1e-9]):
+        found = td.intervals(scene, "vertical_hop", 1, bins=bins)
+        assert found.counts[0] == 0
+        assert [row["bins"] for row in found.rows] == ["own"] * (len(bins) - 1)
+        whole, short = td.plot(found).axes
+        for axes in (whole, short):
+            steps = [patch.get_data().edges for patch in axes.patches]
+            due = [np.array(bins[1:]) / found.mean.exact] * (len(bins) > 2)
+            np.testing.assert_allclose(steps, due)

@@ -91,15 +91,15 @@ def test_of_very_many_discs_some_lines_are_drawn():
     assert np.diff(np.searchsorted(starts, drawn)).max() <= 3
 
 
-def test_a_curve_ends_before_a_bin_that_holds_too_few():
-    counts, rows = [500, 400, 9, 30], []
+def test_a_curve_has_the_first_bins_that_hold_enough():
+    counts, rows = [0, 500, 400, 9, 30], []
     for i, n in enumerate(counts):
         row = {"left": i / 4, "right": (i + 1) / 4, "count": n, "exact_mean": 0.5}
         rows.append(row | {"density": 2.0 * n, "stderr": 1.0 * n})
-    for fewest, shown in ((10, 2), (1, 4), (1000, 0)):
+    for fewest, stop in ((10, 3), (1, 5), (1000, 1)):
         edges, density, errors = motion.curve(rows, fewest)
-        assert edges.tolist() == [i / 2 for i in range(shown + 1)]
-        assert density.tolist() == (2 * errors).tolist() == counts[:shown]
+        assert edges.tolist() == [i / 2 for i in range(1, stop + 1) if stop > 1]
+        assert density.tolist() == (2 * errors).tolist() == counts[1:stop]
 
 
 def test_a_density_that_bins_are_too_wide_for_is_not_marked():

@@ -416,7 +416,7 @@ class HopHistogramTable(Table):
         "event": TEXT("the hop"),
         "bins": TEXT(
             "equal: bins about as wide as τ/16; wide: the same intervals in bins that widen with "
-            "time"
+            "time; own: bins with given edges"
         ),
         "left": TIME("lower edge of the bin"),
         "right": TIME("upper edge of the bin"),

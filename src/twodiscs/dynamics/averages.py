@@ -9,7 +9,7 @@ import numpy as np
 
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import open_block_kicks
-from twodiscs.dynamics.paths import MOST_PATH_EVENTS, move_into_cell
+from twodiscs.dynamics.paths import MOST_PATH_EVENTS, check_states, move_into_cell
 from twodiscs.model.checks import InputError, check_numbers, has_units
 from twodiscs.model.formats import format_number, quote
 from twodiscs.model.many_geometry import LARGE
@@ -149,7 +149,8 @@ class ObserveRun(Run):
     values at the last time before these, None if there is none. ``steps`` are the differences of
     successive times. ``names`` are then the names of the averages.
 
-    ``starts`` are states (components, replicas) in place of those of the invariant measure.
+    ``starts`` are states (components, replicas) in place of those of the invariant measure, or True
+    for sums of a file, which does not hold them.
 
     Sums are the number of replicas, the mean and the sum of squared deviations.
     """
@@ -164,6 +165,8 @@ class ObserveRun(Run):
     starts: np.ndarray | None = None
 
     def __post_init__(self):
+        if isinstance(self.starts, np.ndarray):
+            check_states(self.scene, self.starts, "starts")
         most, last = MOST_PATH_EVENTS / self._rate, self.times[-1]
         if last > most:
             raise InputError(

@@ -1,6 +1,6 @@
 """Figures of the motion: hops of two discs, world lines of many, and intervals between hops."""
 
-from itertools import groupby, takewhile
+from itertools import dropwhile, groupby, takewhile
 
 import numpy as np
 from matplotlib import colormaps
@@ -197,7 +197,10 @@ def draw_hop_histogram(box, rows):
         colour, marker = SERIES[i % len(SERIES)]
         # A curve ends before a bin with fewest intervals; symbols are some mean times apart.
         for axes, bins, fewest, apart in ((whole, "wide", 10, 1.2), (short, "equal", 1, 0.4)):
-            edges, density, errors = curve([r for r in group if r["bins"] == bins], fewest)
+            own = [row for row in group if row["bins"] in (bins, "own")]
+            edges, density, errors = curve(own, fewest)
+            if not density.size:
+                continue
             middles = (edges[1:] + edges[:-1]) / 2
             wanted = apart * np.arange(0.4 + i / len(groups), middles[-1] / apart)
             at = np.unique(np.searchsorted(middles, wanted))
@@ -241,11 +244,15 @@ def _mark_zero(axes, box, row, colour):
 def curve(rows, fewest):
     """Return (edges, density, standard error) in units of the mean interval, exact if it is known.
 
-    ``rows`` are successive bins of one radius. The first bin with fewer than ``fewest`` intervals
-    and all later ones are left out.
+    ``rows`` are successive bins of one radius. The first bins that have ``fewest`` intervals or
+    more are shown; bins before and after them are left out.
     """
-    shown = list(takewhile(lambda row: row["count"] >= fewest, rows))
+
+    def is_few(row):
+        return row["count"] < fewest
+
+    shown = list(takewhile(lambda row: not is_few(row), dropwhile(is_few, rows)))
     mean = rows[0]["exact_mean"] or rows[0]["mean"]
-    edges = [rows[0]["left"], *(row["right"] for row in shown)]
-    values = ([row[name] * mean for row in shown] for name in ("density", "stderr"))
-    return np.array(edges) / mean, *map(np.array, values)
+    edges = [row["left"] for row in shown[:1]] + [row["right"] for row in shown]
+    values = ([row[name] for row in shown] for name in ("density", "stderr"))
+    return np.array(edges) / mean, *(np.array(each, float) * mean for each in values)

@@ -100,7 +100,7 @@ class Intervals(Result):
     kind = "intervals"
 
     def __init__(self, scene, point, settings):
-        self.scene, self.hop = scene, point.event
+        self.scene, self.hop, most = scene, point.event, resolved_width(scene)
         self.settings, self.components = settings, point.components
         self.intervals, self.overflow = point.intervals, point.overflow
         number = settings.get("number", self.intervals)
@@ -114,7 +114,7 @@ class Intervals(Result):
             )
         self.rows = HopHistogramTable.rows([point])
         self.counts = point.equal.counts
-        # Wide bins, which have the same intervals again, come after the others.
+        # Wide bins, which points of a build have, follow the others and have the same intervals.
         self._bins = self.rows[: len(self.counts)]
         self.edges = [row["left"] for row in self._bins] + [self._bins[-1]["right"]]
         first, z = self.rows[0], self.rows[0]["z"]
@@ -123,14 +123,14 @@ class Intervals(Result):
             f"{self.hop}_interval", point.mean, first["mean_stderr"], first["exact_mean"], z,
             point.intervals, status, "time",
         )  # fmt: skip
-        density = point.estimate("density_at_zero")
         exact = laws.density_at_zero(scene, self.hop) if scene.is_plain else None
-        at_zero, error, status = density.value, density.stderr, "extrapolated"
-        if why_no_error(intervals=min(self.counts[:2])):
-            error, status = None, "too-few"
-        first, second, third = self.edges[:3] if len(self.edges) > 2 else (0.0, 1.0, 0.0)
-        if first or third != 2 * second or second > resolved_width(scene):
-            at_zero, error, status = None, None, "not-resolved"
+        at_zero, error, status = None, None, "not-resolved"
+        width = self.edges[1]
+        if self.edges[:3] == [0, width, 2 * width] and width <= most:
+            density, status = point.estimate("density_at_zero"), "extrapolated"
+            at_zero, error = density.value, density.stderr
+            if why_no_error(intervals=min(self.counts[:2])):
+                error, status = None, "too-few"
         values = at_zero, error, exact, None, sum(self.counts[:2]), status, "1/time"
         self.at_zero = Measurement("density_at_zero", *values)
 
@@ -236,40 +236,46 @@ def intervals(
     >>> abs(td.intervals(scene, "vertical_hop", 1e5, seed=1).mean.z) < 5
     True
     """
-    return make_intervals(**locals())
+    settings = hop, seed, name, number, error, bins
+    return make_intervals(scene, *settings, cores=cores, progress=progress)
 
 
-def make_intervals(scene, **asked):
-    """Return the ``Intervals`` of the arguments that are ``asked``, see ``Result``.
+#: The bins of a point of a build.
+EQUAL_BINS = ("equal",)
+
+
+def make_intervals(
+    scene, hop, seed, name, number=None, error=None, bins=EQUAL_BINS, budget=None, **how
+):
+    """Return the ``Intervals`` of the arguments of ``intervals``; ``how`` is for ``work``.
 
     A point of a build also has a ``budget``, the largest number of wall hits and collisions.
     """
-    hop = check_choice("hop", asked["hop"], HOPS)
+    check_choice("hop", hop, HOPS)
     if check_scene(scene).moment_of_inertia is not None and not scene.friction:
         raise InputError(
             "scene must have smooth discs, because rough discs in a box are not ergodic and their "
             f"intervals have no exact mean, but moment_of_inertia is {scene.moment_of_inertia!r}"
         )
-    number, error = asked.get("number"), asked.get("error")
     if number is not None and error is not None:
         raise InputError("number and error must not both be given: leave out one of them")
     from twodiscs.dynamics.runs import INTERVALS_BUDGET, IntervalsRun
 
-    settings = {"hop": hop, "seed": check_integer("seed", asked["seed"], 0), "name": asked["name"]}
+    settings = {"hop": hop, "seed": check_integer("seed", seed, 0), "name": name}
     if error is None:
         settings["number"] = check_count("number", 10**6 if number is None else number)
     else:
         settings["error"] = check_error("error", error)
-    settings["budget"] = check_count("budget", asked.get("budget", INTERVALS_BUDGET))
+    settings["budget"] = check_count("budget", INTERVALS_BUDGET if budget is None else budget)
     run = IntervalsRun.of(scene, settings)
-    if "bins" in asked:  # a point of a build has equal bins
-        bins = resolving_edges(scene, hop) if asked["bins"] is None else asked["bins"]
+    if bins is not EQUAL_BINS:
+        bins = resolving_edges(scene, hop) if bins is None else bins
         settings["bins"] = check_numbers(
             "bins", bins, "two or more ascending edges from 0 on",
             lambda t: t.size > 1 and t[0] >= 0 and t[-1] < np.inf and np.all(np.diff(t) > 0),
         ).tolist()  # fmt: skip
         run = replace(run, edges=settings["bins"])
-    found = Intervals(scene, work("intervals", run, asked), settings)
+    found = Intervals(scene, work("intervals", run, **how), settings)
     if found.note and error is not None:
         warnings.warn(found.note, AccuracyWarning, stacklevel=4)
     return found

@@ -148,13 +148,12 @@ def from_dict(content):
         from twodiscs.measure.observe import Observed
         from twodiscs.measure.transmission import Transmission
 
-        kinds = Measurements, Intervals, Transmission, Observed
-        makers = {kind: make for one in kinds for kind, make in one.makers.items()}
+        results = Measurements, Intervals, Transmission, Observed
         kind, settings = content["kind"], content["settings"]
-        numbers = float if kind in Observed.makers else int
-        components = FinishedComponents(restore_arrays(content["parts"], numbers))
+        result = {kind: one for one in results for kind in one.makers}[kind]
+        parts = FinishedComponents(restore_arrays(content["parts"], result.sums))
         with np.errstate(invalid="ignore"):  # counts that no run has are refused below
-            found = makers[kind](Scene(**content["scene"]), **settings, resume_from=components)
+            found = result.makers[kind](Scene(**content["scene"]), **settings, resume_from=parts)
         # A point of a build has some of the settings, maybe in another order.
         is_right, known = settings.keys() <= found.settings.keys(), {"settings": settings}
     made = found.to_dict() | known | {"twodiscs": content["twodiscs"]}

@@ -285,17 +285,15 @@ class Measurements(Result, Mapping[str, Measurement]):
 
         names, means, covariances = self.point.moments()
         known = [k for k, n in enumerate(names) if n in self and self[n].stderr is not None]
-        if not known:
+        found = {names[k]: self[names[k]].value for k in known}
+        if not found:
             return {}
-        numbers = correlated_values(means[known], covariances[np.ix_(known, known)])
-        by_name = {}
-        for k, number in zip(known, numbers, strict=True):
-            one = self[names[k]]
-            # A mean time is inversely proportional to its mean count, an area proportional to hits.
-            ratio = means[k] / number if self.kind == "simulate" else number / means[k]
-            by_name[one.quantity] = one.value * ratio
-        walls_known = self.kind == "sample" and {*WALL_AREAS} <= by_name.keys()
-        if walls_known and "any_wall_area" not in names:
+        # Areas are proportional to their means, times inversely: two signs that change together.
+        scales = np.array([*found.values()]) / means[known]
+        scaled = covariances[np.ix_(known, known)] * np.outer(scales, scales)
+        numbers = correlated_values([*found.values()], scaled)
+        by_name = dict(zip(found, numbers, strict=True))
+        if {*WALL_AREAS} <= by_name.keys() and "any_wall_area" not in names:
             weights = wall_weights(self.scene)
             by_name["any_wall_area"] = sum(n * by_name[wall] for wall, n in weights.items())
         return by_name
@@ -457,19 +455,21 @@ def simulate(
     """
     if error is None and duration is None:
         error = 1e-3
-    return make_simulation(**locals())
+    settings = error, budget, seed, name, duration, events, method
+    return make_simulation(scene, *settings, cores=cores, progress=progress)
 
 
-def make_simulation(scene, **asked):
-    """Return the ``Measurements`` of the arguments that are ``asked``, see ``Result``."""
-    error, duration, budget = (asked.get(name) for name in ("error", "duration", "budget"))
+def make_simulation(
+    scene, error, budget, seed, name, duration=None, events=None, method=None, **how
+):
+    """Return the ``Measurements`` of the arguments of ``simulate``; ``how`` is for ``work``."""
     possible, timed = check_scene(scene).events, duration is not None
     if timed and error is not None:
         raise InputError("error and duration must not both be given: leave out one of them")
-    tracked, target = _targets(error, "events", "event", asked.get("events"), possible, scene)
+    tracked, target = _targets(error, "events", "event", events, possible, scene)
     budget = None if budget is None else check_count("budget", budget)
-    settings = {"seed": check_integer("seed", asked["seed"], 0), "budget": budget}
-    settings |= {"events": tracked, "name": asked["name"], "method": asked.get("method")}
+    settings = {"seed": check_integer("seed", seed, 0), "budget": budget}
+    settings |= {"events": tracked, "name": name, "method": method}
     if timed:
         duration = check_length("duration", duration)
         settings |= {"error": None, "duration": duration}
@@ -477,7 +477,7 @@ def make_simulation(scene, **asked):
         settings["error"] = target if isinstance(error, Mapping) else check_error("error", error)
     from twodiscs.dynamics.runs import DynamicsRun
 
-    point = work("simulate", DynamicsRun.of(scene, settings), asked)
+    point = work("simulate", DynamicsRun.of(scene, settings), **how)
     rows = MeanTimesTable.rows([point])
     if timed:
         note = (
@@ -601,34 +601,32 @@ def sample(
     >>> abs(volume.value - td.volume(scene)) < 5 * volume.stderr
     True
     """
-    return make_sampling(**locals())
+    settings = quantities, shell, seed, name, samples, error, budget, method
+    return make_sampling(scene, *settings, cores=cores, progress=progress)
 
 
-def make_sampling(scene, **asked):
-    """Return the ``Measurements`` of the arguments that are ``asked``, see ``Result``."""
-    samples, error, budget = (asked.get(name) for name in ("samples", "error", "budget"))
+def make_sampling(
+    scene, quantities, shell, seed, name, samples=None, error=None, budget=None, method=None, **how
+):
+    """Return the ``Measurements`` of the arguments of ``sample``; ``how`` is for ``work``."""
     if error is not None and samples is not None:
         raise InputError("samples and error must not both be given: leave out one of them")
     if error is None and budget is not None:
         raise InputError("budget must be left out without an error: samples is the number to draw")
     allowed = ("volume", *(f"{event}_area" for event in check_scene(scene).events))
-    key = "quantities", "quantity"
-    quantities, target = _targets(error, *key, asked["quantities"], allowed, scene)
-    settings = {"seed": check_integer("seed", asked["seed"], 0), "quantities": quantities}
-    settings |= {"name": asked["name"], "method": asked.get("method")}
-    settings["shell"] = check_fraction("shell", asked["shell"], THINNEST_SHELL)
+    quantities, target = _targets(error, "quantities", "quantity", quantities, allowed, scene)
+    settings = {"seed": check_integer("seed", seed, 0), "quantities": quantities, "name": name}
+    settings |= {"method": method, "shell": check_fraction("shell", shell, THINNEST_SHELL)}
     if error is None:
         samples = check_count("samples", 10**7 if samples is None else samples)
         settings["samples"] = samples
     else:
         settings["error"] = target if isinstance(error, Mapping) else check_error("error", error)
         settings["budget"] = None if budget is None else check_count("budget", budget)
-    from twodiscs.sampling.initial_states import require_free_fraction
     from twodiscs.sampling.montecarlo import PROPOSAL_TIME, MonteCarloRun
 
-    require_free_fraction(scene)
     run = MonteCarloRun.of(scene, settings)
-    point = work("sample", run, asked)
+    point = work("sample", run, **how)
     rows = VolumeTable.rows([point]) + AreasTable.rows([point])
     # Insertions always have the volume.
     rows = [row for row in rows if row["quantity"] in quantities]

@@ -131,7 +131,7 @@ def frames(
     >>> found["x"].mean(axis=(0, 2)).shape  # an average at each time
     (3,)
     """
-    seed, times = job_seed(check_scene(scene), "observe", seed, name), check_times(times)
+    seed, times = job_seed(scene, "observe", seed, name), check_times(times)
     most = max(1, MOST_NUMBERS // (len(components(scene)) * times.size))
     run = ObserveRun(scene, seed, times, check_count("number", number, most=most), None)
 
@@ -187,6 +187,8 @@ class Observed(Result):
     note: str | None = None
     names: tuple[str, ...] = ()
     function: Callable | Mapping[str, Callable] | None = None
+
+    sums = float
 
     def _again(self, **asked):
         if self.kind == "observe" and asked["function"] == self.settings["function"]:
@@ -297,31 +299,30 @@ def observe(
     >>> bool(abs(found.mean[0] - 1 / 4) < 5 * found.stderr[0])  # ⟨u₁²⟩ of four components
     True
     """
-    return make_observed(**locals())
+    settings = function, times, replicas, starts, seed, name
+    return make_observed(scene, *settings, cores=cores, progress=progress)
 
 
-def make_observed(scene, function, starts=None, **asked):
-    """Return the ``Observed`` of the arguments that are ``asked``, see ``Result``.
+def make_observed(scene, function, times, replicas, starts=None, seed=1, name=None, **how):
+    """Return the ``Observed`` of the arguments of ``observe``; ``how`` is for ``work``.
 
     For a result from a file the function is its name, a text, and ``starts`` are true if there
     were some.
     """
-    own = {"starts": True} if starts is not None else {}
-    if isinstance(asked.get("resume_from"), FinishedComponents):
-        own["function"] = function
-        return _averages("observe", scene, own, asked, None, starts=starts)
-    if starts is not None and (asked["replicas"] is not None or "resume_from" in asked):
+    settings = {"times": times, "replicas": replicas, "seed": seed, "name": name}
+    settings |= {"starts": True} if starts is not None else {}
+    if isinstance(how.get("resume_from"), FinishedComponents):
+        return _averages("observe", scene, settings | {"function": function}, how, None, starts)
+    if starts is not None and (replicas is not None or "resume_from" in how):
         raise InputError("replicas must be left out with starts, which are all followed")
     if starts is not None:
-        from twodiscs.dynamics.paths import check_states
         from twodiscs.measure.trajectory import from_corner
 
         starts = given_states(scene, from_corner(check_scene(scene), starts))
-        check_states(scene, starts, "starts")
-        asked["replicas"] = starts.shape[1]
-    elif asked["replicas"] is None:
-        asked["replicas"] = 2**16
-    if function is None and "resume_from" in asked:
+        settings["replicas"] = starts.shape[1]
+    elif replicas is None:
+        settings["replicas"] = 2**16
+    if function is None and "resume_from" in how:
         raise InputError(
             "function must be given again to go on from a file, which does not hold it: "
             "more(replicas, function=…)"
@@ -334,21 +335,23 @@ def make_observed(scene, function, starts=None, **asked):
     def called(start, now):
         return {name: one(start, now) for name, one in functions.items()}
 
-    own["function"], taken = ", ".join(map(str, functions)), called if by_name else function
-    found = _averages("observe", scene, own, asked, taken, starts=starts)
+    settings["function"] = ", ".join(map(str, functions))
+    taken = called if by_name else function
+    found = _averages("observe", scene, settings, how, taken, starts)
     return replace(found, function=function)
 
 
-def _averages(kind, scene, own, asked, *given, starts=None):
-    """Return the ``Observed`` of a ``kind``, with its ``own`` settings; see ``ObserveRun``."""
-    seed = job_seed(check_scene(scene), "observe", asked["seed"], asked["name"])
-    times, replicas = check_times(asked["times"]), asked["replicas"]
-    replicas = check_count("replicas", replicas, most=10**9)
+def _averages(kind, scene, settings, how, function, starts=None, **given):
+    """Return the ``Observed`` of a ``kind``, with its ``settings``; see ``ObserveRun``."""
+    seed = job_seed(scene, "observe", settings["seed"], settings["name"])
+    times = check_times(settings["times"])
+    replicas = check_count("replicas", settings["replicas"], most=10**9)
     if starts is not None and replicas < 2:
         raise InputError("starts must be two states or more, for an error, not 1")
-    found = work(kind, ObserveRun(scene, seed, times, replicas, *given, starts=starts), asked)
-    settings = own | {"times": times.tolist(), "replicas": replicas, "seed": int(asked["seed"])}
-    settings["name"], note = asked["name"], note_of_number("replicas", replicas, found["replicas"])
+    run = ObserveRun(scene, seed, times, replicas, function, starts=starts, **given)
+    found = work(kind, run, **how)
+    settings |= {"times": times.tolist(), "replicas": replicas, "seed": int(settings["seed"])}
+    note = note_of_number("replicas", replicas, found["replicas"])
     if starts is not None:
         note = f"{replicas} given starts: errors hold if they are independent"
     return Observed(kind, scene, times, **found, settings=settings, note=note)
@@ -412,11 +415,12 @@ def diffusion(
     >>> bool(0.02 < found.frame()["diffusion"].iloc[-1] < 0.05)
     True
     """
-    return make_diffusion(**locals())
+    settings = times, replicas, axis, seed, name
+    return make_diffusion(scene, *settings, cores=cores, progress=progress)
 
 
-def make_diffusion(scene, axis, **asked):
-    """Return the ``Observed`` of the arguments that are ``asked``, see ``Result``."""
+def make_diffusion(scene, times, replicas, axis, seed, name, **how):
+    """Return the ``Observed`` of the arguments of ``diffusion``; ``how`` is for ``work``."""
     periodic = check_scene(scene).periodic
     if not periodic or (axis is not None and not (isinstance(axis, str) and axis in [*periodic])):
         allowed = f"one of {', '.join(periodic)}" if periodic else "periodic in the scene"
@@ -425,7 +429,7 @@ def make_diffusion(scene, axis, **asked):
             "have a bound"
         )
     axis = axis or periodic[0]
-    if check_times(asked["times"])[0] == 0:
+    if check_times(times)[0] == 0:
         raise InputError("times must be above 0 for diffusion, not 0")
     discs = range(1, scene.discs + 1 if scene.identical else 2)
 
@@ -437,8 +441,9 @@ def make_diffusion(scene, axis, **asked):
         slopes = np.diff(values, axis=1, prepend=before[:, None]) / (2 * steps)
         return np.stack([values, slopes], axis=2)
 
-    given = squared, ("squared_displacement", "diffusion"), with_slopes
-    return _averages("diffusion", scene, {"axis": axis}, asked, *given)
+    settings = {"axis": axis, "times": times, "replicas": replicas, "seed": seed, "name": name}
+    given = {"names": ("squared_displacement", "diffusion"), "over_times": with_slopes}
+    return _averages("diffusion", scene, settings, how, squared, **given)
 
 
 Observed.makers = {"observe": make_observed, "diffusion": make_diffusion}

@@ -68,11 +68,13 @@ class Result(Printed):
     ``settings`` are its arguments beside the scene, {name: value}, with the seed and the error that
     was asked for; ``version`` is the version of the package. ``components`` are those of its run
     (see ``points.base``), from which it goes on. ``makers`` are the functions that make a result,
-    {kind: function}: each takes the arguments of its call, and the components ``resume_from``.
+    {kind: function}: each takes the arguments of its call, and the components ``resume_from``. Its
+    sums are numbers of the type ``sums``.
     """
 
     kind: ClassVar[str]
     makers: ClassVar[dict[str, Callable]]
+    sums: ClassVar[type] = int
     components: dict[str, dict]
     version: str = twodiscs.__version__
     #: The difference between the work that was asked for and the work that was done, None if none.
@@ -180,14 +182,13 @@ class Result(Printed):
         write_json(path, self.to_dict())
 
 
-def work(kind, run, asked):
+def work(kind, run, cores=1, progress=None, resume_from=None):
     """Return the point of a ``run`` of a ``kind`` of result, with a progress bar.
 
-    The arguments that are ``asked`` may have ``cores``, ``progress``, and ``resume_from``, the
-    components of an earlier run, which are not done again.
+    The components ``resume_from`` of an earlier run are not done again.
     """
-    with progress_bar(asked.get("progress"), f"{kind} r = {run.scene.radius:g}") as progress:
-        return run.run(progress, asked.get("cores", 1), asked.get("resume_from"))
+    with progress_bar(progress, f"{kind} r = {run.scene.radius:g}") as progress:
+        return run.run(progress, cores, resume_from)
 
 
 def note_of_number(what, asked, done, fewer="the budget ended the run"):

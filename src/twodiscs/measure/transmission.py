@@ -191,22 +191,18 @@ def transmission(
     >>> 0.5 < td.transmission(rare, "horizontal_hop", 2**12, seed=1).coefficient.value < 1
     True
     """
-    return make_transmission(**locals())
+    return make_transmission(scene, hop, hops, seed, name, cores=cores, progress=progress)
 
 
-def make_transmission(scene, **asked):
-    """Return the ``Transmission`` of the arguments that are ``asked``, see ``Result``."""
-    settings = {
-        "hop": check_choice("hop", asked["hop"], HOPS),
-        "hops": check_count("hops", asked["hops"], most=10**9),
-        "seed": check_integer("seed", asked["seed"], 0),
-        "name": asked["name"],
-    }
+def make_transmission(scene, hop, hops, seed, name, **how):
+    """Return the ``Transmission`` of these arguments; ``how`` is for ``work``."""
+    settings = {"hop": check_choice("hop", hop, HOPS), "hops": check_count("hops", hops, 10**9)}
+    settings |= {"seed": check_integer("seed", seed, 0), "name": name}
     from twodiscs.dynamics.transmission import TransmissionRun
 
-    found = work("transmission", TransmissionRun(check_scene(scene), **settings), asked)
+    found = work("transmission", TransmissionRun(check_scene(scene), **settings), **how)
     note = note_of_number("hops", settings["hops"], found["curve"][0].n)
-    return Transmission(scene, settings["hop"], **found, settings=settings, note=note)
+    return Transmission(scene, hop, **found, settings=settings, note=note)
 
 
 Transmission.makers = {"transmission": make_transmission}

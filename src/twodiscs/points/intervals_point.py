@@ -46,7 +46,7 @@ class Bins(NamedTuple):
 
 
 class HistogramBin(NamedTuple):
-    """One bin: "equal" or "wide", its edges, its count, and the density as an ``Estimate``."""
+    """A bin: "equal", "wide" or "own", its edges, its count, its density as an ``Estimate``."""
 
     bins: str
     left: float
@@ -59,8 +59,8 @@ class HistogramBin(NamedTuple):
 class IntervalsPoint(Point):
     """Intervals of independent ``chains`` in ``equal`` bins from 0 on, ``overflow`` beyond them.
 
-    ``wide`` bins, which widen with time, have the same intervals again. Bins of your own are both
-    of them, and ``overflow`` is the number of intervals outside. ``mean`` is the mean of all
+    ``wide`` bins, which widen with time, have the same intervals again. Bins of your own have None,
+    and ``overflow`` is the number of intervals outside. ``mean`` is the mean of all
     ``intervals``, ``stderr`` its standard error over chains; ``intervals_squared`` is Σ n² if n
     differs.
     """
@@ -72,7 +72,7 @@ class IntervalsPoint(Point):
     bin_width: float
     overflow: int
     equal: Bins
-    wide: Bins
+    wide: Bins | None
     intervals: int
     chains: int
     mean: float
@@ -106,7 +106,7 @@ class IntervalsPoint(Point):
             error, unit = math.sqrt(variance), unit * TIME_GRAIN / component["returns"]
         rows = sums.tolist()
         equal = Bins([*range(n + 1)] if own is None else edges, *(row[:n] for row in rows))
-        wide = equal if own else Bins(edges, *(row[n + 1 : n + len(edges)] for row in rows))
+        wide = None if own else Bins(edges, *(row[n + 1 : n + len(edges)] for row in rows))
         return cls(
             scene=scene,
             event=component["event"],
@@ -141,10 +141,10 @@ class IntervalsPoint(Point):
         return Estimate(value, error, self.chains)
 
     def bins(self):
-        """Yield each ``HistogramBin``, the equal ones first."""
+        """Yield each ``HistogramBin``, the equal ones first; those of your own are one kind."""
         width = self.bin_width
-        for kind in ("equal", "wide"):
-            edges, counts, squares, products = getattr(self, kind)
+        kinds = {"equal": self.equal, "wide": self.wide} if self.wide else {"own": self.equal}
+        for kind, (edges, counts, squares, products) in kinds.items():
             columns = counts, squares, products or repeat(None)
             for (left, right), count, *sums in zip(pairwise(edges), *columns, strict=False):
                 density = self._density((right - left) * width, count, *sums)

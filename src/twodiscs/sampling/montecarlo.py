@@ -33,6 +33,7 @@ from twodiscs.model.scene import Scene
 from twodiscs.model.seeds import job_seed
 from twodiscs.points.monte_carlo_point import MonteCarloPoint
 from twodiscs.sampling.conditioned import conditioned_sampler, propose_separation
+from twodiscs.sampling.initial_states import require_free_fraction
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.rejection import (
     kinetic_fraction,
@@ -550,6 +551,9 @@ class MonteCarloRun(Run):
     target: dict | None = None
     budget: int | None = None
     method: str | None = None
+
+    def __post_init__(self):
+        require_free_fraction(self.scene)
 
     @classmethod
     def of(cls, scene, settings):
