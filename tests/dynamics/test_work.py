@@ -75,6 +75,16 @@ def test_the_work_of_a_replica_is_bounded(width, height, effects, share):
     assert exact.work_per_event(scene) >= 1.0
 
 
+def test_kicks_between_two_hops_are_work():
+    """An interval has the kicks of its length, each with the work of ``KICK`` events."""
+    without, kicked = (
+        exact.events_per_interval(Box(1.5, 1.0, friction=g).scene(0.2), "vertical_hop")
+        for g in (0.0, 3.0)
+    )
+    kicks = 3.0 * exact.mean_times(Box(1.5, 1.0).scene(0.2))["vertical_hop"]
+    assert kicked - without == pytest.approx(exact.KICK * kicks)
+
+
 @pytest.mark.parametrize("effects", [{"field": 1e4}, {"field": 1.0, "depth": 1.0}])
 def test_starts_that_are_too_rare_are_refused(effects):
     box = Box(1.5, 1.0, **effects)
