@@ -182,6 +182,9 @@ def row(event, error, status="budget", target=1e-5):
 def test_a_sentence_says_what_was_not_reached(rows, said):
     """And if a component had too small a share of the budget, or no budget was given."""
     assert shortfall(rows, 2 * 10**9, 2e9, 20.0) == said
+    found = shortfall([row("any_wall", 1.004e-5)], 10**9, 1e8)
+    assert found.startswith("You asked for an error of 1e-5, but")
+    assert "ended the run at 1.1e-5 (any_wall_time)" in found
     found = shortfall([row("any_wall", 2e-5)], 10**9, 1e8)
     assert found.endswith("ended the run at 2e-5 (any_wall_time). A budget of 4.8e9 is enough.")
     found = shortfall([row("any_wall", 2e-5)], None)

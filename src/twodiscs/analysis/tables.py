@@ -398,8 +398,7 @@ def shortfall(rows, budget, events=None, seconds=None, ends="ended", what="event
             return f"{text}after {why}. A budget of {round_up(enough)} is enough."
         seen = f"events {worst['event']}" if "event" in worst else f"hits for {worst['quantity']}"
         return f"{text}with too few {seen} for an error."
-    reached = format_number(worst["relative_stderr"], ".2g")
-    text = f"{text}at {reached} ({row_quantity(worst)})."
+    text = f"{text}at {round_up(worst['relative_stderr'])} ({row_quantity(worst)})."
     if not events:
         return text
     # Other components may not use their shares of a budget. An error has an error: a fifth more.

@@ -24,7 +24,7 @@ from twodiscs.model.checks import (
     check_numbers,
 )
 from twodiscs.model.events import HOPS
-from twodiscs.model.formats import format_number
+from twodiscs.model.formats import format_number, round_up
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.points.estimates import why_no_error
 from twodiscs.points.intervals_point import wide_edges
@@ -110,7 +110,7 @@ class Intervals(Result):
             self.note = (
                 f"You asked for an error of {format_number(asked, 'g')} of the mean, but the "
                 f"budget of {format_number(settings['budget'], 'g')} events ended the run at "
-                f"{format_number(reached, '.2g')}."
+                f"{round_up(reached)}."
             )
         self.rows = HopHistogramTable.rows([point])
         self.counts = point.equal.counts

@@ -3,6 +3,7 @@
 import math
 import re
 import reprlib
+from decimal import ROUND_CEILING, Context
 from difflib import get_close_matches
 
 #: The form of quoted values: some items of a list, and of the lists in it.
@@ -86,12 +87,10 @@ def _to_digits(x, n):
     return f"{x:#.{n}g}".rstrip(".")
 
 
-def round_up(events):
-    """Return the text of the next number of ``events`` with two digits, for a user to type."""
-    if events < 1:
-        return "1"
-    step = 10.0 ** (math.floor(math.log10(events)) - 1)
-    return format_number(step * math.ceil(events / step), "g")
+def round_up(number):
+    """Return the text of the next number from ``number`` > 0 on with two digits."""
+    two_digits = Context(prec=2, rounding=ROUND_CEILING)
+    return format_number(float(two_digits.create_decimal(repr(float(number)))), "g")
 
 
 #: (seconds, the unit that they are) from the longest unit down.
