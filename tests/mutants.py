@@ -185,7 +185,7 @@ MUTANTS = [
     ("hops shared on a ring as in a box", "2 - (not scene.periodic) * 2 / pairs", "2 - 2 / pairs"),
     ("friction limited by the longest side", "self.friction * self.shortest > MOST_KICKS", "self.friction * max(self.sides) > MOST_KICKS"),
     ("error of a scan that is not given", "= 1e-2 if error is None and duration", "= 1e-3 if error is None and duration"),
-    ("CSV of another radius", "_print_csv(TheoryTable.rows(scene, [scene.radius]))", "_print_csv(TheoryTable.rows(scene, [scene.radius / 2]))"),
+    ("CSV of another radius", "_csv(TheoryTable.rows(scene, [scene.radius]))", "_csv(TheoryTable.rows(scene, [scene.radius / 2]))"),
     ("law of diffusive passages", "DIFFUSIVE = 3 / 4", "DIFFUSIVE = 3 / 2"),
     ("error of dynamics for that of Monte Carlo", "monte_carlo_stderr=spread,", "monte_carlo_stderr=error,"),
     ("count of the event that is known best", 'count = min((row["count"] for row in counted), default=0)', 'count = max((row["count"] for row in counted), default=0)'),

@@ -6,6 +6,7 @@ import json
 import os
 import signal
 import sys
+from functools import partial
 from inspect import signature
 from io import StringIO, TextIOWrapper
 from warnings import simplefilter
@@ -190,7 +191,13 @@ def _main():
         return
     if options.command in ("run", "new"):
         return options.work(options)
-    options.work(parsed_scene(options), options)
+    text, table, numbers = options.work(parsed_scene(options), options)
+    if options.csv:
+        write(table().rstrip("\n"))
+    elif options.json:
+        write(json.dumps(numbers(), indent=2, allow_nan=False))
+    else:
+        write(text())
 
 
 def _parser():
@@ -221,7 +228,7 @@ def _parser():
 
     of_scene("exact", _exact, "exact volume, areas and mean times of one scene")
     text = "mean times by molecular dynamics, beside the exact ones"
-    add = of_scene("simulate", _simulate, text)
+    add = of_scene("simulate", _measure, text)
     text = f"relative standard error, or {', '.join(NAMED_ERRORS)} (1e-3)"
     add("--error", type=value, help=text, completer=ChoicesCompleter(NAMED_ERRORS))
     add("--duration", type=value, help="the time to simulate, instead of an error")
@@ -230,7 +237,7 @@ def _parser():
     add("--events", nargs="+", metavar="EVENT", help=text, completer=ChoicesCompleter(EVENTS))
     _add_shared(add, "--method", "--seed", "--name", "--cores")
     text = "volume and areas by Monte Carlo, beside the exact ones"
-    add = of_scene("sample", _sample, text)
+    add = of_scene("sample", _measure, text)
     add("--samples", type=value, help="number of samples, rounded up to whole blocks (1e7)")
     text = f"relative standard error, or {', '.join(NAMED_ERRORS)}, instead of samples"
     add("--error", type=value, help=text, completer=ChoicesCompleter(NAMED_ERRORS))
@@ -307,77 +314,63 @@ def _build():
     return build
 
 
+# A command about a scene returns three functions without arguments: of the text that it prints, of
+# the text of its CSV table, and of its content in JSON.
+
+
 def _exact(scene, options):
+    from twodiscs.analysis.tables import TheoryTable
     from twodiscs.theory.exact import exact
 
     numbers = exact(scene)
-    if options.csv:
-        from twodiscs.analysis.tables import TheoryTable
+    return (
+        partial(_table, scene, numbers),
+        lambda: _csv(TheoryTable.rows(scene, [scene.radius])),
+        lambda: numbers,
+    )
 
-        _print_csv(TheoryTable.rows(scene, [scene.radius]))
-    elif options.json:
-        _print_json(numbers)
-    else:
-        write(_table(scene, numbers))
+
+def _result(scene, options):
+    """Return what the function of the face with the name of the command returns."""
+    function = getattr(twodiscs, options.command)
+    names = signature(function).parameters.keys() & vars(options).keys()
+    return function(scene, **_arguments(options, names))
 
 
 def _arguments(options, names):
     return {name: getattr(options, name) for name in names}
 
 
-def _simulate(scene, options):
-    _measure(twodiscs.simulate, scene, options)
-
-
-def _sample(scene, options):
-    _measure(twodiscs.sample, scene, options)
-
-
-def _measure(function, scene, options):
-    """Print the result of a ``function`` of the face, to which ``options`` give arguments."""
+def _measure(scene, options):
     simplefilter("ignore", twodiscs.AccuracyWarning)  # the note has the same sentence
-    names = signature(function).parameters.keys() & vars(options).keys()
-    result = function(scene, **_arguments(options, names))
+    result = _result(scene, options)
     if result.note and (options.csv or options.json):
         print(result.note, file=sys.stderr)
-    if options.csv:
-        _print_csv(result.rows)
-    elif options.json:
-        _print_json({row.get("event") or row["quantity"]: row for row in result.rows})
-    else:
-        write(result)
+    by_name = {row.get("event") or row["quantity"]: row for row in result.rows}
+    return partial(str, result), partial(_csv, result.rows), lambda: by_name
 
 
 def _cost(scene, options):
-    found = twodiscs.cost(scene, options.errors, shell=options.shell)
-    if options.csv:
-        write(found.frame().to_csv().rstrip("\n"))
-    elif options.json:
-        _print_json(found.rows)
-    else:
-        write(found)
+    found = _result(scene, options)
+    return partial(str, found), partial(_csv, found.rows), lambda: found.rows
 
 
 def _trajectory(scene, options):
-    path = twodiscs.trajectory(scene, **_arguments(options, ("duration", "seed", "start", "name")))
-    if options.csv:
-        write(path.to_csv(index=False).rstrip("\n"))
-    elif options.json:
-        _print_json(path.to_dict("records"))
-    else:
-        write(f"{scene}; times in time, positions in length\n\n{path.to_string(index=False)}")
+    path = _result(scene, options)
+    heading = f"{scene}; times in time, positions in length"
+    return (
+        lambda: f"{heading}\n\n{path.to_string(index=False)}",
+        partial(path.to_csv, index=False),
+        partial(path.to_dict, "records"),
+    )
 
 
-def _print_json(value):
-    write(json.dumps(value, indent=2, allow_nan=False))
-
-
-def _print_csv(rows):
+def _csv(rows):
     text = StringIO()
     table = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
     table.writeheader()
     table.writerows(rows)
-    write(text.getvalue().rstrip("\n"))
+    return text.getvalue()
 
 
 def _known(value):

@@ -117,12 +117,10 @@ def plot(
 
 def _draw(result, figure):
     """Return the drawn figure of a result; ``figure`` is its name, None for the first that fits."""
-    if isinstance(result, Observed):
-        check_choice("figure", figure or "observed", ["observed"])
-        return _draw_observed(result)
-    if isinstance(result, Transmission):
-        check_choice("figure", figure or "transmission", ["transmission"])
-        return _draw_transmission(result)
+    if type(result) in OVER_TIME:
+        name, draw_over_time = OVER_TIME[type(result)]
+        check_choice("figure", figure or name, [name])
+        return draw_over_time(result)
     table = getattr(result, "attrs", {}).get("table")
     if table is not None and table not in SCENE_TABLES:
         if (draw_study := plugin("draw_study")) is None:
@@ -196,20 +194,20 @@ def _read(result):
     """
     if isinstance(result, Box):
         return result, [], [*BOX_DRAWINGS], None
-    for read in (_read_measurements, _read_table, _read_trajectory):
-        found = read(result)
-        if found is not None:
-            return found
+    if scene := of_attrs(result, Scene):
+        return scene, trajectory_rows(result), ["hopping_trajectory"], scene.radius
+    if box := of_attrs(result, Box):
+        return box, *_read_table(result, box), None
+    results = result if isinstance(result, list | tuple) else [result]
+    results = [one for item in results for one in (item if isinstance(item, Scan) else [item])]
+    for kind in (Measurements, Intervals):
+        if results and all(isinstance(one, kind) for one in results):
+            return *_read_results(results), None
     return None, [], [], None
 
 
-def _read_measurements(result):
-    """Return what ``_read`` returns for results of one kind, each at one radius, else None."""
-    results = [*result] if isinstance(result, list | tuple | Scan) else [result]
-    results = [one for item in results for one in (item if isinstance(item, Scan) else [item])]
-    kinds = (Measurements, Intervals)
-    if not results or not any(all(isinstance(one, kind) for one in results) for kind in kinds):
-        return None
+def _read_results(results):
+    """Return (box, rows, names of figures) of results of one kind, each at one radius."""
     boxes = {item.scene.box for item in results}
     if len(boxes) > 1:
         raise InputError(
@@ -221,32 +219,22 @@ def _read_measurements(result):
         raise InputError(f"result must be of one kind of hop, not {' and '.join(hops)}")
     rows = [row for item in sorted(results, key=attrgetter("scene.radius")) for row in item.rows]
     (box,) = boxes
-    return box, rows, _fitting_figures(rows, box), None
+    return box, rows, _fitting_figures(rows, box)
 
 
-def _read_table(result):
-    """Return what ``_read`` returns for a table of exact values or a loaded table, else None."""
-    box = box_or_none(result)
-    if box is None:
-        return None
+def _read_table(result, box):
+    """Return (rows, names of figures) of a table of exact values or a loaded table of a ``Box``."""
     table = result.attrs.get("table")
     # None stands for an empty cell.
     rows = result.astype(object).where(result.notna(), None)
     rows = _exact_rows(rows) if table is None else rows.to_dict("records")
-    fitting = [name for name, entry in FIGURES.items() if entry.tables == (table,)]
-    if rows and table in ("volume", "areas", "mean_times"):
-        fitting = _fitting_figures(rows, box)
-    if rows and table in ("theory", None):
-        fitting = [name for name in _fitting_figures(rows, box) if name in CURVES]
-    return (box, rows, fitting, None) if rows and fitting else None
-
-
-def _read_trajectory(result):
-    """Return what ``_read`` returns for a trajectory, else None."""
-    scene = scene_or_none(result)
-    if scene is None or not hasattr(result, "iterrows"):
-        return None
-    return scene, trajectory_rows(result), ["hopping_trajectory"], scene.radius
+    if not rows:
+        return [], []
+    if table in ("volume", "areas", "mean_times"):
+        return rows, _fitting_figures(rows, box)
+    if table in ("theory", None):
+        return rows, [name for name in _fitting_figures(rows, box) if name in CURVES]
+    return rows, [name for name, entry in FIGURES.items() if entry.tables == (table,)]
 
 
 def _exact_rows(table):
@@ -276,13 +264,13 @@ def _fitting_figures(rows, box):
 
 
 def trajectory_rows(trajectory):
-    """Return the rows of a trajectory, at least two; ``scene_or_none`` must find its scene."""
+    """Return the rows of a trajectory, at least two, whose scene is in its ``attrs``."""
     if "event" not in trajectory or len(trajectory) < 2:
         raise InputError(
             "trajectory must have at least two rows and the column event, but has "
             f"{len(trajectory)} rows and the columns {', '.join(map(str, trajectory))}"
         )
-    require_all_rows(trajectory, scene_or_none(trajectory))
+    require_all_rows(trajectory, of_attrs(trajectory, Scene))
     return trajectory.to_dict("records")
 
 
@@ -311,8 +299,7 @@ def animate(trajectory: pd.DataFrame, path: str | PathLike[str]) -> None:
     --------
     >>> td.animate(td.trajectory(scene, 2, seed=1), "two.gif")
     """
-    scene = scene_or_none(trajectory)
-    if scene is None or not hasattr(trajectory, "iterrows"):
+    if not (scene := of_attrs(trajectory, Scene)):
         raise InputError(f"trajectory must be a result of trajectory(), not {quote(trajectory)}")
     with style.context():
         animation.animate(scene, scene.radius, trajectory_rows(trajectory), [path])
@@ -387,20 +374,19 @@ def _draw_transmission(result):
     return figure
 
 
-def scene_or_none(result):
-    """Return the ``Scene`` of a result or a trajectory; None for anything else."""
-    if isinstance(attributes := getattr(result, "attrs", None), dict):
-        try:
-            return Scene(**attributes["scene"])
-        except (AttributeError, InputError, KeyError, TypeError):
-            return None
-    scene = result if isinstance(result, Scene) else getattr(result, "scene", None)
-    return scene if isinstance(scene, Scene) else None
+#: {type of a result: (the name of its only figure, the function that draws it)}
+OVER_TIME = {
+    Observed: ("observed", _draw_observed),
+    Transmission: ("transmission", _draw_transmission),
+}
 
 
-def box_or_none(table):
-    """Return the ``Box`` of a table of exact values or of a loaded one; None for anything else."""
+def of_attrs(table, kind):
+    """Return the ``Scene`` or ``Box``, as ``kind`` says, of a table with it in ``attrs``, or None.
+
+    Trajectories have a scene, tables of exact values and loaded tables a box.
+    """
     try:
-        return Box(**table.attrs["box"])
+        return kind(**table.attrs[kind.__name__.lower()])
     except (AttributeError, InputError, KeyError, TypeError):
         return None

@@ -4,7 +4,7 @@ The functions that draw are in ``figures.draw``. This module imports no matplotl
 Snakefile imports it.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import HOPS
@@ -113,14 +113,11 @@ class Figure:
 
 # The notes of figures over the radius -------------------------------------------------------------
 
-_ERRORS = """
-Error bars are one standard error; they are hidden if they are smaller than the symbols.
-"""
+_RESIDUALS = """Error bars are one standard error; they are hidden if they are smaller than the
+symbols. Residuals z beneath are in standard errors, with guide lines at ±2 and ±5."""
 _LINES = {
-    "plain": """
-    Vertical lines mark the radii at which hops become blocked, h/4 and w/4 as far as such discs
-    fit, and the largest radius, r_max.
-    """,
+    "plain": """Vertical lines mark the radii at which hops become blocked, h/4 and w/4 as far as
+    such discs fit, and the largest radius, r_max.""",
     "many": "If no exact value is known there is no line and no residual.",
     "lines": True,
 }
@@ -150,23 +147,15 @@ def _name_lines(box):
     return f"Vertical lines mark {marked}{known}.{which}"
 
 
-_RESIDUALS = """
-Residuals z beneath are in standard errors, with guide lines at ±2 and ±5.
-"""
-_WEIGHTED = "In a field volumes and areas are weighted with the invariant density."
-
-SAMPLED = Caption(_ERRORS + _RESIDUALS, **_LINES, field=_WEIGHTED)
-SHELLS = Caption(
-    _ERRORS
-    + _RESIDUALS
-    + """
-    They are taken from the exact expectation of the shell. Its thickness shifts the estimate
-    slightly off the line.
-    """,
-    **_LINES,
-    field=_WEIGHTED,
+SIMULATED = Caption(_RESIDUALS, **_LINES)
+SAMPLED = replace(
+    SIMULATED, field="In a field volumes and areas are weighted with the invariant density."
 )
-SIMULATED = Caption(_ERRORS + _RESIDUALS, **_LINES)
+SHELLS = replace(
+    SAMPLED,
+    text=f"""{_RESIDUALS} They are taken from the exact expectation of the shell. Its thickness
+    shifts the estimate slightly off the line.""",
+)
 
 
 # The figures --------------------------------------------------------------------------------------
@@ -192,12 +181,10 @@ WALL_NAMES = {
 def _hop_area(hop, q):
     """Return the figure of the area of a hop, a change of sign of the separation along ``q``."""
     own = Caption(
-        f"""
-        Square root of the area of the surface on which two discs have the same {q}, which they
+        f"""Square root of the area of the surface on which two discs have the same {q}, which they
         cross when they exchange their {hop} order: exact (line) and from a thin shell around it
         (symbols). A symbol at zero means that no sample was in the shell of a blocked hop. If an
-        area ends quadratically, its square root ends as a straight line.
-        """,
+        area ends quadratically, its square root ends as a straight line.""",
         many="It is the sum over all pairs of discs.",
     )
     label = rf"root of the hop area, $\sqrt{{S_{{\mathrm{{{hop[0]}}}}}}}$ (length$^{{3/2}}$)"
@@ -210,29 +197,22 @@ FIGURES = {
     "model": Figure(
         "The billiard",
         GEOMETRY,
-        """
-        Two hard discs of radius r in a box of width w and height h. The origin of the
-        coordinates is the centre of the box. The centres of the discs stay in the dashed
-        rectangle, of half-sides a = w/2 − r and b = h/2 − r. Boxes longer than 4:1 are drawn
-        shorter.
-        """,
+        """Two hard discs of radius r in a box of width w and height h. The origin of the
+        coordinates is the centre of the box. The centres of the discs stay in the dashed rectangle,
+        of half-sides a = w/2 − r and b = h/2 − r. Boxes longer than 4:1 are drawn shorter.""",
     ),
     "hopping_trajectory": Figure(
         "Hopping dynamics",
         DYNAMICS,
         Caption(
             "(a) One trajectory from its beginning. (b) A part of it enlarged.",
-            plain="""
-            The ordinate is the separation of the discs along the longer side. Dots mark the hops,
-            at which the separation changes sign. A hop is often undone soon, before collisions have
-            scrambled the motion. (c) A hop that is not undone soon, where there is one, at the same
-            scale.
-            """,
-            other="""
-            With two discs the ordinate is their separation in one direction, and dots mark its
-            changes of sign, the hops. With more discs it is their positions along the longer side,
-            coloured by their order at the start.
-            """,
+            plain="""The ordinate is the separation of the discs along the longer side. Dots mark
+            the hops, at which the separation changes sign. A hop is often undone soon, before
+            collisions have scrambled the motion. (c) A hop that is not undone soon, where there is
+            one, at the same scale.""",
+            other="""With two discs the ordinate is their separation in one direction, and dots mark
+            its changes of sign, the hops. With more discs it is their positions along the longer
+            side, coloured by their order at the start.""",
             periodic="On a periodic axis positions go on beyond the box.",
         ),
         tables=("trajectory",),
@@ -241,24 +221,20 @@ FIGURES = {
     "configuration_space": Figure(
         "Configuration space",
         GEOMETRY,
-        """
-        (a) A prism without a cylinder, whose axis is the diagonal of x1 and x2: the section Y = 0,
-        in which one centre is as far above the middle as the other one is below it. Here x = (x1 −
-        x2)/√2, X = (x1 + x2)/√2, likewise y and Y, and the discs overlap if x² + y² < 2r². (b) The
-        whole is a product of two squares, one for x1 and x2 and
-        one for y1 and y2, without the overlaps. The dotted band of each square is excluded by
-        the point shown in the other one; dashed lines are its widest bounds, at ±√2 r. The
-        hatched quarters, in which all four coordinates are positive, hold a sixteenth of the
-        volume. Each square is drawn to its own scale.
-        """,
+        """(a) A prism without a cylinder, whose axis is the diagonal of x1 and x2: the section
+        Y = 0, in which one centre is as far above the middle as the other one is below it. Here
+        x = (x1 − x2)/√2, X = (x1 + x2)/√2, likewise y and Y, and the discs overlap if x² + y² <
+        2r². (b) The whole is a product of two squares, one for x1 and x2 and one for y1 and y2,
+        without the overlaps. The dotted band of each square is excluded by the point shown in the
+        other one; dashed lines are its widest bounds, at ±√2 r. The hatched quarters, in which all
+        four coordinates are positive, hold a sixteenth of the volume. Each square is drawn to its
+        own scale.""",
     ),
     "volume": Figure(
         "Volume of configuration space",
         SPACE,
-        """
-        The volume V of all positions without overlap against the radius of the discs: exact (line)
-        and by Monte Carlo sampling (symbols).
-        """,
+        """The volume V of all positions without overlap against the radius of the discs: exact
+        (line) and by Monte Carlo sampling (symbols).""",
         SAMPLED,
         **_radius_fields(
             "volume", {"volume": "volume"}, "volume $V$ (length$^4$)", single=SAMPLING
@@ -270,10 +246,8 @@ FIGURES = {
         "Area of disc collisions",
         SPACE,
         Caption(
-            """
-            Area of the surface on which the discs touch: exact (line) and from a thin shell outside
-            it (symbols).
-            """,
+            """Area of the surface on which the discs touch: exact (line) and from a thin shell
+            outside it (symbols).""",
             many="It is the sum over all pairs of discs.",
         ),
         SHELLS,
@@ -288,13 +262,9 @@ FIGURES = {
         "Areas of wall hits",
         SPACE,
         Caption(
-            """
-            Areas of the surfaces on which discs touch walls: exact (lines) and from thin shells
-            (symbols).
-            """,
-            plain="""
-            The area of any wall and any disc is four times the sum of the two others.
-            """,
+            """Areas of the surfaces on which discs touch walls: exact (lines) and from thin shells
+            (symbols).""",
+            plain="The area of any wall and any disc is four times the sum of the two others.",
             square="These are the same in a square box.",
         ),
         SHELLS,
@@ -307,12 +277,10 @@ FIGURES = {
     "all_areas": Figure(
         "Areas of all events",
         SPACE,
-        """
-        Areas of surfaces in configuration space: exact (lines) and from thin shells (symbols).
-        (a) Collisions of the discs. (b) Hits of walls. (c), (d) Square roots of the areas of
-        hops: if an area ends quadratically, its root ends as a straight line. A symbol at zero
-        means that no sample was in the shell of a blocked hop.
-        """,
+        """Areas of surfaces in configuration space: exact (lines) and from thin shells (symbols).
+        (a) Collisions of the discs. (b) Hits of walls. (c), (d) Square roots of the areas of hops:
+        if an area ends quadratically, its root ends as a straight line. A symbol at zero means that
+        no sample was in the shell of a blocked hop.""",
         SHELLS,
         tables=("areas",),
         needs=frozenset(f"{e}_area" for e in (*HOPS, "disc_collision", "right_wall", "top_wall")),
@@ -322,17 +290,13 @@ FIGURES = {
         "Mean times between hops",
         DYNAMICS,
         Caption(
-            """
-            Mean times from one hop to the next: exact (lines) and by event-driven molecular
+            """Mean times from one hop to the next: exact (lines) and by event-driven molecular
             dynamics (symbols). Full symbols come from initial states in a strip around the surface
             of the hop, where the flux is measured and not the waiting time. In (b) the same times
-            approach the radius r_c at which the hop ends.
-            """,
-            plain="""
-            Dashed lines in (a) are the laws for small discs, to first order in r. In (b) they are
-            the limiting laws: if a hop becomes blocked before the discs jam, its time diverges as
-            (r_c − r)⁻².
-            """,
+            approach the radius r_c at which the hop ends.""",
+            plain="""Dashed lines in (a) are the laws for small discs, to first order in r. In (b)
+            they are the limiting laws: if a hop becomes blocked before the discs jam, its time
+            diverges as (r_c − r)⁻².""",
             square="In a square box both hops have the same mean time.",
             many="Hops are those of any pair of discs. There is no (b) if no exact value is known.",
         ),
@@ -349,14 +313,10 @@ FIGURES = {
         "Mean time between disc collisions",
         DYNAMICS,
         Caption(
-            """
-            Mean time from one collision of the discs to the next: exact (line) and by event-driven
-            molecular dynamics (symbols).
-            """,
-            plain="""
-            Dashed lines are the first two orders of the law for small discs, which starts as
-            3wh/(8√2 r), and the limiting law below the largest radius.
-            """,
+            """Mean time from one collision of the discs to the next: exact (line) and by
+            event-driven molecular dynamics (symbols).""",
+            plain="""Dashed lines are the first two orders of the law for small discs, which starts
+            as 3wh/(8√2 r), and the limiting law below the largest radius.""",
             many="Collisions are those of any pair.",
         ),
         SIMULATED,
@@ -372,22 +332,16 @@ FIGURES = {
         "Mean times between wall hits",
         DYNAMICS,
         Caption(
-            """
-            Mean times from one hit of a wall to the next: exact (lines) and by event-driven
-            molecular dynamics (symbols).
-            """,
-            plain="""
-            Times of disc 1 are averages over trajectories that can reach the wall. The time of the
-            right wall halves at r = h/4 and that of the top wall at r = w/4: configuration space
-            becomes disconnected there, and disc 1 keeps to one side. Dashed lines are the laws for
-            small discs and below the largest radius.
-            """,
+            """Mean times from one hit of a wall to the next: exact (lines) and by event-driven
+            molecular dynamics (symbols).""",
+            plain="""Times of disc 1 are averages over trajectories that can reach the wall. The
+            time of the right wall halves at r = h/4 and that of the top wall at r = w/4:
+            configuration space becomes disconnected there, and disc 1 keeps to one side. Dashed
+            lines are the laws for small discs and below the largest radius.""",
             square="In a square box both times are the same.",
-            other="""
-            Times of disc 1 are averages over trajectories that can reach the wall, with more than
-            two discs over all initial conditions. A time halves if disc 1 begins to keep to its
-            side.
-            """,
+            other="""Times of disc 1 are averages over trajectories that can reach the wall, with
+            more than two discs over all initial conditions. A time halves if disc 1 begins to keep
+            to its side.""",
         ),
         SIMULATED,
         **_radius_fields(
@@ -401,14 +355,12 @@ FIGURES = {
         "Pressures and virials",
         DYNAMICS,
         Caption(
-            """
-            Force of disc 1 on a wall, divided by the force in an ideal gas of one particle
+            """Force of disc 1 on a wall, divided by the force in an ideal gas of one particle
             (dotted): exact (lines) and from the hits that dynamics counted (symbols). Hits transfer
             the same momentum on average at every radius. (b) If the virial theorem of the scene has
             a closed form: the virials of the walls and of the collisions of the discs, divided by
             twice the mean kinetic energy. The sum over the walls minus the virial of collisions is
-            one at every radius.
-            """,
+            one at every radius.""",
             plain="Dashed lines in (a) are the limiting laws below the largest radius.",
         ),
         SIMULATED,
@@ -420,17 +372,13 @@ FIGURES = {
         "Times between hops",
         DYNAMICS,
         Caption(
-            """
-            Density of the time t between successive hops, both in units of the mean time τ, which
-            is exact where it is known and else measured. The dashed line is the exponential density
-            of the same mean. Bins in (a) widen with t; (b) enlarges short times in equal bins.
-            Symbols tell the radii apart; error bars are one standard error.
-            """,
-            plain="""
-            Thick dashes on the axis of (b) are the exact densities at t = 0, of hops that are
-            undone after one bounce. They are 3√2/16, divided by h − 2r for vertical hops and by
-            w − 2r for horizontal ones.
-            """,
+            """Density of the time t between successive hops, both in units of the mean time τ,
+            which is exact where it is known and else measured. The dashed line is the exponential
+            density of the same mean. Bins in (a) widen with t; (b) enlarges short times in equal
+            bins. Symbols tell the radii apart; error bars are one standard error.""",
+            plain="""Thick dashes on the axis of (b) are the exact densities at t = 0, of hops that
+            are undone after one bounce. They are 3√2/16, divided by h − 2r for vertical hops and by
+            w − 2r for horizontal ones.""",
             many="Hops are those of any pair of discs.",
         ),
         tables=("hop_histogram",),
@@ -439,35 +387,29 @@ FIGURES = {
     "largest_radius": Figure(
         "The largest radius",
         GEOMETRY,
-        """
-        (a) The largest discs that fit the box. They jam along a diagonal, where w − 2r, h − 2r
+        """(a) The largest discs that fit the box. They jam along a diagonal, where w − 2r, h − 2r
         and 2r are the sides of a right triangle. If one side of the box is at least twice the
-        other, each disc spans the shorter one instead. (b) The hops that are possible in boxes
-        of any shape; this box is marked.
-        """,
+        other, each disc spans the shorter one instead. (b) The hops that are possible in boxes of
+        any shape; this box is marked.""",
     ),
     "integration_regimes": Figure(
         "Regimes of the integration",
         GEOMETRY,
-        """
-        The separations u = |x1 − x2| and v = |y1 − y2| fill a rectangle of sides A = w − 2r and
-        B = h − 2r. The discs overlap in the quarter circle of radius σ = 2r, which is left out.
-        The arc is the surface of collisions; the coloured parts of the axes are the surfaces of
-        vertical hops (below) and horizontal hops (on the left). If σ exceeds B, horizontal hops
-        are blocked; if it exceeds A, vertical hops are. The overlaps are then a sector
-        (hatched) and triangles (dotted). Boxes longer than 2.5:1 are drawn shorter.
-        """,
+        """The separations u = |x1 − x2| and v = |y1 − y2| fill a rectangle of sides A = w − 2r and
+        B = h − 2r. The discs overlap in the quarter circle of radius σ = 2r, which is left out. The
+        arc is the surface of collisions; the coloured parts of the axes are the surfaces of
+        vertical hops (below) and horizontal hops (on the left). If σ exceeds B, horizontal hops are
+        blocked; if it exceeds A, vertical hops are. The overlaps are then a sector (hatched) and
+        triangles (dotted). Boxes longer than 2.5:1 are drawn shorter.""",
     ),
     "surface_shell": Figure(
         "Shells around surfaces",
         GEOMETRY,
-        """
-        The area of a surface is estimated from the samples within a distance ε of it. (a) The
-        surface of vertical hops can be crossed from both sides: its shell is 2ε thick, and
-        extends √2 ε to either side along y1. (b) The surface of collisions, with
-        x = |x1 − x2|/√2 and y = |y1 − y2|/√2, has a shell on its outer side only. Boxes longer
-        than 1.5:1 are drawn shorter.
-        """,
+        """The area of a surface is estimated from the samples within a distance ε of it. (a) The
+        surface of vertical hops can be crossed from both sides: its shell is 2ε thick, and extends
+        √2 ε to either side along y1. (b) The surface of collisions, with x = |x1 − x2|/√2 and
+        y = |y1 − y2|/√2, has a shell on its outer side only. Boxes longer than 1.5:1 are drawn
+        shorter.""",
     ),
 }
 
@@ -477,15 +419,11 @@ ANIMATION = Figure(
     DYNAMICS,
     Caption(
         "Two or more discs move in their box. Traces are the latest paths of the centres.",
-        plain="""
-        Beneath is the separation of the discs against time. The picture stops at a hop, of the
-        rarer kind if there are two, which changes the sign of the separation.
-        """,
-        other="""
-        Beneath is the separation of two discs against time; the picture stops at a hop. With more
-        discs it is their positions along the longer side, coloured by their order at the start.
-        Balls are drawn as viewed along z, the nearer one in front; spins are not shown.
-        """,
+        plain="""Beneath is the separation of the discs against time. The picture stops at a hop, of
+        the rarer kind if there are two, which changes the sign of the separation.""",
+        other="""Beneath is the separation of two discs against time; the picture stops at a hop.
+        With more discs it is their positions along the longer side, coloured by their order at the
+        start. Balls are drawn as viewed along z, the nearer one in front; spins are not shown.""",
         periodic="Discs that leave at a dotted end come in at the opposite one.",
     ),
     tables=("trajectory",),
