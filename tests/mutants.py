@@ -158,7 +158,6 @@ MUTANTS = [
     ("error of dynamics for that of Monte Carlo", "monte_carlo_stderr=spread,", "monte_carlo_stderr=error,"),
     ("count of the event that is known best", 'count = min((row["count"] for row in counted), default=0)', 'count = max((row["count"] for row in counted), default=0)'),
     ("rows of a trajectory back in time", "free = np.diff(time) >= 0", "free = np.ones(len(time) - 1, bool)"),
-    ("start of a trajectory in the shell", '_arguments(options, ("duration", "seed", "start", "name"))', '_arguments(options, ("duration", "seed", "name"))'),
     ("name of a scene in the verdict", '(path.parent.name if path.stem == "check" else path.stem, read_table(path))', "(path.stem, read_table(path))"),
     ("room of a long box", "return long - 4 * scene.radius", "return long - 2 * scene.radius"),
     ("ratio of another box in the errata", "return right, ratios[0], radius", "return right, ratios[-1], radius"),

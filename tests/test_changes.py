@@ -24,7 +24,6 @@ import twodiscs as td
 from twodiscs.analysis.tables import CheckTable
 from twodiscs.dynamics import runs
 from twodiscs.model.events import DECLARED_EVENTS, SHELL_EVENTS
-from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.jit import cache_folder
 from twodiscs.theory import clusters
@@ -124,18 +123,18 @@ def check_event():
 
     Walls have different multiplicities in these scenes; more discs have exact values or none.
     """
-    own, scene = [*DECLARED_EVENTS][-1], Scene(1.5, 1.0, 0.2)
+    own, scene = [*DECLARED_EVENTS][-1], td.Scene(1.5, 1.0, 0.2)
     for other in (
-        Scene(1.5, 1.0, 0.3),
-        Scene(1.5, 1.0, 0.38),
-        Scene(1.5, 1.0, 0.2, field=0.4),
-        Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5),
-        Scene(1.5, 1.0, 0.15, radius_ratio=0.6, mass_ratio=3.0),
-        Scene(1.5, 1.0, 0.2, periodic="x"),
-        Scene(1.5, 1.0, 0.15, discs=3),
+        td.Scene(1.5, 1.0, 0.3),
+        td.Scene(1.5, 1.0, 0.38),
+        td.Scene(1.5, 1.0, 0.2, field=0.4),
+        td.Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5),
+        td.Scene(1.5, 1.0, 0.15, radius_ratio=0.6, mass_ratio=3.0),
+        td.Scene(1.5, 1.0, 0.2, periodic="x"),
+        td.Scene(1.5, 1.0, 0.15, discs=3),
     ):
         assert {f"{own}_time", f"{own}_area"} <= compared(other)
-    compared(Scene(1.5, 1.0, 0.12, discs=5))
+    compared(td.Scene(1.5, 1.0, 0.12, discs=5))
     known = td.pressure(scene)
     assert known["wall_pressure"] == pytest.approx(known["virial_pressure"], rel=1e-12)
     assert known["virial_pressure"] == pytest.approx(0.648, abs=1e-4)
@@ -147,7 +146,7 @@ def check_event():
     td.plot(md, "md.png")
     td.plot(td.sample(scene, 1e5, seed=2), "mc.png")
     for field in (0.2, 0.5, 0.8):
-        falling = Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5, field=field)
+        falling = td.Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5, field=field)
         low, high = (clusters.corner_variance(falling, wall, 4.0) for wall in (own, "top_wall"))
         # The density of six components of velocity, by the kinetic energy that is left at the top.
         assert low / high == pytest.approx((1 - 2 * field * 0.6) ** -2)
@@ -156,13 +155,13 @@ def check_event():
 def check_effect():
     """Every mean time is that of the same scene without it, and others keep theirs."""
     for more in ({"recoil": 1.0}, {"recoil": 1.0, "mass_ratio": 2.0, "field": 0.4}):
-        scene = Scene(1.5, 1.0, 0.2, **more)
+        scene = td.Scene(1.5, 1.0, 0.2, **more)
         assert {f"{event}_time" for event in scene.events} <= compared(scene)
-        without = td.mean_times(Scene(**scene.parameters() | {"recoil": 0.0}))
+        without = td.mean_times(td.Scene(**scene.parameters() | {"recoil": 0.0}))
         assert td.mean_times(scene) == pytest.approx(without, rel=1e-12)
     for others in ({"moment_of_inertia": 0.5}, {"depth": 1.0}, {"discs": 3}):
         with pytest.raises(td.InputError, match="recoil must be "):
-            Scene(1.5, 1.0, 0.15, recoil=1.0, **others)
+            td.Scene(1.5, 1.0, 0.15, recoil=1.0, **others)
 
 
 def check_figure():

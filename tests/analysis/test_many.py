@@ -16,8 +16,6 @@ from twodiscs.dynamics import runs
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import many_rates
-from twodiscs.model.events import EVENTS
-from twodiscs.model.scene import Scene
 from twodiscs.sampling import initial_states, montecarlo
 from twodiscs.sampling.many import insertions
 from twodiscs.theory import exact
@@ -25,13 +23,13 @@ from twodiscs.theory.flux import rates
 
 #: With an exact value, and without; between walls, and on a ring.
 SCENES = {
-    "three": Scene(1.5, 1.0, 0.15, discs=3),
-    "three, dense": Scene(1.5, 1.0, 0.26, discs=3),
-    "eight in a channel": Scene(3.5, 0.6, 0.18, discs=8),
-    "four, upright": Scene(0.6, 2.0, 0.18, discs=4),
-    "four": Scene(1.5, 1.0, 0.12, discs=4),
-    "four on a ring": Scene(1.5, 1.0, 0.15, periodic="x", discs=4),
-    "three on a torus": Scene(1.5, 1.0, 0.22, periodic="xy", discs=3),
+    "three": td.Scene(1.5, 1.0, 0.15, discs=3),
+    "three, dense": td.Scene(1.5, 1.0, 0.26, discs=3),
+    "eight in a channel": td.Scene(3.5, 0.6, 0.18, discs=8),
+    "four, upright": td.Scene(0.6, 2.0, 0.18, discs=4),
+    "four": td.Scene(1.5, 1.0, 0.12, discs=4),
+    "four on a ring": td.Scene(1.5, 1.0, 0.15, periodic="x", discs=4),
+    "three on a torus": td.Scene(1.5, 1.0, 0.22, periodic="xy", discs=3),
 }
 
 KNOWN = ("three on a torus", "three", "three, dense", "eight in a channel", "four, upright")
@@ -40,7 +38,7 @@ KNOWN = ("three on a torus", "three", "three, dense", "eight in a channel", "fou
 def test_what_is_known_is_told_from_what_is_impossible():
     for name, scene in SCENES.items():
         areas, times = exact.areas(scene), exact.mean_times(scene)
-        for event in EVENTS:
+        for event in td.EVENTS:
             possible = scene.is_possible(event)
             assert (areas[event] == 0.0) == (not possible)
             assert (areas[event] is None) == (possible and name not in KNOWN)
@@ -82,13 +80,13 @@ def test_expected_rates_are_near_what_is_counted():
         duration = find_engine(scene).replica_duration(scene)
         sums, _ = find_engine(scene).run_blocks(scene, scene.events, 8, 0, 2, duration)
         for event, rate in many_rates.expected_rates(scene).items():
-            seen = sums[EVENTS.index(event)] / duration / 2 / REPLICAS
+            seen = sums[td.EVENTS.index(event)] / duration / 2 / REPLICAS
             assert rate == pytest.approx(seen, rel=0.05), (name, event)
 
 
 @pytest.mark.parametrize("periodic", ["", "x"])
 def test_an_equation_of_state_gives_the_rates_of_twenty_discs_within_ten_per_cent(periodic):
-    scene = Scene(6.0, 4.0, 0.2, discs=20, periodic=periodic)
+    scene = td.Scene(6.0, 4.0, 0.2, discs=20, periodic=periodic)
     due = rates(scene, insertions.sample(scene, 2**16, 1)[0])
     due["any_wall"] = due["right_wall"] + due["top_wall"]
     expected = many_rates.expected_rates(scene)

@@ -22,8 +22,6 @@ from twodiscs.analysis.tables import (
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.many import many_rates
 from twodiscs.measure.intervals import Intervals
-from twodiscs.model.events import EVENTS
-from twodiscs.model.scene import Box, Scene
 from twodiscs.points import estimates
 from twodiscs.points.dynamics_point import StripCount
 from twodiscs.points.intervals_point import Bins
@@ -221,11 +219,11 @@ def test_columns_scale_as_their_units_say():
     """Two boxes, one twice as large, have the same random numbers."""
     found = []
     for unit in (1, 2):
-        box, radius = Box(1.5 * unit, 1.0 * unit), 0.2 * unit
+        box, radius = td.Box(1.5 * unit, 1.0 * unit), 0.2 * unit
         scene = box.scene(radius)
         sampled = ["volume", "vertical_hop_area", "disc_collision_area"]
         points = [
-            runs.DynamicsRun(scene, dict.fromkeys(EVENTS, 1.0), 1, 7).run(),
+            runs.DynamicsRun(scene, dict.fromkeys(td.EVENTS, 1.0), 1, 7).run(),
             runs.IntervalsRun(scene, "vertical_hop", 1, 7).run(),
             MonteCarloRun(scene, sampled, 1, 0.02, 7).run(),
         ]
@@ -265,7 +263,7 @@ def test_the_bound_of_a_wall_never_hit_counts_no_copy_twice():
 )  # fmt: skip
 def test_an_error_smaller_than_asked_needs_its_own_initial_states(replicas, target, status):
     """Half of the mean time needs 119 states of rough discs, the error of these counts 45411."""
-    scene, event = Scene(1.5, 1.0, 0.245, moment_of_inertia=0.5), "disc_collision"
+    scene, event = td.Scene(1.5, 1.0, 0.245, moment_of_inertia=0.5), "disc_collision"
     assert replicas_needed(scene, event, 0.5) < replicas
     total = 1000 * replicas
     point = counts_point(

@@ -21,12 +21,11 @@ from twodiscs.dynamics import law, paths
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import open_block_kicks, open_kicks
 from twodiscs.dynamics.two.follow import new_kicks
-from twodiscs.model.scene import Scene
 from twodiscs.sampling.initial_states import components, states
 from twodiscs.sampling.streams import exponential, open_stream
 from twodiscs.theory import exact
 
-PLAIN = Scene(1.5, 1.0, 0.2)
+PLAIN = td.Scene(1.5, 1.0, 0.2)
 NAMED = SCENES | {"all": ALL}
 #: A scene without effects, and one that takes long to compile.
 BOTH = pytest.mark.parametrize("scene", [PLAIN, slow(ALL)], ids=["plain", "all"])
@@ -104,7 +103,7 @@ def test_kicks_have_other_random_numbers_than_initial_states():
 
 @pytest.mark.parametrize("discs", [2, 3])
 def test_states_of_two_blocks_are_kicked_as_those_of_one_that_is_twice_as_large(discs):
-    scene = Scene(1.5, 1.0, 0.1, discs=discs, friction=2.0)
+    scene = td.Scene(1.5, 1.0, 0.1, discs=discs, friction=2.0)
     new = find_engine(scene).new_kicks
     whole = open_block_kicks(new(scene, 8), 3).waits
     assert np.array_equal(open_block_kicks(new(scene, 4), 3, first=4).waits, whole[4:])
@@ -132,7 +131,7 @@ def test_a_trajectory_is_kicked_at_random_times(scene):
 
 def test_velocities_forget_at_the_rate_of_kicks():
     """⟨v(0)·v(t)⟩ is e^(−γt) of what it is without collisions: here the discs are small."""
-    scene, times = Scene(100.0, 100.0, 1e-3, friction=2.0), [0.1, 0.5, 1.0]
+    scene, times = td.Scene(100.0, 100.0, 1e-3, friction=2.0), [0.1, 0.5, 1.0]
 
     def product(start, now):
         return start["u1"] * now["u1"]

@@ -16,13 +16,12 @@ from twodiscs.dynamics import ensemble, paths, runs
 from twodiscs.dynamics.many import many_intervals, many_paths
 from twodiscs.dynamics.two import returns
 from twodiscs.measure.intervals import make_intervals
-from twodiscs.model.scene import Scene
 from twodiscs.points.intervals_point import BIN_GROWTH, N_BINS, wide_edges
 from twodiscs.sampling.many import many_initial_states
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import density_at_zero
 
-PAPER = Scene(1.5, 1.0, 0.2)
+PAPER = td.Scene(1.5, 1.0, 0.2)
 
 
 @pytest.mark.parametrize(("event", "side"), [("vertical_hop", 1.0), ("horizontal_hop", 1.5)])
@@ -86,11 +85,11 @@ def test_intervals_that_a_budget_ends_say_their_error():
 # More than two discs -----------------------------------------------------------------------------
 
 
-THREE = Scene(1.5, 1.0, 0.15, discs=3)
-RING = Scene(1.5, 1.0, 0.15, discs=4, periodic="x")
+THREE = td.Scene(1.5, 1.0, 0.15, discs=3)
+RING = td.Scene(1.5, 1.0, 0.15, discs=4, periodic="x")
 #: An interval has ninety events: a window ends long before the interval that begins in it.
-RARE = Scene(1.0, 1.5, 0.24, discs=3)
-CELLS = Scene(4.0, 2.0, 0.15, discs=20, periodic="x", friction=4.0)
+RARE = td.Scene(1.0, 1.5, 0.24, discs=3)
+CELLS = td.Scene(4.0, 2.0, 0.15, discs=20, periodic="x", friction=4.0)
 
 
 @pytest.mark.parametrize(
@@ -100,7 +99,7 @@ CELLS = Scene(4.0, 2.0, 0.15, discs=20, periodic="x", friction=4.0)
         slow(THREE, "horizontal_hop"),
         slow(RING, "vertical_hop"),
         (CELLS, "vertical_hop"),
-        slow(Scene(4.0, 2.0, 0.2, discs=20), "horizontal_hop"),
+        slow(td.Scene(4.0, 2.0, 0.2, discs=20), "horizontal_hop"),
     ],
     ids=repr,
 )

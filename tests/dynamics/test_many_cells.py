@@ -17,36 +17,35 @@ from twodiscs.dynamics import paths
 from twodiscs.dynamics.many import all_pairs as many
 from twodiscs.dynamics.many import cell_list as many_cells
 from twodiscs.dynamics.many import class_counts, many_paths, many_rates
-from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling.many import chains, many_initial_states
 from twodiscs.sampling.many.cell_grid import make_grid
 
 #: At the border: where one kernel ends and the other one begins, and on rings.
 BORDER = [
-    Scene(15.0, 1.0, 0.1, discs=many_initial_states.LARGE),
-    Scene(4.0, 2.0, 0.2, discs=many_initial_states.LARGE),
-    Scene(8.0, 0.9, 0.2, discs=many_initial_states.LARGE),
-    Scene(4.0, 2.0, 0.15, discs=many_initial_states.LARGE, periodic="x"),
-    Scene(4.0, 2.0, 0.15, discs=many_initial_states.LARGE, periodic="x", moment_of_inertia=0.4),
+    td.Scene(15.0, 1.0, 0.1, discs=many_initial_states.LARGE),
+    td.Scene(4.0, 2.0, 0.2, discs=many_initial_states.LARGE),
+    td.Scene(8.0, 0.9, 0.2, discs=many_initial_states.LARGE),
+    td.Scene(4.0, 2.0, 0.15, discs=many_initial_states.LARGE, periodic="x"),
+    td.Scene(4.0, 2.0, 0.15, discs=many_initial_states.LARGE, periodic="x", moment_of_inertia=0.4),
 ]
 
 
 #: A torus of three columns and two rows of cells, and one with both images in reach along x alone.
 TORI = [
-    Scene(0.8, 0.6, 0.13, discs=4, periodic="xy"),
-    Scene(0.6, 4.0, 0.13, discs=many_initial_states.LARGE, periodic="xy"),
+    td.Scene(0.8, 0.6, 0.13, discs=4, periodic="xy"),
+    td.Scene(0.6, 4.0, 0.13, discs=many_initial_states.LARGE, periodic="xy"),
 ]
 
 
 #: Rings of three columns of cells, and of two, where both images of a disc are in reach.
 SHORT = [
-    Scene(0.7, 4.0, 0.1, discs=24, periodic="x"),
-    Scene(0.6, 4.0, 0.13, discs=many_initial_states.LARGE, periodic="x"),
+    td.Scene(0.7, 4.0, 0.1, discs=24, periodic="x"),
+    td.Scene(0.6, 4.0, 0.13, discs=many_initial_states.LARGE, periodic="x"),
 ]
 
 
 #: Few rough discs, which only the other kernel follows.
-ROUGH = slow(Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.3))
+ROUGH = slow(td.Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.3))
 #: Their kernels take seconds to compile.
 ROUGH_TOO = slow(BORDER[4])
 #: Rings whose discs are kicked.
@@ -55,7 +54,7 @@ KICKED_TORUS = replace(BORDER[3], periodic="xy", friction=4.0)
 
 
 #: Few discs have as few cells as there may be.
-THREE = Scene(1.5, 1.0, 0.26, discs=3)
+THREE = td.Scene(1.5, 1.0, 0.26, discs=3)
 
 
 @pytest.mark.parametrize(
@@ -81,7 +80,7 @@ def test_a_few_events_are_the_same_ones(scene):
 def test_a_log_has_room_for_pairs_of_a_row_or_a_column():
     """Not for all pairs; their number is kept where discs go on to the next row."""
     side = math.sqrt(1024 * math.pi / 0.3) / 10
-    scene = Scene(side, side, 0.1, discs=1024)
+    scene = td.Scene(side, side, 0.1, discs=1024)
     path = many_paths.Followed(scene, scene.events)
     path.start(many_initial_states.states(scene, 1, 1), 1)
     for log, _ in path.go_on(4 * many_rates.usual_epoch(scene) / 64):
@@ -93,7 +92,7 @@ def test_a_log_has_room_for_pairs_of_a_row_or_a_column():
 def test_which_kernel_runs():
     """By the number of discs."""
     small, large = (
-        Scene(15.0, 1.0, 0.1, discs=n)
+        td.Scene(15.0, 1.0, 0.1, discs=n)
         for n in (many_initial_states.LARGE - 1, many_initial_states.LARGE)
     )
     assert many_initial_states.large_grid(small) is None
@@ -104,7 +103,7 @@ def test_which_kernel_runs():
 
 #: Scenes in which both kernels go there and back.
 RETURNED = [BORDER[3], *SHORT, TORI[1], ROUGH_TOO, ROUGH]
-RETURNED += [slow(BORDER[0]), slow(Scene(48.0, 1.0, 0.1, discs=64))]
+RETURNED += [slow(BORDER[0]), slow(td.Scene(48.0, 1.0, 0.1, discs=64))]
 
 
 @pytest.mark.parametrize("scene", RETURNED, ids=repr)
@@ -129,7 +128,7 @@ def test_advanced_states_are_those_of_the_other_kernel(scene):
 
 #: Scenes whose trajectories have the events of the other kernel.
 FOLLOWED = [*KICKED, slow(KICKED_TORUS), slow(BORDER[0]), ROUGH_TOO]
-FOLLOWED += [slow(Scene(8.75, 0.6, 0.18, discs=20, friction=4.0))]
+FOLLOWED += [slow(td.Scene(8.75, 0.6, 0.18, discs=20, friction=4.0))]
 
 
 @pytest.mark.parametrize("scene", FOLLOWED, ids=repr)
@@ -157,7 +156,7 @@ def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
 @pytest.mark.parametrize("share", [0.5, 0.999])
 def test_events_are_as_many_as_expected_within_a_factor_of_two(share):
     """Those of a replica, too: 256 of each disc, and more if discs are crowded."""
-    box = Box(5.0, 4.0, discs=many_initial_states.LARGE)
+    box = td.Box(5.0, 4.0, discs=many_initial_states.LARGE)
     scene = box.scene(share * box.largest_radius)
     time, replicas = many_rates.expected_duration(scene), 8
     sums, _ = class_counts.run_classes(scene, 1, 0, 1, time, replicas=replicas)
@@ -173,7 +172,7 @@ def test_events_are_as_many_as_expected_within_a_factor_of_two(share):
 def test_a_small_budget_has_an_error_bar(discs, packing):
     """If discs are so crowded that replicas have to be long, the warning has one that is enough."""
     side = math.sqrt(discs * math.pi / packing) / 10
-    scene, budget = Scene(side, side, 0.1, discs=discs), 1e6
+    scene, budget = td.Scene(side, side, 0.1, discs=discs), 1e6
     with pytest.warns(td.AccuracyWarning):
         md = td.simulate(scene, budget=budget, seed=1)
     if packing == 0.7:
@@ -215,14 +214,14 @@ def check_state(scene, state):
 side = math.sqrt(256 * math.pi * 0.01 / 0.6)
 #: In both kernels: dilute, dense and hardly fitting discs, tiny ones and rings.
 STAYING = {
-    "hardly fit": Scene(1.5, 1.0, 0.3005102, discs=3),
-    "tiny": Scene(1.5, 1.0, 1e-9, discs=5),
-    "ring": Scene(1.5, 1.0, 0.2, discs=4, periodic="x"),
-    "dense ring": Scene(side, side, 0.1, discs=256, periodic="x"),
-    "torus": Scene(1.0, 1.0, 0.2499999, discs=3, periodic="xy"),
-    "dense torus": Scene(side, side, 0.1, discs=256, periodic="xy"),
-    "three": Scene(1.5, 1.0, 0.15, discs=3),
-    "many": Scene(side, side, 0.1, discs=256),
+    "hardly fit": td.Scene(1.5, 1.0, 0.3005102, discs=3),
+    "tiny": td.Scene(1.5, 1.0, 1e-9, discs=5),
+    "ring": td.Scene(1.5, 1.0, 0.2, discs=4, periodic="x"),
+    "dense ring": td.Scene(side, side, 0.1, discs=256, periodic="x"),
+    "torus": td.Scene(1.0, 1.0, 0.2499999, discs=3, periodic="xy"),
+    "dense torus": td.Scene(side, side, 0.1, discs=256, periodic="xy"),
+    "three": td.Scene(1.5, 1.0, 0.15, discs=3),
+    "many": td.Scene(side, side, 0.1, discs=256),
     "rough": BORDER[4],
 }
 

@@ -17,9 +17,8 @@ import twodiscs as td
 from twodiscs.analysis.tables import TrajectoryTable
 from twodiscs.figures import animation, style
 from twodiscs.figures.animation import FRAMES_AFTER, MARKED_FRAMES
-from twodiscs.model.scene import Box
 
-BOX, RADIUS = Box(1.5, 1.0), 0.24
+BOX, RADIUS = td.Box(1.5, 1.0), 0.24
 
 #: Frames on either side of a hop in a file: a few more than those with its sign.
 FEW = MARKED_FRAMES + 4
@@ -165,12 +164,12 @@ def test_discs_are_where_the_trajectory_has_them(scene):
 @pytest.mark.parametrize(
     ("box", "radius"),
     [
-        (Box(1.0, 4.0, **EFFECTS), 0.125),
-        (Box(3.0, 1.0, **EFFECTS), 0.125),
-        (Box(12.0, 1.0), 0.2),
-        (Box(50.0, 1.0), 0.2),
-        (Box(1e-5, 3e-6), 6e-7),
-        (Box(1.5e5, 1e5), 2.4e4),
+        (td.Box(1.0, 4.0, **EFFECTS), 0.125),
+        (td.Box(3.0, 1.0, **EFFECTS), 0.125),
+        (td.Box(12.0, 1.0), 0.2),
+        (td.Box(50.0, 1.0), 0.2),
+        (td.Box(1e-5, 3e-6), 6e-7),
+        (td.Box(1.5e5, 1e5), 2.4e4),
     ],
     ids=str,
 )
@@ -187,7 +186,7 @@ def test_headings_numbers_and_the_sign_of_a_hop_stand_clear(box, radius):
 
 def test_what_leaves_a_ring_comes_in_at_the_other_end():
     """Four discs: all in the box, an image of each a period away, no trace across the box."""
-    box = Box(1.5, 1.0, periodic="x", discs=4)
+    box = td.Box(1.5, 1.0, periodic="x", discs=4)
     rows = TrajectoryTable.rows(box, 0.15, 1)
     motion, circles, others = drawn(box, 0.15, rows)
     beyond = 0

@@ -20,9 +20,6 @@ from scipy.stats import chi2, norm
 import twodiscs as td
 from twodiscs.dynamics.law import Law, two_disc_law
 from twodiscs.figures import style
-from twodiscs.model.checks import InputError
-from twodiscs.model.effects import EFFECTS
-from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.initial_states import states
 from twodiscs.theory import exact
@@ -34,11 +31,11 @@ from twodiscs_paper.studies.stability import measure as stability
 from twodiscs_paper.studies.stability.study import CalibrationTable, StabilityTable
 
 KEPT = Path(__file__).parents[2] / "paper" / "long_run" / "calibration"
-PAPER = Box(1.5, 1.0)
+PAPER = td.Box(1.5, 1.0)
 LARGEST = "largest radius"
-BOXES = [PAPER, Box(3.0, 1.0), Box(1e6, 1e-6), Box(1e-6, 1e6)]
+BOXES = [PAPER, td.Box(3.0, 1.0), td.Box(1e6, 1e-6), td.Box(1e-6, 1e6)]
 #: The reference of theory takes half a second for a box.
-OTHERS = [Box(1.0, 1.5), Box(1.0, 1.0), Box(2.0, 1.0), Box(1.98, 1.0)]
+OTHERS = [td.Box(1.0, 1.5), td.Box(1.0, 1.0), td.Box(2.0, 1.0), td.Box(1.98, 1.0)]
 any_box = pytest.mark.parametrize("box", [*BOXES, *map(slow, OTHERS)], ids=str)
 
 
@@ -130,7 +127,7 @@ def test_the_better_sampler_is_chosen():
 # Times of events ----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("box", [PAPER, Box(1e6, 1e-6)], ids=str)
+@pytest.mark.parametrize("box", [PAPER, td.Box(1e6, 1e-6)], ids=str)
 def test_predicted_times_are_right_to_a_few_roundings(box):
     rows = list(stability.time_rows(box, seed=4))
     ours = of(rows, method="stable")
@@ -162,12 +159,12 @@ def test_the_extremes_are_those_of_every_effect():
     scenes = stability.EXTREMES.values()
     for name in ("mass_ratio", "radius_ratio", "moment_of_inertia"):
         values = {getattr(scene, name) for scene in scenes}
-        assert {EFFECTS[name].low, EFFECTS[name].high} <= values
-    assert {name for scene in scenes for name in scene.effects} == EFFECTS.keys()
+        assert {td.EFFECTS[name].low, td.EFFECTS[name].high} <= values
+    assert {name for scene in scenes for name in scene.effects} == td.EFFECTS.keys()
     assert {scene.discs for scene in scenes} == {2, 3, 16}
     for case, scene in stability.EXTREMES.items():
         if "hardly" in case:
-            with pytest.raises(InputError, match="does not fit"):
+            with pytest.raises(td.InputError, match="does not fit"):
                 scene.with_radius(scene.radius * 1.03)
 
 
@@ -207,10 +204,10 @@ def test_a_bound_that_says_something_is_judged(monkeypatch):
 
 # Long runs and paths back ------------------------------------------------------------------------
 
-SCENE = Scene(1.5, 1.0, 0.2)
+SCENE = td.Scene(1.5, 1.0, 0.2)
 
 
-@pytest.mark.parametrize("box", [*BOXES, Box(1e40, 1.5e40), *map(slow, OTHERS)], ids=str)
+@pytest.mark.parametrize("box", [*BOXES, td.Box(1e40, 1.5e40), *map(slow, OTHERS)], ids=str)
 def test_everything_is_conserved_at_every_hard_radius(box):
     rows = list(stability.dynamics_rows(box, seed=5, ordinary=4_000_000, hard=2_000_000))
     assert len(rows) == 4 * len(stability.hard_radii(box))
@@ -257,14 +254,14 @@ def test_the_audit_sees_what_is_wrong():
 def test_events_retraced_are_those_the_exponent_allows(monkeypatch):
     """z within 5 for the exponents; the number within five binary digits of roundings."""
     monkeypatch.setattr(stability, "REVERSED", 1000)
-    box = Box(1e-3, 1.3e-3)
+    box = td.Box(1e-3, 1.3e-3)
     rows = list(stability.reversal_rows(box, seed=3))
     judged = [row for row in rows if row["passed"] is not None]
     assert len(judged) == 2 * len(stability.ordinary_radii(box))
     assert all(row["passed"] for row in judged)
     assert all(row["value"] > 0 for row in rows)
     # In a box of 1e6 × 1e-6 the discs do not meet for millions of events.
-    for row in stability.reversal_rows(Box(1e6, 1e-6), seed=3):
+    for row in stability.reversal_rows(td.Box(1e6, 1e-6), seed=3):
         assert (row["status"], row["value"], row["passed"]) == ("long", None, None)
 
 
@@ -378,7 +375,7 @@ def test_table_and_figure_of_any_box(tmp_path, monkeypatch):
     monkeypatch.setattr(stability, "WINDOW", 64)
     one = partial(stability.extreme_rows, scenes={"ordinary": stability.PAPER})
     monkeypatch.setattr(stability, "extreme_rows", one)
-    box = Box(1e-6, 1e6)
+    box = td.Box(1e-6, 1e6)
     rows = written(tmp_path, StabilityTable, box=box, seed=1, ordinary=2000, hard=1000)
     parts = {"theory", "sampling", "estimates", "times", "dynamics", "extremes", "reversal"}
     assert {row["part"] for row in rows} == parts

@@ -12,7 +12,6 @@ import pytest
 from marks import slow
 
 import twodiscs as td
-from twodiscs.model.scene import Scene
 from twodiscs.theory import channel, exact, three
 from twodiscs.theory.flux import Derivatives
 from twodiscs_paper.studies.more_discs.measure import known_derivatives
@@ -32,7 +31,7 @@ BOUND = 1e-10
 )  # fmt: skip
 def test_two_and_three_discs_have_their_other_theory(theory, discs, width, height):
     """The logarithm of V has an absolute error."""
-    scene = Scene(width, height, 0.18, discs=discs)
+    scene = td.Scene(width, height, 0.18, discs=discs)
     found, expected = channel.derivatives(scene), theory(scene)
     assert found.log_volume == pytest.approx(expected.log_volume, abs=BOUND)
     assert found[1:] == pytest.approx(expected[1:], rel=BOUND)
@@ -103,13 +102,13 @@ def by_moments(scene, order=40):
 )  # fmt: skip
 def test_long_channels_are_made_of_moments(discs, width, height, radius):
     """The bound is the one that ``channel.derivatives`` promises."""
-    scene = Scene(width, height, radius, discs=discs)
+    scene = td.Scene(width, height, radius, discs=discs)
     for known, value in zip(channel.derivatives(scene), by_moments(scene), strict=True):
         assert abs(known - value) <= 1e-12 * max(1, abs(value))
 
 
 def test_hops_of_many_discs_are_those_of_the_sum_without_a_series(monkeypatch):
-    scene = Scene(13.0, 1.0, 0.28, discs=24)
+    scene = td.Scene(13.0, 1.0, 0.28, discs=24)
     found = channel.derivatives(scene).vertical_hops
     monkeypatch.setattr(channel, "RATIO_ERROR", -1.0)
     monkeypatch.setattr(channel, "_geometric", None)
@@ -130,7 +129,7 @@ def test_many_discs_tend_to_the_largest_eigenvalue():
     ideal = limit(height, radius, force)
     differences = []
     for discs in (32, 64, 128):
-        scene = Scene(ideal.length * discs + radius, height, radius, discs=discs)
+        scene = td.Scene(ideal.length * discs + radius, height, radius, discs=discs)
         known = channel.derivatives(scene, hops=False)
         differences.append(
             [known.per_width / force - 1, known.per_contact / discs / ideal.per_contact - 1,
@@ -166,12 +165,12 @@ def test_residue_at_close_packing_in_a_channel(share):
 @pytest.mark.parametrize(
     ("scene", "is_slow"),
     [
-        (Scene(1.15, 0.5, 0.14, discs=4), True),
-        (Scene(0.5, 1.0, 0.14, discs=4), True),
-        (Scene(1.3, 0.5, 0.14, discs=4), False),
-        (Scene(2.0, 0.5, 0.14, discs=8), False),
-        (Scene(0.6, 0.5, 0.14), False),
-        (Scene(1.5, 1.0, 0.2, field=0.3), False),
+        (td.Scene(1.15, 0.5, 0.14, discs=4), True),
+        (td.Scene(0.5, 1.0, 0.14, discs=4), True),
+        (td.Scene(1.3, 0.5, 0.14, discs=4), False),
+        (td.Scene(2.0, 0.5, 0.14, discs=8), False),
+        (td.Scene(0.6, 0.5, 0.14), False),
+        (td.Scene(1.5, 1.0, 0.2, field=0.3), False),
     ],
     ids=repr,
 )
