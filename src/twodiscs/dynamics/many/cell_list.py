@@ -4,7 +4,7 @@ The law of one event is the law of ``all_pairs``. Each disc has its own time: it
 its last event on, and is not updated before its next one. The box is divided into cells whose sides
 are longer than σ. Only discs in the same cell or in neighbouring cells can meet. A disc keeps its
 soonest contact with them, and the time at which it comes to a border of its cell. The outermost
-borders are the walls. A tree of minima has the first of all these times.
+borders are the walls. A calendar has the first of these times of each disc.
 
 A contact is kept by the disc that looked for it last. If the other disc has an event before, the
 contact is out of date. The first disc then looks again at the time of the old contact, because it
@@ -42,15 +42,32 @@ from twodiscs.sampling.many.many_initial_states import spins_in
 #: The class of the entries of a log that a kick makes, one for each disc.
 KICKS = N_CLASSES
 
+#: The days of an epoch for each disc, which has about as many first times. The last of all days,
+#: for infinite times.
+DAYS_PER_DISC, LAST_DAY = 128.0, 2.0**62
+
+
+class Calendar(NamedTuple):
+    """The first times of all discs, in which a search for the next one takes as long for any N.
+
+    Disc i has its first ``time`` on a ``day``, arrays (N,), and is in the list of this day, as in
+    ``Places``. Days that differ by a multiple of the number of lists have the same list (R. Brown,
+    Commun. ACM 31, 1220 (1988)).
+    """
+
+    time: np.ndarray
+    day: np.ndarray
+    before: np.ndarray
+    after: np.ndarray
+
 
 class Motion(NamedTuple):
-    """The state of the discs between events, arrays (N,) except ``tree`` and ``places``.
+    """The state of the discs between events, arrays (N,) except ``calendar`` and ``places``.
 
     A disc was at (x, y) at its ``time``. At ``contact`` it meets its ``partner``, unless the
     partner's number of ``events`` differs from ``seen``, the number at the search. At ``border`` a
-    disc leaves its cell, along y if ``upwards``. ``tree`` has the time of disc i in the i-th node
-    of its last half. Any other node has the earlier time of the two nodes below, and node 1 the
-    first of all times. ``s`` are the spins of rough discs, (N, 1), or None.
+    disc leaves its cell, along y if ``upwards``. ``s`` are the spins of rough discs, (N, 1), or
+    None.
     """
 
     x: np.ndarray
@@ -64,7 +81,7 @@ class Motion(NamedTuple):
     partner: np.ndarray
     seen: np.ndarray
     events: np.ndarray
-    tree: np.ndarray
+    calendar: Calendar
     places: grids.Places
     s: np.ndarray | None = None
 
@@ -169,14 +186,16 @@ def go_on(time, log):
 @compiled
 def new_motion(discs, grid, rough=None):
     """Return an empty ``Motion`` for a number of ``discs``, smooth or ``rough``."""
-    leaves = 1
-    while leaves < discs:
-        leaves *= 2
+    days = 2
+    while days < 2 * discs:
+        days *= 2
+    lists = np.arange(discs + days)
     return Motion(
         np.zeros(discs), np.zeros(discs), np.zeros(discs), np.zeros(discs), np.zeros(discs),
         np.zeros(discs), np.zeros(discs), np.zeros(discs, np.bool_),
         np.zeros(discs, np.int64), np.zeros(discs, np.int64), np.zeros(discs, np.int64),
-        np.full(2 * leaves, INFINITE_GAP), grids.new_places(discs, grid),
+        Calendar(np.zeros(discs), np.zeros(discs, np.int64), lists, lists.copy()),
+        grids.new_places(discs, grid),
         all_pairs.new_spins(1, discs, rough),
     )  # fmt: skip
 
@@ -208,10 +227,10 @@ def find_contact(i, now, columns, rows, motion, grid, law):
     first, last = grids.columns_within(columns[0], columns[1], across, law.ring_x)
     lowest, highest = grids.columns_within(rows[0], rows[1], up, law.ring_y)
     for column in range(first, last + 1):
-        start = grids.wrap_column(column, across, law.ring_x) * up
+        start = motion.x.size + grids.wrap_column(column, across, law.ring_x) * up
         for row in range(lowest, highest + 1):
-            k = motion.places.head[start + grids.wrap_column(row, up, law.ring_y)]
-            while k >= 0:
+            k = motion.places.after[start + grids.wrap_column(row, up, law.ring_y)]
+            while k < motion.x.size:
                 lag = now - motion.time[k]
                 dx, dy = motion.x[k] + motion.u[k] * lag - x, motion.y[k] + motion.v[k] * lag - y
                 dx = image_separation(dx, column, across, law.ring_x)
@@ -254,25 +273,48 @@ def look_around(i, now, motion, grid, law):
 
 
 @inlined
-def enlist(i, motion):
-    """Put the first time of disc ``i`` into the tree."""
-    tree = motion.tree
-    node, time = tree.size // 2 + i, min(motion.contact[i], motion.border[i])
-    tree[node] = time
-    while node > 1:
-        time = min(time, tree[node ^ 1])
-        node >>= 1
-        tree[node] = time
+def entry_of(day, calendar):
+    """Return the entry with which the list of a ``day`` begins."""
+    discs = calendar.day.size
+    return discs + (day & (calendar.after.size - discs - 1))
 
 
 @inlined
-def first_disc(tree):
-    """Return the disc with the first time, and the least number if several discs have it."""
-    node, leaves, time = 1, tree.size // 2, tree[1]
-    while node < leaves:
-        node *= 2
-        node += 1 if tree[node] != time else 0
-    return node - leaves
+def enlist(i, rate, motion):
+    """Put the first time of disc ``i``, which is in no list, into the calendar.
+
+    The calendar has a ``rate`` of days per time.
+    """
+    time = min(motion.contact[i], motion.border[i])
+    day = np.int64(min(time * rate, LAST_DAY))
+    motion.calendar.time[i], motion.calendar.day[i] = time, day
+    grids.put(i, entry_of(day, motion.calendar), motion.calendar)
+
+
+@inlined
+def relist(i, rate, motion):
+    """Put the first time of disc ``i`` into the calendar, in place of the one that is there."""
+    grids.leave(i, motion.calendar)
+    enlist(i, rate, motion)
+
+
+@inlined
+def find_first(day, last, calendar):
+    """Return (disc, its day, its time) of the first time from a ``day`` to the ``last`` one.
+
+    It is the disc of the least number if several discs have this time. Without any the disc is −1.
+    """
+    first, time = -1, INFINITE_GAP
+    while first < 0 and day <= last:
+        i = calendar.after[entry_of(day, calendar)]
+        while i < calendar.day.size:
+            if calendar.day[i] == day:
+                sooner = calendar.time[i] < time
+                if sooner | ((calendar.time[i] == time) & (i < first)):
+                    first, time = i, calendar.time[i]
+            i = calendar.after[i]
+        day += 1 if first < 0 else 0
+    return first, day, time
 
 
 # Events -------------------------------------------------------------------------------------------
@@ -315,16 +357,14 @@ def count_hops(i, at, now, band, kind, log, bands):
     start, speed, since = bands.at[own], bands.speed[own], bands.since[own]
     # A disc has not changed order with itself.
     bands.at[own] = INFINITE_GAP
-    first, end = bands.first[band], bands.first[band + 1]
-    # Parts of arrays, whose indices cannot be negative, become vectors.
-    places, speeds, times = bands.at[first:end], bands.speed[first:end], bands.since[first:end]
-    for n in range(places.size):
-        last = max(since, times[n])
-        apart = start + speed * (last - since) - (places[n] + speeds[n] * (last - times[n]))
-        if crosses(apart, at - (places[n] + speeds[n] * (now - times[n]))):
+    # Indices that cannot be negative make vector instructions.
+    for n in range(np.uint64(bands.first[band]), np.uint64(bands.first[band + 1])):
+        place, other, then = bands.at[n], bands.speed[n], bands.since[n]
+        last = max(since, then)
+        apart = start + speed * (last - since) - (place + other * (last - then))
+        if crosses(apart, at - (place + other * (now - then))):
             count += 1
-            until = crossing_time(apart, speed - speeds[n])
-            note_hop(last + until, kind, i, bands.disc[first + n], log)
+            note_hop(last + crossing_time(apart, speed - other), kind, i, bands.disc[n], log)
     bands.at[own], bands.since[own] = at, now
     return count
 
@@ -422,7 +462,7 @@ def is_wall(ahead, columns, ring):
 def start_from(states, replica, motion, grid, law, hops, hops_x):
     """Begin with a column of ``states`` (rows, replicas); see ``follow_discs``."""
     discs = motion.x.size
-    motion.places.head[:] = -1
+    grids.clear(discs, motion.places)
     motion.events[:] = 0
     for i in range(discs):
         motion.x[i], motion.y[i] = states[i, replica], states[discs + i, replica]
@@ -453,7 +493,6 @@ def look_for_all(motion, grid, law):
     for i in range(motion.x.size):
         look_around(i, 0.0, motion, grid, law)
         find_border(i, motion, grid)
-        enlist(i, motion)
 
 
 @optional(lambda time, lane, kicks: False)
@@ -485,17 +524,21 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
     those of a ``lane``, None without friction. ``hops`` and ``hops_x`` are the ``Bands`` of the
     rows and of the columns, None where hops in y or in x are not counted.
     """
-    discs, tree = motion.x.size, motion.tree
+    discs, calendar = motion.x.size, motion.calendar
     columns, rows = grid.x.size - 1, grid.y.size - 1
     while True:
         end = kick_limit(min(duration, epoch), lane, kicks)
+        rate = DAYS_PER_DISC * discs / epoch
+        grids.clear(discs, calendar)
+        for i in range(discs):
+            enlist(i, rate, motion)
+        day, last = 0, np.int64(min(end * rate, LAST_DAY))
         while True:
-            now = tree[1]
+            i, day, now = find_first(day, last, calendar)
             full = is_full(discs, log)
             end = min(end, now) if full else end
             if not now < end:
                 break
-            i = first_disc(tree)
             j = i
             if motion.border[i] <= motion.contact[i]:
                 upwards = motion.upwards[i]
@@ -507,7 +550,7 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
                 else:
                     stops = is_wall(ahead, columns, law.ring_x)
                 if not stops:
-                    grids.leave(i, motion.places, grid)
+                    grids.leave(i, motion.places)
                     side = 1 if step > 0 else 0
                     if upwards:
                         left, r = r, pass_seam(i, ahead, rows, motion.y, laps[1], law.ring_y)
@@ -527,7 +570,7 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
                         motion.contact[i], motion.partner[i] = time, partner
                         motion.seen[i] = motion.events[partner]
                     find_border(i, motion, grid)
-                    enlist(i, motion)
+                    relist(i, rate, motion)
                     continue
                 lag = now - motion.time[i]
                 x, y = motion.x[i] + motion.u[i] * lag, motion.y[i] + motion.v[i] * lag
@@ -538,10 +581,9 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
                 put(i, x, y, now, motion, counts, log, hops, hops_x)
                 s = all_pairs.only_lane(motion.s)
                 all_pairs.rub_walls(motion.u, motion.v, i, not upwards, upwards, s, law.rough)
-                kind, velocities = (
-                    (all_pairs.Y_WALLS, motion.v) if upwards else (all_pairs.X_WALLS, motion.u)
-                )
-                velocities[i] = -velocities[i]
+                kind = all_pairs.Y_WALLS if upwards else all_pairs.X_WALLS
+                motion.u[i] *= 1.0 if upwards else -1.0
+                motion.v[i] *= -1.0 if upwards else 1.0
                 set_speeds(i, motion, hops, hops_x)
                 counts[kind] += 1
                 note_event(now, kind, i, i, motion, laps, law, log)
@@ -563,7 +605,7 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
             while True:
                 look_around(i, now, motion, grid, law)
                 find_border(i, motion, grid)
-                enlist(i, motion)
+                relist(i, rate, motion)
                 if i == j:
                     break
                 i = j
@@ -575,7 +617,6 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
             motion.time[i] -= end
             motion.contact[i] -= end
             motion.border[i] -= end
-            enlist(i, motion)
         begin_again(end, hops)
         begin_again(end, hops_x)
         duration -= end

@@ -23,14 +23,14 @@ class CellGrid(NamedTuple):
 class Places(NamedTuple):
     """The cell of each disc, ``column`` and ``row`` (N,), and the list of the discs of each cell.
 
-    A list begins with ``head`` (cells,) and goes on with ``after`` (N,); −1 is its end.
+    The list of cell c is a ring. From N + c it goes on to the disc ``after[N + c]``, from disc to
+    disc, and returns to N + c. ``after`` and ``before`` are (N + cells,).
     """
 
     column: np.ndarray
     row: np.ndarray
     before: np.ndarray
     after: np.ndarray
-    head: np.ndarray
 
 
 def make_grid(scene):
@@ -53,11 +53,8 @@ def _borders(length, number):
 @compiled
 def new_places(discs, grid):
     """Return ``Places`` for a number of ``discs``, which are in no cell yet."""
-    cells = (grid.x.size - 1) * (grid.y.size - 1)
-    return Places(
-        np.zeros(discs, np.int64), np.zeros(discs, np.int64), np.zeros(discs, np.int64),
-        np.zeros(discs, np.int64), np.full(cells, -1),
-    )  # fmt: skip
+    lists = np.arange(discs + (grid.x.size - 1) * (grid.y.size - 1))
+    return Places(np.zeros(discs, np.int64), np.zeros(discs, np.int64), lists, lists.copy())
 
 
 @inlined
@@ -69,26 +66,32 @@ def find_interval(position, borders):
 
 
 @inlined
-def enter(i, column, row, places, grid):
-    """Put disc ``i`` at the head of the list of a cell."""
-    cell = column * (grid.y.size - 1) + row
-    other = places.head[cell]
-    places.column[i], places.row[i] = column, row
-    places.before[i], places.after[i], places.head[cell] = -1, other, i
-    if other >= 0:
-        places.before[other] = i
+def clear(discs, lists):
+    """Empty all lists of a number of ``discs``."""
+    for entry in range(discs, lists.after.size):
+        lists.before[entry] = lists.after[entry] = entry
 
 
 @inlined
-def leave(i, places, grid):
-    """Take disc ``i`` out of the list of its cell."""
-    before, after = places.before[i], places.after[i]
-    if before >= 0:
-        places.after[before] = after
-    else:
-        places.head[places.column[i] * (grid.y.size - 1) + places.row[i]] = after
-    if after >= 0:
-        places.before[after] = before
+def put(i, entry, lists):
+    """Put disc ``i`` at the head of the list with an ``entry``."""
+    after = lists.after[entry]
+    lists.before[i], lists.after[i] = entry, after
+    lists.after[entry] = lists.before[after] = i
+
+
+@inlined
+def leave(i, lists):
+    """Take disc ``i`` out of its list."""
+    before, after = lists.before[i], lists.after[i]
+    lists.after[before], lists.before[after] = after, before
+
+
+@inlined
+def enter(i, column, row, places, grid):
+    """Put disc ``i`` at the head of the list of a cell."""
+    places.column[i], places.row[i] = column, row
+    put(i, places.row.size + column * (grid.y.size - 1) + row, places)
 
 
 @optional(lambda column, columns, ring: column)

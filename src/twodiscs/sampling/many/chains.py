@@ -84,8 +84,8 @@ def first_contact(i, axis, sign, left, centres, places, grid, initial):
             row = find_column(b if axis == 0 else a, rows, ring_y)
             if column < 0 or row < 0:
                 continue
-            k = places.head[column * rows + row]
-            while k >= 0:
+            k = places.after[places.row.size + column * rows + row]
+            while k < places.row.size:
                 dx = ring_separation(centres[0, k] - at_x, ring_x)
                 dy = ring_separation(centres[1, k] - at_y, ring_y)
                 if axis == 0:
@@ -144,7 +144,7 @@ def run_chains(state, initial, centres, number, length, grid):
                 centres[axis, i], sign = sign * half, -sign
             column, row = find_interval(centres[0, i], grid.x), find_interval(centres[1, i], grid.y)
             if column != places.column[i] or row != places.row[i]:
-                leave(i, places, grid)
+                leave(i, places)
                 enter(i, column, row, places, grid)
             if k >= 0:
                 i = k
