@@ -13,6 +13,7 @@ import shutil
 import subprocess
 from base64 import b64encode
 from collections import Counter
+from functools import partial
 from pathlib import Path
 from string import Template
 
@@ -145,9 +146,9 @@ def draw_panels(motion):
     lines, bottom, tall = panels.heading(box, panels.radius_text(radius)), 0.36, 0.62
     beneath = bottom + tall + 0.1
     # Points: the sign of a hop has its own line.
-    up = 17 if box.discs == 2 and not panels.is_short(box, radius) else 0
-    # Letters are larger than in other figures.
-    heading = 1.2 * panels.LINE_HEIGHT * (len(lines) - 1) + up / 72
+    digits = sum(len(panels.mathtext(value)) for value in (box.width, box.height, radius))
+    up = 17 if box.discs == 2 and not (box.is_plain and digits <= 11) else 0
+    heading = 0.156 * (len(lines) - 1) + up / 72
     figure = new_figure(beneath + inches * box.height + 0.28 + heading, WIDTH)
     figure.set_dpi(100)
     x, y = box.width / 2, box.height / 2
@@ -236,44 +237,35 @@ def draw_trace(axes, motion, disc, colour):
     return trace, move
 
 
+def draw_points(axes, points, *form, **style):
+    """Draw a line or symbols through ``points(time)``, which returns abscissas and ordinates."""
+    (line,) = axes.plot([], [], *form, **style)
+    return line, lambda time: line.set_data(*points(time))
+
+
 def draw_mark(axes, motion, disc):
     """Draw the mark at the edge of a rough disc. Between two events its spin is constant."""
-    (mark,), radius = axes.plot([], [], color=BLACK, lw=1.5), motion.scene.radii[disc - 1]
-    times, spins = motion.columns["time"], motion.columns[f"s{disc}"] / radius
+    times, radius = motion.columns["time"], motion.scene.radii[disc - 1]
+    spins = motion.columns[f"s{disc}"] / radius
     angles = np.concatenate([[0.0], np.cumsum(spins[:-1] * np.diff(times))])
 
-    def move(time):
+    def points(time):
         (x, y), angle = motion.folded_place(disc, time), np.interp(time, times, angles)
         ends = radius * np.array([0.65, 1.0])
-        mark.set_data(x + ends * np.cos(angle), y + ends * np.sin(angle))
+        return x + ends * np.cos(angle), y + ends * np.sin(angle)
 
-    return mark, move
-
-
-def draw_centre(axes, motion, disc, colour):
-    """Draw the centre of a disc."""
-    (dot,) = axes.plot([], [], "o", color=colour, ms=3.5, mew=0)
-    return dot, lambda time: dot.set_data(*motion.folded_place(disc, time)[:, None])
+    return draw_points(axes, points, color=BLACK, lw=1.5)
 
 
-def draw_number_beside(axes, motion, disc, colour):
-    """Draw the number of a disc beside its centre, and below the upper end of the box."""
-    number = drawing.label(axes, f"{disc}", (0, 0), (0, 0), fontsize=11)
+def draw_number(axes, motion, disc, is_beside):
+    """Draw the number of a disc at its centre, or beside it and below the upper end of the box."""
+    number = drawing.label(axes, f"{disc}", (0, 0), fontsize=11 if is_beside else 9)
 
     def move(time):
         number.xy = motion.folded_place(disc, time)
-        above = (motion.box.height / 2 - number.xy[1]) / drawing.points(axes)
-        number.xyann = (-9, min(9, above - 4))  # half of its height is 4
-
-    return number, move
-
-
-def draw_number_within(axes, motion, disc):
-    """Draw the number of a disc at its centre."""
-    number = drawing.label(axes, f"{disc}", (0, 0), fontsize=9)
-
-    def move(time):
-        number.xy = motion.folded_place(disc, time)
+        if is_beside:
+            above = (motion.box.height / 2 - number.xy[1]) / drawing.points(axes)
+            number.xyann = (-9, min(9, above - 4))  # half of its height is 4
 
     return number, move
 
@@ -302,40 +294,27 @@ def draw_sign(axes, motion):
     return sign, move
 
 
-def draw_past(strip, motion):
-    """Draw the separation until now."""
-    (line,) = strip.plot([], [], color=BLUE, lw=0.9)
-
-    def move(time):
-        times = motion.path_times(motion.frames[0], time)
-        line.set_data(times, motion.separation(times))
-
-    return line, move
-
-
-def draw_hops(strip, motion):
-    """Draw a dot for each hop until now."""
-    (dots,) = strip.plot([], [], "o", color=VERMILLION, ms=6, mew=0)
+def draw_separations(strip, motion):
+    """Return parts that draw the separation and the hops until now, and the separation now."""
     hops = motion.columns["time"][motion.columns["event"] == motion.hop]
     hops = hops[hops >= motion.frames[0]]
 
-    def move(time):
-        past = hops[hops <= time]
-        dots.set_data(past, 0 * past)
+    def past(time):
+        times = motion.path_times(motion.frames[0], time)
+        return times, motion.separation(times)
 
-    return dots, move
-
-
-def draw_present_separation(strip, motion):
-    """Draw the separation now, as a dot."""
-    (dot,) = strip.plot([], [], "o", color=BLACK, ms=3.5, mew=0)
-    return dot, lambda time: dot.set_data([time], motion.separation(np.array([time])))
-
-
-def draw_present(strip, motion):
-    """Draw the present as a vertical line."""
-    (line,) = strip.plot([], [], color=BLACK, lw=1.0)
-    return line, lambda time: line.set_data([time, time], strip.get_ylim())
+    dots = {"marker": "o", "ls": "", "mew": 0}
+    return {
+        "past": draw_points(strip, past, color=BLUE, lw=0.9),
+        "hops": draw_points(
+            strip, lambda time: (hops[hops <= time], 0 * hops[hops <= time]),
+            color=VERMILLION, ms=6, **dots,
+        ),
+        "present": draw_points(
+            strip, lambda time: ([time], motion.separation(np.array([time]))),
+            color=BLACK, ms=3.5, **dots,
+        ),
+    }  # fmt: skip
 
 
 def draw(motion):
@@ -363,17 +342,18 @@ def draw(motion):
         others[f"trace {disc}"] = draw_trace(axes, motion, disc, colour)
         if f"s{disc}" in motion.columns:
             others[f"mark {disc}"] = draw_mark(axes, motion, disc)
-        if many:
-            others[f"number {disc}"] = draw_number_within(axes, motion, disc)
-        else:
-            others[f"centre {disc}"] = draw_centre(axes, motion, disc, colour)
-            others[f"number {disc}"] = draw_number_beside(axes, motion, disc, colour)
+        if not many:
+            others[f"centre {disc}"] = draw_points(
+                axes, partial(motion.folded_place, disc), "o", color=colour, ms=3.5, mew=0
+            )
+        others[f"number {disc}"] = draw_number(axes, motion, disc, not many)
     if many:
-        others["present"] = draw_present(strip, motion)
+        others["present"] = draw_points(
+            strip, lambda time: ([time, time], strip.get_ylim()), color=BLACK, lw=1.0
+        )
     else:
         others |= {"surface": draw_surface(axes, motion), "sign": draw_sign(axes, motion)}
-        others |= {"past": draw_past(strip, motion), "hops": draw_hops(strip, motion)}
-        others["present"] = draw_present_separation(strip, motion)
+        others |= draw_separations(strip, motion)
     return axes.figure, circles, others
 
 

@@ -21,8 +21,8 @@ from twodiscs.figures.curves import limits
 from twodiscs.figures.style import BLACK, COLUMN, GREY, SERIES, SIZES, new_figure
 from twodiscs.model.effects import EFFECTS
 
-#: Inches: the panels of curves and of residuals, with their labels; a further line of a heading.
-MAIN_HEIGHT, RESIDUALS_HEIGHT, LINE_HEIGHT = 2.3, 0.95, 0.13
+#: Inches: the panels of curves and of residuals, with their labels.
+MAIN_HEIGHT, RESIDUALS_HEIGHT = 2.3, 0.95
 
 #: Points: the distance of a title above names of limits.
 TITLE_PAD = 14
@@ -33,8 +33,8 @@ SYMBOLS = {"discs": "${}$ discs"} | {name: EFFECTS[name].symbol for name in sort
 #: Residuals beyond this many standard errors are drawn as triangles at the edge.
 LARGEST_RESIDUAL = 6.5
 
-#: Guide lines: 95 % of all residuals are within the inner ones; no test passes beyond 5.
-GUIDES = {2: (0, (4, 2)), 5: (0, (1, 1.5))}
+#: Guide lines of residuals: 95 % are within the inner ones; no test passes beyond 5.
+GUIDES = {0: "-", -2: (0, (4, 2)), 2: (0, (4, 2)), -5: (0, (1, 1.5)), 5: (0, (1, 1.5))}
 
 
 @dataclass(frozen=True)
@@ -61,23 +61,29 @@ def radius_panels(box, label, judged=True, beneath=False):
     ``label`` is the label of the main ordinate. The axes of residuals are None unless the estimates
     are ``judged``, the axes beneath unless there are any ``beneath``.
     """
-    heights = [MAIN_HEIGHT] + [RESIDUALS_HEIGHT] * judged + [1.7] * beneath
-    figure = new_figure(sum(heights), layout="constrained")
-    axes = figure.subplots(len(heights), height_ratios=heights, squeeze=False)[:, 0]
-    main, lower = axes[0], axes[1] if judged else None
-    for one, name in zip(axes, ["main"] + ["residuals"] * judged + ["beneath"], strict=False):
-        one.set_label(name)
+    heights = {"main": MAIN_HEIGHT}
+    heights |= {"residuals": RESIDUALS_HEIGHT} if judged else {}
+    heights |= {"beneath": 1.7} if beneath else {}
+    figure, axes = _column_of_panels(COLUMN, heights)
+    main, lower = axes["main"], axes.get("residuals")
     main.set_ylabel(label)
     (lower or main).set_xlabel("radius $r$ (length)")
-    if judged:
+    if lower:
         main.tick_params(labelbottom=False)
         lower.set_ylabel("residual $z$")
         scale_residuals(lower)
-    mark([main, lower] if judged else [main], limits(box))
+    mark([main, lower] if lower else [main], limits(box))
     title(main, "a" if beneath else "", box, up=TITLE_PAD)
     if beneath:
-        title(axes[-1], "b")
-    return figure, main, lower, axes[-1] if beneath else None
+        title(axes["beneath"], "b")
+    return figure, main, lower, axes.get("beneath")
+
+
+def _column_of_panels(width, heights):
+    """Return (figure, {name: axes}) of panels above each other, with ``heights`` by name."""
+    figure = new_figure(sum(heights.values()), width, layout="constrained")
+    rows = [[name] for name in heights]
+    return figure, figure.subplot_mosaic(rows, height_ratios=[*heights.values()])
 
 
 def stacked(width=COLUMN, **heights):
@@ -85,12 +91,10 @@ def stacked(width=COLUMN, **heights):
 
     ``heights`` are inches, with labels and titles, by the names of the panels from the top down.
     """
-    figure = new_figure(sum(heights.values()), width, layout="constrained")
-    axes = figure.subplots(len(heights), squeeze=False, height_ratios=[*heights.values()])[:, 0]
-    for one, name, letter in zip(axes, heights, "abcdefgh", strict=False):
-        one.set_label(name)
+    figure, axes = _column_of_panels(width, heights)
+    for one, letter in zip(axes.values(), "abcdefgh", strict=False):
         title(one, letter)
-    return figure, axes
+    return figure, [*axes.values()]
 
 
 def title(axes, letter="", box=None, more="", up=3):
@@ -106,12 +110,9 @@ def title(axes, letter="", box=None, more="", up=3):
 
 def scale_residuals(lower):
     """Draw the guide lines of residuals, and set the ends of their panel beyond them."""
-    lower.set_ylim(-LARGEST_RESIDUAL, LARGEST_RESIDUAL)
-    lower.set_yticks([-5, -2, 0, 2, 5])
-    lower.axhline(0, color=GREY, lw=0.5, zorder=0)
-    for size, dashes in GUIDES.items():
-        for z in (-size, size):
-            lower.axhline(z, color=GREY, lw=0.5, ls=dashes, zorder=0)
+    lower.set(ylim=(-LARGEST_RESIDUAL, LARGEST_RESIDUAL), yticks=sorted(GUIDES))
+    for z, dashes in GUIDES.items():
+        lower.axhline(z, color=GREY, lw=0.5, ls=dashes, zorder=0)
 
 
 def mark(panels, ends):
@@ -134,13 +135,10 @@ def mark(panels, ends):
         drawing.label(panels[0], f"${names}$", (middle, 1), (0, 3), **at_top)
 
 
-def add_panel(figure, bottom, height, left, width, name=""):
-    """Return new axes at ``left`` and ``bottom``, ``width`` × ``height``, all in inches.
-
-    ``name`` is their label, which identifies them among the axes of the figure.
-    """
+def add_panel(figure, bottom, height, left, width):
+    """Return new axes at ``left`` and ``bottom``, ``width`` × ``height``, all in inches."""
     across, up = figure.get_size_inches()
-    axes = figure.add_axes((left / across, bottom / up, width / across, height / up), label=name)
+    axes = figure.add_axes((left / across, bottom / up, width / across, height / up))
     # The power of ten of an ordinate is beside the heading.
     axes.yaxis.get_offset_text().set(ha="right", x=-0.01)
     return axes
@@ -179,12 +177,6 @@ def sides(box):
 def radius_text(radius):
     """Return the text of a ``radius`` that follows the sides of a box, empty if it is None."""
     return f",  $r={mathtext(radius)}$" if radius else ""
-
-
-def is_short(box, radius=0):
-    """Return whether the ``heading``, maybe with a ``radius``, leaves space beside it."""
-    digits = sum(len(mathtext(value)) for value in (box.width, box.height, radius or 0))
-    return box.is_plain and digits <= 11
 
 
 def heading(box, more=""):

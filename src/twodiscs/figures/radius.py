@@ -289,9 +289,7 @@ def _virials(axes, box, rows, radii):
         )
         for event, name in names.items()
     ]
-    for (colour, marker), part in zip(SERIES, series, strict=False):
-        panels.draw_exact(axes, radii, part.exact, colour)
-        panels.draw_estimates(axes, part.rows, colour, marker)
+    panels.draw_series(axes, None, radii, series)
     axes.set(xlim=(0, 1.02 * box.last_radius), xlabel="radius $r$ (length)")
     axes.set_ylabel(r"virial$\,/\,2\langle E_{\mathrm{k}}\rangle$")
     panels.logarithmic(axes, radii, series)

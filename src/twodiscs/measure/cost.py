@@ -377,16 +377,10 @@ class Cost(Printed):
     @property
     def rows(self) -> list[dict[str, object]]:
         """The rows of ``frame()``; a time below the floor is None."""
+        names = "quantity", "method", "c", "least_error", "least_seconds", "floor"
         return [
-            {
-                "quantity": price.quantity,
-                "method": price.method,
-                "c": price.c,
-                "least_error": price.least_error,
-                "least_seconds": price.least_seconds,
-                "floor": price.floor,
-                **{f"seconds_{error:g}": price.seconds(error) for error in self.errors},
-            }
+            {name: getattr(price, name) for name in names}
+            | {f"seconds_{error:g}": price.seconds(error) for error in self.errors}
             for price in self.prices
         ]
 

@@ -466,15 +466,12 @@ def make_simulation(
     possible, timed = check_scene(scene).events, duration is not None
     if timed and error is not None:
         raise InputError("error and duration must not both be given: leave out one of them")
-    tracked, target = _targets(error, "events", "event", events, possible, scene)
+    events, error = _targets(error, "events", "event", events, possible, scene)
     budget = None if budget is None else check_count("budget", budget)
-    settings = {"seed": check_integer("seed", seed, 0), "budget": budget}
-    settings |= {"events": tracked, "name": name, "method": method}
+    settings = {"seed": check_integer("seed", seed, 0), "budget": budget, "error": error}
+    settings |= {"events": events, "name": name, "method": method}
     if timed:
-        duration = check_length("duration", duration)
-        settings |= {"error": None, "duration": duration}
-    else:
-        settings["error"] = target if isinstance(error, Mapping) else check_error("error", error)
+        settings["duration"] = check_length("duration", duration)
     from twodiscs.dynamics.runs import DynamicsRun
 
     point = work("simulate", DynamicsRun.of(scene, settings), **how)
@@ -485,27 +482,26 @@ def make_simulation(
             f" {point.replicas} trajectories of {point.duration:g} each."
         )
     else:
-        note = _note_of_error(
-            rows, rows, budget, point.events, "events", "wall hits and collisions"
-        )
+        named = "wall hits and collisions"
+        note = _note_of_error(rows, rows, budget, point.events, "events", named)
     return Measurements("simulate", scene, rows, settings, point, note)
 
 
 def _targets(error, key, what, names, allowed, scene):
-    """Return (the ``names`` that are asked for, {name: relative error, None without one}).
+    """Return (the ``names`` that are asked for, the relative error, None without one).
 
     The ``error`` is one for all or {name: error}; ``key`` is the argument that has the names, and
     ``what`` each of them is.
     """
-    if isinstance(error, Mapping) and not error:
+    if not isinstance(error, Mapping):
+        names = _named(key, what, names, allowed, scene)
+        return names, None if error is None else check_error("error", error)
+    if not error:
         raise InputError(f"error must hold some of {', '.join(allowed)}, not {{}}")
-    errors = error if isinstance(error, Mapping) else dict.fromkeys(allowed, error)
-    if isinstance(error, Mapping) and names is None:
-        names = [*error]
-    names = _named(key, what, names, allowed, scene)
-    if missing := [name for name in names if name not in errors]:
+    names = _named(key, what, [*error] if names is None else names, allowed, scene)
+    if missing := [name for name in names if name not in error]:
         raise InputError(f"error must have a value for every {what}, but has none for {missing[0]}")
-    return names, {n: None if error is None else check_error("error", errors[n]) for n in names}
+    return names, {name: check_error("error", error[name]) for name in names}
 
 
 def _note_of_error(rows, short, budget, work, what, named):
@@ -614,15 +610,14 @@ def make_sampling(
     if error is None and budget is not None:
         raise InputError("budget must be left out without an error: samples is the number to draw")
     allowed = ("volume", *(f"{event}_area" for event in check_scene(scene).events))
-    quantities, target = _targets(error, "quantities", "quantity", quantities, allowed, scene)
+    quantities, error = _targets(error, "quantities", "quantity", quantities, allowed, scene)
     settings = {"seed": check_integer("seed", seed, 0), "quantities": quantities, "name": name}
     settings |= {"method": method, "shell": check_fraction("shell", shell, THINNEST_SHELL)}
     if error is None:
-        samples = check_count("samples", 10**7 if samples is None else samples)
-        settings["samples"] = samples
+        settings["samples"] = check_count("samples", 10**7 if samples is None else samples)
     else:
-        settings["error"] = target if isinstance(error, Mapping) else check_error("error", error)
-        settings["budget"] = None if budget is None else check_count("budget", budget)
+        budget = None if budget is None else check_count("budget", budget)
+        settings |= {"error": error, "budget": budget}
     from twodiscs.sampling.montecarlo import PROPOSAL_TIME, MonteCarloRun
 
     run = MonteCarloRun.of(scene, settings)
@@ -632,16 +627,16 @@ def make_sampling(
     rows = [row for row in rows if row["quantity"] in quantities]
     if error is None:
         fewer = f"a conditioned sample is as much work as {PROPOSAL_TIME} ordinary ones"
-        note = note_of_number("samples", samples, point.samples, fewer)
+        note = note_of_number("samples", settings["samples"], point.samples, fewer)
     else:
         for row in rows:
             known = row["stderr"] and row["stderr"] / row["estimate"]
-            row["target"], row["relative_stderr"] = target[row["quantity"]], known
+            row["target"], row["relative_stderr"] = run.target[row["quantity"]], known
             if row["status"] == "sampled":
                 row["status"] = "reached" if known <= row["target"] else "budget"
         # No budget ended a run with too few misses, whose binomial error is small.
         short = [r for r in rows if r["status"] != "too-few" or why_no_error(hits=r["hits"])]
-        drawn, budget = point.samples * run.weight, settings["budget"]
+        drawn = point.samples * run.weight
         note = _note_of_error(rows, short, budget, drawn, "samples", "samples")
     return Measurements("sample", scene, rows, settings, point, note)
 
