@@ -1,6 +1,6 @@
 """Configuration space: a section in three dimensions, and the whole as a product of two squares."""
 
-from itertools import combinations, pairwise, product
+from itertools import pairwise, product
 from math import cos, pi, radians, sin, sqrt
 
 import numpy as np
@@ -74,30 +74,18 @@ def _towards(direction):
 def _prism(axes, halves, radius):
     """Draw the prism, with edges that it hides dashed, and the cylinder of a ``radius`` in it."""
     sizes = _sizes(halves)
-    corners = [*product((-1, 1), repeat=3)]
-    edges = [
-        (one, two)
-        for one, two in combinations(corners, 2)
-        if sum(i != j for i, j in zip(one, two, strict=True)) == 1
-    ]
-    # An edge is hidden if both faces that meet in it look away.
-    shared = [[i if i == j else 0 for i, j in zip(*edge, strict=True)] for edge in edges]
-    hidden = [
-        all(_towards([n * (k == axis) for k in range(3)]) < 0 for axis, n in enumerate(faces) if n)
-        for faces in shared
-    ]
-
-    def draw(edge, **options):
-        ends = [_seen([n * size for n, size in zip(c, sizes, strict=True)]) for c in edge]
-        drawing.line(axes, ends, **options)
-
-    for edge, is_hidden in zip(edges, hidden, strict=True):
-        if is_hidden:
-            draw(edge, colour=GREY, width=0.5, style=(0, (3, 2)), zorder=0)
     _cylinder(axes, sqrt(2) * halves[0], radius)
-    for edge, is_hidden in zip(edges, hidden, strict=True):
-        if not is_hidden:
-            draw(edge, colour=BLACK, width=0.8)
+    for corner, axis in product(product((-1, 1), repeat=3), (2, 1, 0)):
+        if corner[axis] > 0:  # the other end of an edge
+            continue
+        ends = corner, (*corner[:axis], 1, *corner[axis + 1 :])
+        edge = [_seen(np.multiply(end, sizes)) for end in ends]
+        # An edge is hidden if both faces that meet in it look away.
+        faces = [np.eye(3)[k] * corner[k] for k in range(3) if k != axis]
+        if max(map(_towards, faces)) < 0:
+            drawing.line(axes, edge, style=(0, (3, 2)), zorder=0)
+        else:
+            drawing.line(axes, edge, colour=BLACK, width=0.8)
     # Along the lower edges that are nearest, and the upright one on the left.
     drawing.label(axes, "$x_1$", _seen((0, -sizes[1], -sizes[2])), (0, -8))
     side = 1 if _towards((1, 0, 0)) > 0 else -1
@@ -123,19 +111,14 @@ def _cylinder(axes, half_length, radius):
             corners = [rim(angle, -1), rim(later, -1), rim(later, 1), rim(angle, 1)]
             colour = tuple(dark + (light - dark) * facing)
             axes.add_patch(Polygon(corners, color=colour, lw=0.3, clip_on=False))
-    for end in (-1, 1):
-        # The two halves of an end lie in two faces of the prism.
-        for first, normal in ((-pi / 2, _end_normal(end, True)), (pi / 2, _end_normal(end, False))):
-            half = [rim(angle, end) for angle in np.linspace(first, first + pi, STRIPS)]
-            if _towards(normal) > 0:
-                axes.add_patch(Polygon(half, fc="#E2CF95", ec=BLACK, lw=0.6, clip_on=False))
-            else:
-                drawing.line(axes, half, colour=GREY, width=0.4, style=(0, (3, 2)))
-
-
-def _end_normal(end, is_right):
-    """Return the normal of the face in which half of an end lies; ``is_right`` where x1 > x2."""
-    return (end, 0, 0) if is_right == (end > 0) else (0, end, 0)
+    # The two halves of an end lie in two faces of the prism: x1 > x2 on the right.
+    for end, is_right in product((-1, 1), (True, False)):
+        first = -pi / 2 if is_right else pi / 2
+        half = [rim(angle, end) for angle in np.linspace(first, first + pi, STRIPS)]
+        if _towards((end, 0, 0) if is_right == (end > 0) else (0, end, 0)) > 0:
+            axes.add_patch(Polygon(half, fc="#E2CF95", ec=BLACK, lw=0.6, clip_on=False))
+        else:
+            drawing.line(axes, half, colour=GREY, width=0.4, style=(0, (3, 2)))
 
 
 def _turned(across, along):

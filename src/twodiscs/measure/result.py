@@ -32,8 +32,6 @@ class Settings:
 class Immutable:
     """The base of what does not change: a copy is the object itself, with its correlations."""
 
-    settings = Settings()
-
     def __copy__(self) -> Self:
         return self
 
@@ -75,6 +73,7 @@ class Result(Printed):
     kind: ClassVar[str]
     makers: ClassVar[dict[str, Callable]]
     sums: ClassVar[type] = int
+    settings = Settings()
     components: dict[str, dict]
     version: str = twodiscs.__version__
     #: The difference between the work that was asked for and the work that was done, None if none.
