@@ -240,7 +240,7 @@ def draw_trace(axes, motion, disc, colour):
 def draw_points(axes, points, *form, **style):
     """Draw a line or symbols through ``points(time)``, which returns abscissas and ordinates."""
     (line,) = axes.plot([], [], *form, **style)
-    return line, lambda time: line.set_data(*points(time))
+    return line, lambda time: line.set_data(*map(np.atleast_1d, points(time)))
 
 
 def draw_mark(axes, motion, disc):

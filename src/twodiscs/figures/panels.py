@@ -66,6 +66,15 @@ def radius_panels(box, label, judged=True, beneath=False):
     heights |= {"beneath": 1.7} if beneath else {}
     figure, axes = _column_of_panels(COLUMN, heights)
     main, lower = axes["main"], axes.get("residuals")
+    over_radius(box, label, main, lower)
+    title(main, "a" if beneath else "", box, up=TITLE_PAD)
+    if beneath:
+        title(axes["beneath"], "b")
+    return figure, main, lower, axes.get("beneath")
+
+
+def over_radius(box, label, main, lower):
+    """Label curves over the radius and their residuals, None without, and mark limits of a box."""
     main.set_ylabel(label)
     (lower or main).set_xlabel("radius $r$ (length)")
     if lower:
@@ -73,10 +82,6 @@ def radius_panels(box, label, judged=True, beneath=False):
         lower.set_ylabel("residual $z$")
         scale_residuals(lower)
     mark([main, lower] if lower else [main], limits(box))
-    title(main, "a" if beneath else "", box, up=TITLE_PAD)
-    if beneath:
-        title(axes["beneath"], "b")
-    return figure, main, lower, axes.get("beneath")
 
 
 def _column_of_panels(width, heights):

@@ -7,7 +7,7 @@ from matplotlib.lines import Line2D
 
 from twodiscs.analysis.tables import row_quantity
 from twodiscs.figures import curves, panels
-from twodiscs.figures.curves import hop_ends, limits
+from twodiscs.figures.curves import hop_ends
 from twodiscs.figures.scene_figures import FIGURES, Curves
 from twodiscs.figures.style import BLACK, LOOKS, SERIES, event_name, new_figure
 from twodiscs.model.checks import InputError
@@ -97,13 +97,9 @@ def draw_areas(box, rows):
         main.set_label(name)
         lower.set_label(f"residuals of {name}")
         series = _draw_series(main, lower, radii, kind, by_quantity)
-        panels.scale_residuals(lower)
-        panels.mark([main, lower], limits(box))
-        panels.legend(main, series, kind.single)
         # The name of a root is too long beside a panel of this height.
-        main.set_ylabel(kind.label.rpartition(", ")[2])
-        main.tick_params(labelbottom=False)
-        lower.set(xlabel="radius $r$ (length)", ylabel="residual $z$")
+        panels.over_radius(box, kind.label.rpartition(", ")[2], main, lower)
+        panels.legend(main, series, kind.single)
         panels.title(main, "abcd"[i], box if i == 0 else None, up=panels.TITLE_PAD)
     return figure
 

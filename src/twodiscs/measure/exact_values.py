@@ -190,8 +190,7 @@ def exact_table(
     parts = [row.get("ergodic_components") for row in rows]
     if any(part is None or part.bit_length() > 63 for part in parts):
         frame["ergodic_components"] = pd.Series(parts, frame.index, object)
-    times = [f"{event}_time" for event in EVENTS]
-    known = ["volume", *(f"{event}_area" for event in EVENTS), *times]
+    known = ["volume", *(f"{event}_{kind}" for kind in ("area", "time") for event in EVENTS)]
     frame[known] = frame[known].astype(float)
     frame.attrs["box"] = box.parameters()
     return frame

@@ -65,17 +65,13 @@ def load(folder: str | PathLike[str]) -> dict[str, pd.DataFrame]:
     """
     if not isinstance(folder, str | Path):
         raise InputError(f"folder must be the path of a folder, not {folder!r}")
-    frames, folder = {}, Path(folder)
-    if not folder.is_dir():
-        what = "is no folder" if folder.exists() else "does not exist"
+    folder, known = Path(folder), plugin("tables") or SCENE_TABLES
+    paths = [path for path in sorted(folder.glob("*.csv")) if path.stem in known]
+    if not paths:
+        what = "does not exist" if not folder.exists() else "is no folder"
+        what = "has none" if folder.is_dir() else what
         raise InputError(f"folder must hold tables of results, but {str(folder)!r} {what}")
-    known = plugin("tables") or SCENE_TABLES
-    for path in sorted(folder.glob("*.csv")):
-        if path.stem in known:
-            frames[path.stem] = read(path, known[path.stem])
-    if not frames:
-        raise InputError(f"folder must hold tables of results, but {str(folder)!r} has none")
-    return frames
+    return {path.stem: read(path, known[path.stem]) for path in paths}
 
 
 def read(path, table):
