@@ -164,7 +164,7 @@ def run(main):
 EXAMPLE = "--width 1.5 --height 1 --radius 0.2"
 
 #: {option that several commands have: its settings}
-SHARED = {
+SHARED_OPTIONS = {
     "--seed": {"type": value, "default": 1, "help": "seed of the random numbers (1)"},
     "--name": {"help": "name of a scene in a configuration, for the same numbers"},
     "--cores": {"type": value, "default": 1, "help": "number of cores (1)"},
@@ -282,7 +282,7 @@ def _parser():
 def _add_shared(add, *options):
     """Add options that several commands have."""
     for option in options:
-        add(option, **SHARED[option])
+        add(option, **SHARED_OPTIONS[option])
 
 
 def _targets(**_):

@@ -85,7 +85,7 @@ def test_a_prism_hides_three_edges_and_a_cylinder_its_other_half(monkeypatch, az
     assert len(edges) == 12
     assert sum(line.is_dashed() for line in edges) == 3
     strips = [patch for patch in axes.patches if len(patch.get_xy()) == 5]
-    assert abs(len(strips) - configuration_space.STRIPS / 2) <= 1
+    assert abs(len(strips) - configuration_space.CYLINDER_STRIPS / 2) <= 1
     # An end of the cylinder lies in two faces each; three of the six faces are seen.
     ends = [patch for patch in axes.patches if len(patch.get_xy()) > 5]
     hidden = [line for line in axes.lines if len(line.get_xdata()) > 2]

@@ -138,7 +138,7 @@ def test_numbers_over_the_radius_are_those_of_the_rows(name, box):
     named = {text.get_text() for text in texts}
     rough = any(row["estimate"] is not None and row["stderr"] is None for row in own)
     bound = any(row["estimate"] is None and row.get("bound") is not None for row in own)
-    assert (rough, bound) == (panels.ROUGH[0] in named, panels.BOUND[0] in named)
+    assert (rough, bound) == (panels.CROSS_LOOK[0] in named, panels.ARROW_LOOK[0] in named)
     panel = {axes.get_label(): axes for axes in drawn(name, box).axes}
     found = [*series(name, (BOXES | OTHERS)[box], rows)]
     assert found

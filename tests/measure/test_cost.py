@@ -70,12 +70,12 @@ def test_a_rare_hop_has_a_price_from_ordinary_states_too(blocks):
     assert ordinary.c > 1e4 * strips.c
     # Few counts do not tell their variance; it then follows from the exact rate.
     block = td.rate(NEAR, "horizontal_hop") * find_engine(NEAR).replica_duration(NEAR) * REPLICAS
-    assert ordinary.c == pytest.approx(cost.CLUSTER / block * 1e-3)
+    assert ordinary.c == pytest.approx(cost.CLUSTER_VARIANCE / block * 1e-3)
     # 144 are expected in 32 blocks, where 200 would tell.
     some = SCENE.with_radius(0.2485)
     error = cost.pilots(new_run(some, 1.0))["all"].errors["horizontal_hop"]
     block = td.rate(some, "horizontal_hop") * find_engine(some).replica_duration(some) * REPLICAS
-    assert error == pytest.approx(math.sqrt(cost.CLUSTER / block))
+    assert error == pytest.approx(math.sqrt(cost.CLUSTER_VARIANCE / block))
 
 
 def test_a_trajectory_has_a_price_for_its_rows(blocks):

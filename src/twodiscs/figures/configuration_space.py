@@ -13,7 +13,7 @@ from twodiscs.figures.style import BLACK, BLUE, COLUMN, GREY, VERMILLION, new_fi
 AZIMUTH, ELEVATION = -112.0, 24.0
 
 #: Strips of the cylinder.
-STRIPS = 60
+CYLINDER_STRIPS = 60
 
 
 def draw(box):
@@ -95,7 +95,7 @@ def _prism(axes, halves, radius):
 
 def _cylinder(axes, half_length, radius):
     """Draw the cylinder around the diagonal, ``half_length`` long to either side."""
-    angles = np.linspace(0, 2 * pi, STRIPS + 1)
+    angles = np.linspace(0, 2 * pi, CYLINDER_STRIPS + 1)
 
     def rim(angle, end):
         across = radius * cos(angle)
@@ -114,7 +114,7 @@ def _cylinder(axes, half_length, radius):
     # The two halves of an end lie in two faces of the prism: x1 > x2 on the right.
     for end, is_right in product((-1, 1), (True, False)):
         first = -pi / 2 if is_right else pi / 2
-        half = [rim(angle, end) for angle in np.linspace(first, first + pi, STRIPS)]
+        half = [rim(angle, end) for angle in np.linspace(first, first + pi, CYLINDER_STRIPS)]
         if _towards((end, 0, 0) if is_right == (end > 0) else (0, end, 0)) > 0:
             axes.add_patch(Polygon(half, fc="#E2CF95", ec=BLACK, lw=0.6, clip_on=False))
         else:

@@ -11,20 +11,20 @@ from twodiscs.model.events import EVENT_AXES, EVENTS, HOPS
 
 #: The name of the largest radius that fits, that of a smaller one beyond which a field allows no
 #: scene, and the names of the radii at which hops become blocked.
-LARGEST, FIELD_END = r"r_{\mathrm{max}}", r"r_{\mathrm{f}}"
+R_MAX, R_F = r"r_{\mathrm{max}}", r"r_{\mathrm{f}}"
 QUARTERS = {"x": "h/4", "y": "w/4"}
 
 #: The names of radii of a box with effects: hops become blocked, disc 1 can no longer change sides,
 #: in a field it can reach the top wall, on a periodic axis discs can no longer pass each other. If
 #: two radii are the same, the name is that of a hop, or else the first.
-VERTICAL, HORIZONTAL = r"r_{\mathrm{v}}", r"r_{\mathrm{h}}"
-TOP, ACROSS_X, ACROSS_Y = r"r_{\mathrm{t}}", r"r_{\mathrm{x}}", r"r_{\mathrm{y}}"
+R_V, R_H = r"r_{\mathrm{v}}", r"r_{\mathrm{h}}"
+R_T, R_X, R_Y = r"r_{\mathrm{t}}", r"r_{\mathrm{x}}", r"r_{\mathrm{y}}"
 CHANGES = {
-    VERTICAL: lambda scene: scene.vertical_hops,
-    HORIZONTAL: lambda scene: scene.horizontal_hops,
-    TOP: lambda scene: scene.is_possible("top_wall"),
-    ACROSS_X: lambda scene: scene.confined[0],
-    ACROSS_Y: lambda scene: scene.confined[1],
+    R_V: lambda scene: scene.vertical_hops,
+    R_H: lambda scene: scene.horizontal_hops,
+    R_T: lambda scene: scene.is_possible("top_wall"),
+    R_X: lambda scene: scene.confined[0],
+    R_Y: lambda scene: scene.confined[1],
     r"\sigma=h/2": lambda scene: _fills(scene, "y"),
     r"\sigma=w/2": lambda scene: _fills(scene, "x"),
 }
@@ -47,16 +47,16 @@ def limits(box):
             radius, name = box.threshold(hop), QUARTERS[EVENT_AXES[hop]]
             names[radius] = f"{names[radius]}={name}" if radius in names else name
         names = {radius: name for radius, name in names.items() if radius in box.thresholds}
-        return *sorted(names.items()), (box.largest_radius, LARGEST)
+        return *sorted(names.items()), (box.largest_radius, R_MAX)
     largest = box.last_radius
     for name, state in CHANGES.items():
         first = state(box.scene(1e-6 * largest))
         radius = box.end(lambda here, s=state, f=first: s(here) == f)
-        if radius in names and name == HORIZONTAL:
+        if radius in names and name == R_H:
             names[radius] += f"={name}"
         elif radius < largest:
             names.setdefault(radius, name)
-    last = LARGEST if isclose(largest, box.largest_radius) else FIELD_END
+    last = R_MAX if isclose(largest, box.largest_radius) else R_F
     return *sorted(names.items()), (largest, last)
 
 
@@ -67,7 +67,7 @@ def _fills(scene, axis):
 def hop_ends(box):
     """Return {hop: (radius at which it ends, its name)} of a ``Box``."""
     ends = limits(box)
-    names = (QUARTERS["y"], QUARTERS["x"]) if box.is_plain else (VERTICAL, HORIZONTAL)
+    names = (QUARTERS["y"], QUARTERS["x"]) if box.is_plain else (R_V, R_H)
     return {
         hop: next((limit for limit in ends if name in limit[1].split("=")), ends[-1])
         for hop, name in zip(HOPS, names, strict=True)

@@ -34,7 +34,7 @@ SYMBOLS = {"discs": "${}$ discs"} | {name: EFFECTS[name].symbol for name in sort
 LARGEST_RESIDUAL = 6.5
 
 #: Guide lines of residuals: 95 % are within the inner ones; no test passes beyond 5.
-GUIDES = {0: "-", -2: (0, (4, 2)), 2: (0, (4, 2)), -5: (0, (1, 1.5)), 5: (0, (1, 1.5))}
+RESIDUAL_GUIDES = {0: "-", -2: (0, (4, 2)), 2: (0, (4, 2)), -5: (0, (1, 1.5)), 5: (0, (1, 1.5))}
 
 
 @dataclass(frozen=True)
@@ -115,8 +115,8 @@ def title(axes, letter="", box=None, more="", up=3):
 
 def scale_residuals(lower):
     """Draw the guide lines of residuals, and set the ends of their panel beyond them."""
-    lower.set(ylim=(-LARGEST_RESIDUAL, LARGEST_RESIDUAL), yticks=sorted(GUIDES))
-    for z, dashes in GUIDES.items():
+    lower.set(ylim=(-LARGEST_RESIDUAL, LARGEST_RESIDUAL), yticks=sorted(RESIDUAL_GUIDES))
+    for z, dashes in RESIDUAL_GUIDES.items():
         lower.axhline(z, color=GREY, lw=0.5, ls=dashes, zorder=0)
 
 
@@ -230,9 +230,9 @@ def _column(rows, *names):
 
 #: The names in a legend of estimates from a strip, of those from too few events for an error, and
 #: of bounds; their looks.
-STRIPS = ("from strips", {"color": GREY, "marker": "o", "markersize": SIZES["o"], "ls": ""})
-ROUGH = ("too few events", {"color": GREY, "marker": "x", "ls": ""})
-BOUND = ("95 % lower bound", {"color": GREY, "marker": r"$\uparrow$", "ls": ""})
+STRIP_LOOK = ("from strips", {"color": GREY, "marker": "o", "markersize": SIZES["o"], "ls": ""})
+CROSS_LOOK = ("too few events", {"color": GREY, "marker": "x", "ls": ""})
+ARROW_LOOK = ("95 % lower bound", {"color": GREY, "marker": r"$\uparrow$", "ls": ""})
 
 
 def split_by_error(rows):
@@ -310,7 +310,8 @@ def legend(axes, series, single=None, more=()):
     known, *special = split_by_error([row for part in series for row in part.rows])
     special = [[row for row in known if row.get("starts") == "strip"], *special]
     entries += more
-    entries += [entry for entry, rows in zip((STRIPS, ROUGH, BOUND), special, strict=True) if rows]
+    looks = zip((STRIP_LOOK, CROSS_LOOK, ARROW_LOOK), special, strict=True)
+    entries += [look for look, rows in looks if rows]
     names = [name for name, _ in entries]
     handles = [Line2D([], [], **style) for _, style in entries]
     if len(names) > 4:  # no place without a curve is large enough

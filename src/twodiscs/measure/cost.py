@@ -35,20 +35,20 @@ if TYPE_CHECKING:
 ERRORS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 
 #: Processor seconds of a pilot of dynamics, about, and of a pilot that measures the speed only.
-PILOT, OF_SPEED = 0.3, 0.1
+PILOT_SECONDS, SPEED_SECONDS = 0.3, 0.1
 
 #: Rows of a trajectory with a price, and rows of a pilot of it.
-ROWS, PILOT_ROWS = 1e6, 1000
+PRICED_ROWS, PILOT_ROWS = 1e6, 1000
 
 #: The fewest initial states of a pilot.
-FEWEST_REPLICAS = 128
+PILOT_REPLICAS = 128
 
 #: Fewer counts of an event do not tell their variance. It is then this multiple of the mean, which
 #: is known: a rare hop may be undone soon.
-FEWEST_COUNTS, CLUSTER = 200, 1.3
+VARIANCE_COUNTS, CLUSTER_VARIANCE = 200, 1.3
 
 #: The relative error of exact values of this number of discs, and of more discs in a channel.
-PRECISION, OF_CHANNEL = {2: 1e-15, 3: 1e-14}, 1e-12
+EXACT_ERRORS, CHANNEL_ERROR = {2: 1e-15, 3: 1e-14}, 1e-12
 
 
 def machine():
@@ -97,7 +97,7 @@ def timed(work, seconds, fewest=1):
     return sums, blocks, each
 
 
-def pilots(run, seconds=PILOT):
+def pilots(run, seconds=PILOT_SECONDS):
     """Return {component: ``Pilot``} of a ``DynamicsRun``: "all", and rare hops in their strips."""
     return {name: _pilot(run, name, seconds) for name in run.components}
 
@@ -109,7 +109,7 @@ def _pilot(run, name, seconds):
     scene, engine, one = run.scene, find_engine(run.scene), run.components[name]
     duration = run.replica_duration
     replicas = engine.block_replicas(scene, duration)
-    sums, blocks, each = timed(one.work, seconds, -(-FEWEST_REPLICAS // replicas))
+    sums, blocks, each = timed(one.work, seconds, -(-PILOT_REPLICAS // replicas))
     if name == "all":
         number, errors = blocks * replicas, {}
         burst_variance = np.array(
@@ -119,8 +119,8 @@ def _pilot(run, name, seconds):
         for event, count, error in zip(EVENTS, sums[0].tolist(), measured, strict=True):
             if event in run.target and scene.is_possible(event):
                 expected = engine.expected_rate(scene, event) * duration
-                few = count < FEWEST_COUNTS and expected
-                errors[event] = math.sqrt(CLUSTER / (expected * number)) if few else error
+                few = count < VARIANCE_COUNTS and expected
+                errors[event] = math.sqrt(CLUSTER_VARIANCE / (expected * number)) if few else error
     else:
         error = float(one.error_over_target(sums, blocks)[0])
         if not math.isfinite(error):
@@ -222,7 +222,7 @@ def _prices_of_samples(scene, shell):
     makers = samplers(scene) if scene.discs == 2 or has_volume(scene) else {}
     for method, make in makers.items():
         sampler = make(scene, wanted, shell, 0)
-        sums, blocks, each = timed(sampler.count, OF_SPEED)
+        sums, blocks, each = timed(sampler.count, SPEED_SECONDS)
         known = variances(scene, sampler, sums, blocks)
         for quantity in wanted:
             name = method if quantity == "volume" or scene.discs > 2 else f"shells, {method}"
@@ -287,12 +287,12 @@ def _price_of_exact(scene):
     other = scene.with_radius(math.nextafter(scene.radius, 0))  # whose values are in no cache
     start = time.perf_counter()
     exact.exact(other)
-    seconds, floor = time.perf_counter() - start, PRECISION.get(scene.discs, OF_CHANNEL)
+    seconds, floor = time.perf_counter() - start, EXACT_ERRORS.get(scene.discs, CHANNEL_ERROR)
     yield Price("all exact values", "exact", floor**2 * seconds, seconds, floor)
 
 
 def _price_of_trajectory(scene):
-    """Return the price of a trajectory of ``ROWS`` rows, fewer for many discs, without an error."""
+    """Return the price of ``PRICED_ROWS`` rows, fewer for many discs, which have no error."""
     from twodiscs.dynamics.engine import find_engine
     from twodiscs.dynamics.paths import most_rows
     from twodiscs.dynamics.rows import Rows
@@ -306,8 +306,8 @@ def _price_of_trajectory(scene):
         rows = engine.path_rows(scene, start, duration * (stop - first), 0)
         return len(trajectory_table(scene, Rows.joined([*rows])))
 
-    made, blocks, each = timed(work, OF_SPEED)
-    rows = min(ROWS, most_rows(scene))
+    made, blocks, each = timed(work, SPEED_SECONDS)
+    rows = min(PRICED_ROWS, most_rows(scene))
     name = f"{format_number(rows, '.2g')} rows"
     return Price("trajectory", name, 0.0, each * blocks / made * rows)
 

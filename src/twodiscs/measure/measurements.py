@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
 
 #: The columns that people read.
-COLUMNS = ("quantity", "estimate", "± error", "exact", "unit", "z", "count", "status")
+TEXT_COLUMNS = ("quantity", "estimate", "± error", "exact", "unit", "z", "count", "status")
 
 #: How a measurement ends; docs/glossary.md says what each word means.
 STATUSES = (
@@ -237,7 +237,7 @@ def text_table(measurements):
     """Return the texts of ``measurements`` as a ``DataFrame``."""
     import pandas as pd
 
-    return pd.DataFrame([one.cells() for one in measurements], columns=COLUMNS)
+    return pd.DataFrame([one.cells() for one in measurements], columns=TEXT_COLUMNS)
 
 
 class Measurements(Result, Mapping[str, Measurement]):

@@ -233,7 +233,7 @@ class Trajectory(pd.DataFrame):
 
 #: The largest distance of a row from the end of the free flight that begins at the row before it,
 #: over the lengths whose rounding causes it. They agree within 2e-15 in every kind of scene.
-ROUNDING = 1e-10
+FLIGHT_ROUNDING = 1e-10
 
 
 def _fly(scene, states, since):
@@ -270,7 +270,7 @@ def require_all_rows(trajectory, scene):
     for axis, place, velocity in _coordinates(scene):
         speeds = np.abs(rows[velocity][:-1]) + np.abs(flown[velocity])
         scale = scene.side(axis) + np.abs(rows[place][1:]) + speeds * time[1:]
-        free &= np.abs(flown[place] - rows[place][1:]) <= ROUNDING * scale
+        free &= np.abs(flown[place] - rows[place][1:]) <= FLIGHT_ROUNDING * scale
     if not free.all():
         first = int(free.argmin())
         raise InputError(

@@ -145,8 +145,8 @@ def _legend(axes, boxes, looks, rough):
     handles = [axes.plot([], [], **panels.open_symbol(*look), ls="-")[0] for look in looks.values()]
     names = [f"{name}: {', '.join(panels.effects(box))}" for name, box in boxes.items()]
     if rough:
-        handles += axes.plot([], [], **panels.ROUGH[1])
-        names.append(panels.ROUGH[0])
+        handles += axes.plot([], [], **panels.CROSS_LOOK[1])
+        names.append(panels.CROSS_LOOK[0])
     (box,) = {rf"$w\times h={panels.sides(box)}$" for box in boxes.values()}
     axes.figure.legend(
         handles, names, title=box, loc="outside upper center", ncols=3, columnspacing=2.0
