@@ -16,6 +16,9 @@ from twodiscs.model.scene import Box
 #: The white rim of a label that may stand on a line.
 RIM = {"path_effects": [withStroke(linewidth=2, foreground="w")]}
 
+#: The look of a sector of discs that overlap.
+OVERLAPS = {"facecolor": "white", "edgecolor": GREY, "hatch": "/////", "linewidth": 0}
+
 # The billiard -------------------------------------------------------------------------------------
 
 
@@ -212,18 +215,15 @@ def _panel(axes, scene, points):
     rise, run = (sigma * cos(alpha), high), (wide, sigma * sin(beta))
 
     drawing.rectangle(axes, 0, wide, 0, high, face="#DCEBF5", edge="none")
-    sector = {"facecolor": "white", "edgecolor": GREY, "hatch": "/////", "linewidth": 0}
-    axes.add_patch(Wedge((0, 0), sigma, degrees(beta), degrees(alpha), clip_on=False, **sector))
+    sector = {"theta1": degrees(beta), "theta2": degrees(alpha), "clip_on": False}
+    axes.add_patch(Wedge((0, 0), sigma, **sector, **OVERLAPS))
     dotted = {"facecolor": "#F3E3B5", "edgecolor": "#8C6A00", "hatch": ".....", "linewidth": 0}
-    if alpha < pi / 2:
-        axes.add_patch(Polygon([(0, 0), (0, high), rise], clip_on=False, **dotted))
-        drawing.line(axes, [(0, 0), rise], colour=BLACK, width=0.5)
-    if beta > 0:
-        axes.add_patch(Polygon([(0, 0), (wide, 0), run], clip_on=False, **dotted))
-        drawing.line(axes, [(0, 0), run], colour=BLACK, width=0.5)
+    for is_cut, corner, tip in ((high < sigma, (0, high), rise), (wide < sigma, (wide, 0), run)):
+        if is_cut:
+            axes.add_patch(Polygon([(0, 0), corner, tip], clip_on=False, **dotted))
+            drawing.line(axes, [(0, 0), tip], colour=BLACK)
     drawing.rectangle(axes, 0, wide, 0, high)
-    angles = {"theta1": degrees(beta), "theta2": degrees(alpha)}
-    axes.add_patch(Arc((0, 0), 2 * sigma, 2 * sigma, linewidth=1.3, clip_on=False, **angles))
+    axes.add_patch(Arc((0, 0), 2 * sigma, 2 * sigma, linewidth=1.3, **sector))
     thick = {"width": 2.2, "solid_capstyle": "butt", "zorder": 4}
     if scene.vertical_hops:
         drawing.line(axes, [(sigma, 0), (wide, 0)], colour=BLUE, **thick)
@@ -312,8 +312,7 @@ def _name(axes, name, colour):
 def _collision(axes, a, b, radius, epsilon):
     """Draw the quarter plane of x, y with the circle of contact and its shell, on one side."""
     wide, high, rim = sqrt(2) * a, sqrt(2) * b, sqrt(2) * radius
-    sector = {"facecolor": "white", "edgecolor": GREY, "hatch": "/////", "linewidth": 0}
-    axes.add_patch(Wedge((0, 0), rim, 0, 90, **sector))
+    axes.add_patch(Wedge((0, 0), rim, 0, 90, **OVERLAPS))
     shell = {"width": epsilon, "facecolor": "#F8DDC8", "edgecolor": "none"}
     axes.add_patch(Wedge((0, 0), rim + epsilon, 0, 90, **shell))
     dashed = {"linewidth": 0.5, "linestyle": (0, (3, 2)), "edgecolor": GREY}
