@@ -74,32 +74,28 @@ STUDY = Study(
         "accuracy_cost": Figure(
             "Error against processor time",
             "4 What accuracy costs",
-            """
-            Processor time on one core for a relative error, (a) of the mean time between horizontal
-            hops, (b) of the volume and of the area of disc collisions, at r = 0.2 h and 1e-4 below
-            h/4 (dashed), where the hop becomes blocked. Symbols are true errors against the exact
-            value, root mean square over independent runs: full symbols are from a long run, open
-            symbols from this build on this machine. Lines are c/error², for a method with a bias
-            c/(error² − bias²): the bias of time steps Δt and of thick shells ε remains.
+            """Processor time on one core for a relative error, (a) of the mean time between
+            horizontal hops, (b) of the volume and of the area of disc collisions, at r = 0.2 h and
+            1e-4 below h/4 (dashed), where the hop becomes blocked. Symbols are true errors against
+            the exact value, root mean square over independent runs: full symbols are from a long
+            run, open symbols from this build on this machine. Lines are c/error², for a method with
+            a bias c/(error² − bias²): the bias of time steps Δt and of thick shells ε remains.
             Error bars are one standard error, where runs are few. "Dynamics" follows trajectories
             in lock step from ordinary initial states, "strips" from initial states next to the hop;
             "one by one" is the same dynamics, one trajectory after another. Near h/4 this is a line
             without symbols, because its counts are the same. The exact value is at the bottom, and
-            crosses are Gauss quadrature with 1, 2, … nodes.
-            """,
+            crosses are Gauss quadrature with 1, 2, … nodes.""",
             tables=("accuracy_cost",),
             long_runs={"kept": "paper/long_run/accuracy_cost/accuracy_cost.csv"},
         ),
         "accuracy_cost_by_radius": Figure(
             "The cost of an accuracy against the radius",
             "4 What accuracy costs",
-            """
-            c, the processor time to a relative error times its square, against the distance from
+            """c, the processor time to a relative error times its square, against the distance from
             the radius h/4 at which horizontal hops are blocked: (a) mean times by dynamics from
             ordinary initial states, (b) hops from initial states in a strip, (c) volume and areas
             by samples of the prism, (d) by conditioned samples. Areas have thin shells. An error ε
-            takes the time c/ε², above the bias of the shells.
-            """,
+            takes the time c/ε², above the bias of the shells.""",
             tables=("accuracy_cost",),
         ),
     },

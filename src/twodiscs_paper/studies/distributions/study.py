@@ -89,9 +89,8 @@ STUDY = Study(
         "distributions": Figure(
             "Rate of hops since the last one",
             DYNAMICS,
-            """
-            (a) Rate of hops at a time t after the last hop, in units of the exact mean time τ. An
-            exponential distribution would have the dashed line. The rate starts from the exact
+            """(a) Rate of hops at a time t after the last hop, in units of the exact mean time τ.
+            An exponential distribution would have the dashed line. The rate starts from the exact
             density at 0 (thick dashes), of hops that one bounce undoes. It jumps at the time from
             which both discs may have bounced, t = √2 (h − 2r) for vertical hops. Thick lines are
             constant rates fitted to all intervals after four mean times. They are dotted if the
@@ -99,8 +98,7 @@ STUDY = Study(
             small discs go on falling, towards the rate of a cubic tail, 3τ/t (dash-dotted). (b)
             Mean time from a random moment to the next hop (open symbols), and its value from the
             intervals, τ(1 + CV²)/2 (dots), with CV their coefficient of variation. Error bars are
-            one standard error.
-            """,
+            one standard error.""",
             tables=("distributions",),
         ),
     },

@@ -119,9 +119,8 @@ STUDY = Study(
         "effects": Figure(
             "Mean times with effects",
             DYNAMICS,
-            """
-            Mean times of scenes with one effect or two, divided by the mean times of plain discs in
-            the same box at the same radius (of disc 1) and total energy: exact (lines) and by
+            """Mean times of scenes with one effect or two, divided by the mean times of plain discs
+            in the same box at the same radius (of disc 1) and total energy: exact (lines) and by
             event-driven molecular dynamics (symbols). The events are (a) vertical hops, (b) disc
             collisions and (c) hits of any disc on any wall, up to the largest radius of plain
             discs. Error bars are one standard error; they are hidden if they are smaller than the
@@ -131,8 +130,7 @@ STUDY = Study(
             collision at r = 0.2, divided by the time in a copy of the package from which all
             effects are removed (numbers beside the symbols), and the number of machine instructions
             of the compiled kernel. Leaving a periodic cell, or a kick of friction, takes time but
-            is not counted.
-            """,
+            is not counted.""",
             tables=("effects", "effects_cost"),
         ),
     },

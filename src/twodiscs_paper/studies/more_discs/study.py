@@ -116,24 +116,21 @@ STUDY = Study(
         "more_discs": Figure(
             "More discs",
             DYNAMICS,
-            """
-            Mean times of N discs in a box of 0.75 N × 1, at the energy per disc of two discs: exact
-            if a theory is known (lines), by Monte Carlo (dotted) and by event-driven molecular
-            dynamics (symbols). Times are per pair of discs, per pair of neighbours or per disc, as
-            the legend says, so that they depend little on N. Error bars are one standard error;
-            they are hidden if they are smaller than the symbols. At r = 0.28 only neighbours touch,
-            and a transfer operator gives every N. (d) Residuals z of the dynamics in standard
-            errors, from exact values, or from Monte Carlo if no exact value is known; radii stand
-            side by side. From 16 discs on, insertions take too long and only the virial theorem
-            tests dynamics where no exact value is known.
-            """,
+            """Mean times of N discs in a box of 0.75 N × 1, at the energy per disc of two discs:
+            exact if a theory is known (lines), by Monte Carlo (dotted) and by event-driven
+            molecular dynamics (symbols). Times are per pair of discs, per pair of neighbours or per
+            disc, as the legend says, so that they depend little on N. Error bars are one standard
+            error; they are hidden if they are smaller than the symbols. At r = 0.28 only neighbours
+            touch, and a transfer operator gives every N. (d) Residuals z of the dynamics in
+            standard errors, from exact values, or from Monte Carlo if no exact value is known;
+            radii stand side by side. From 16 discs on, insertions take too long and only the virial
+            theorem tests dynamics where no exact value is known.""",
             tables=("more_discs",),
         ),
         "tori": Figure(
             "Pressure on a torus",
             DYNAMICS,
-            """
-            (a) Compressibility factor Z = PA/(N kT) of N discs on a torus against the packing
+            """(a) Compressibility factor Z = PA/(N kT) of N discs on a torus against the packing
             fraction φ, from the rate of collisions by the virial theorem (symbols): 256 discs
             beside the virial series to the tenth coefficient (line, dotted where the last terms
             matter), and 72 to 870 discs at the points of Metropolis and others (1953) and of Li and
@@ -141,8 +138,7 @@ STUDY = Study(
             both. Grey symbols: results from two sets of initial states, from rows and from a
             compressed liquid, differ by more than three standard errors, so the replicas are not in
             equilibrium. The pressures of 1953 are too low between φ = 0.5 and 0.7; those of 2022
-            are met.
-            """,
+            are met.""",
             long_runs={"tori": "paper/long_run/tori/tori.csv"},
         ),
     },

@@ -228,55 +228,48 @@ STUDY = Study(
         "passages": Figure(
             "Hops that are passages",
             DYNAMICS,
-            """
-            Hops near the radius r_c at which they become blocked, at distances δ = (r_c − r)/r_c.
-            (a) Transmission coefficient κ(t): the correlation between the order of the discs at a
-            time t after a hop and the direction of the hop, for smooth discs (circles) and rough
-            ones (squares). It starts with the exact slope −2p(0⁺) (dashed, in the limit δ → 0). If
-            hops are rare it has a plateau, which falls as passages follow one another (lines: by κ
-            from clusters). (b) Exact mean time τ between hops (lines) and mean time τ/κ between
-            passages (symbols). Error bars are one standard error.
-            """,
+            """Hops near the radius r_c at which they become blocked, at distances
+            δ = (r_c − r)/r_c. (a) Transmission coefficient κ(t): the correlation between the order
+            of the discs at a time t after a hop and the direction of the hop, for smooth discs
+            (circles) and rough ones (squares). It starts with the exact slope −2p(0⁺) (dashed, in
+            the limit δ → 0). If hops are rare it has a plateau, which falls as passages follow one
+            another (lines: by κ from clusters). (b) Exact mean time τ between hops (lines) and mean
+            time τ/κ between passages (symbols). Error bars are one standard error.""",
             tables=("passages",),
             long_runs={"kept": "paper/long_run/passages/passages.csv"},
         ),
         "transmission": Figure(
             "Passages near the threshold",
             DYNAMICS,
-            """
-            Transmission coefficient κ near the radius r_c at which hops become blocked, at
+            """Transmission coefficient κ near the radius r_c at which hops become blocked, at
             distances δ = (r_c − r)/r_c. (a) Smooth discs: 1 − κ over ∛(εσ²)/A, with the range A
             along the hop, σ = 2r and the room ε that the discs leave in the neck. Full symbols are
             long runs. The star is the limit c, computed for δ → 0. The grey line is fitted to the
             long run at h/4, from 2⁻¹² on. (b) Rough discs, with moments of inertia I in units of
             mr². Powers in the legend are fitted to the last distances. (c), (d) Residuals z in
             standard errors: of the slope of κ(t) at 0 from its exact value, and between two
-            estimators of κ. Error bars are one standard error.
-            """,
+            estimators of κ. Error bars are one standard error.""",
             tables=("passages",),
             long_runs={"kept": "paper/long_run/passages/passages.csv"},
         ),
         "friction": Figure(
             "Passages with friction",
             DYNAMICS,
-            """
-            Velocities of both discs are drawn anew at random times of the rate γ (friction). (a)
-            The fraction κ of hops that are passages, near the radius r_c = h/4. The abscissa is x =
-            γ√(εσ), with the room ε = h − 4r that the discs leave in the neck and σ = 2r. Crosses
-            are the limit of a narrow neck. Dashed: 1 of one flight, and 3/(4x) of diffusion. Line:
-            1/κ = 4x/3 + 1/(1 + bx + cx²), with b = 4/3 − √2π/5 and c = 0.055. (b) The local power
-            of the distance r_c − r with which the time τ/κ between passages grows. Dashed: the
-            powers of diffusion and of one flight. Full symbols are a long run. Error bars are one
-            standard error.
-            """,
+            """Velocities of both discs are drawn anew at random times of the rate γ (friction). (a)
+            The fraction κ of hops that are passages, near the radius r_c = h/4. The abscissa is
+            x = γ√(εσ), with the room ε = h − 4r that the discs leave in the neck and σ = 2r.
+            Crosses are the limit of a narrow neck. Dashed: 1 of one flight, and 3/(4x) of
+            diffusion. Line: 1/κ = 4x/3 + 1/(1 + bx + cx²), with b = 4/3 − √2π/5 and c = 0.055. (b)
+            The local power of the distance r_c − r with which the time τ/κ between passages grows.
+            Dashed: the powers of diffusion and of one flight. Full symbols are a long run. Error
+            bars are one standard error.""",
             tables=("passages",),
             long_runs={"kept": "paper/long_run/passages/passages.csv"},
         ),
         "brownian": Figure(
             "Passages in Brownian dynamics",
             DYNAMICS,
-            """
-            Two discs in Brownian dynamics, in a channel of the height 2σ + ε that is closed to a
+            """Two discs in Brownian dynamics, in a channel of the height 2σ + ε that is closed to a
             ring of the length 3σ. In a step a coordinate of a free disc moves by a normal deviate
             of the standard deviation s. The abscissa is the length √(εσ) of the neck over s.
             Reflected discs fly through the step and collide elastically. Steps of both discs or of
@@ -286,22 +279,19 @@ STUDY = Study(
             s/√(εσ) of diffusion. (b) The local power of ε with which the mean time between passages
             over the volume grows. Dashed: −3/2 of diffusion, −2 of flight, −5/2 and −7/2 of
             rejected moves of one disc and of both, and 0 of a time that stays finite. Lines: the
-            law of rejected moves, without a parameter. Error bars are one standard error.
-            """,
+            law of rejected moves, without a parameter. Error bars are one standard error.""",
             long_runs={"brownian": "paper/long_run/brownian/brownian.csv"},
         ),
         "diffusion": Figure(
             "Diffusion by hops",
             DYNAMICS,
-            """
-            Coefficient D of diffusion on a ring over that of a random walk with ν hops of a disc
+            """Coefficient D of diffusion on a ring over that of a random walk with ν hops of a disc
             per time in either direction, each by ℓ (dashed), at distances δ = (r_c − r)/r_c from
             the radius r_c at which hops become blocked. (a) Two discs, by correlations of hops
             (open symbols) and by displacements (full symbols). (b) Single files in long runs, by
             the order of the discs: of four and eight discs (full symbols), and long ones (open
             symbols). (c) Residuals z in standard errors, from the exact rate, between two
-            estimators, or of F in ⟨x²⟩ = F√t from theory. Error bars are one standard error.
-            """,
+            estimators, or of F in ⟨x²⟩ = F√t from theory. Error bars are one standard error.""",
             tables=("passages",),
             long_runs={
                 name: f"paper/long_run/{name}/passages.csv" for name in ("files", "displacements")
@@ -310,17 +300,14 @@ STUDY = Study(
         "files": Figure(
             "Displacements in single files",
             DYNAMICS,
-            """
-            Mean square displacement of a tagged disc in a long single file on a ring. (a) Files
+            """Mean square displacement of a tagged disc in a long single file on a ring. (a) Files
             that are blocked (r = 0.28 h, full symbols) and open (δ = 1/8, open symbols), in units
             of ℓ², h and the thermal speed. Black lines are the theory of blocked ones, without a
             free parameter: sound of smooth discs, until it has gone around half of the ring, and
             damped sound with friction. Rough discs (I = 1/2) have no such line. Dashes are also
-            measured: the motion of the places plus the steps of the discs from place to place.
-            (b) Open files with friction: displacements in units of F√t×, at times over
-            t× = (F/2D)², where
-            single file and hops contribute equally. Error bars are one standard error.
-            """,
+            measured: the motion of the places plus the steps of the discs from place to place. (b)
+            Open files with friction: displacements in units of F√t×, at times over t× = (F/2D)²,
+            where single file and hops contribute equally. Error bars are one standard error.""",
             long_runs={"displacements": "paper/long_run/displacements/passages.csv"},
         ),
     },

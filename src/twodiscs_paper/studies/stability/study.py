@@ -116,23 +116,20 @@ STUDY = Study(
         "stability": Figure(
             "Numerically hard cases",
             "5 Numerical stability",
-            """
-            Theory and sampling at hard radii; dashed lines are the required bounds. (a) Relative
+            """Theory and sampling at hard radii; dashed lines are the required bounds. (a) Relative
             error of closed forms in double precision, and of the worst of volume, areas and mean
             times as computed here, below the largest radius. (b) The same on both sides of the
             radii where a hop becomes blocked. (c) Accepted share of proposed configurations, by
             rejection from the prism and by the conditioned sampler of initial states. (d) Number of
             residuals z of each size: of volume and areas by this sampler at hard radii, and of mean
-            times in extreme scenes, beside the normal law.
-            """,
+            times in extreme scenes, beside the normal law.""",
             tables=("stability",),
         ),
         "stability_of_runs": Figure(
             "Numerically hard cases of the dynamics",
             "5 Numerical stability",
-            """
-            The dynamics in hard cases; dashed lines are the required bounds. (a) Largest values in
-            a long run, with the required bounds: error of the energy, overlap of the discs,
+            """The dynamics in hard cases; dashed lines are the required bounds. (a) Largest values
+            in a long run, with the required bounds: error of the energy, overlap of the discs,
             distance of centres beyond their range. Zeros are exact. (b) Worst error of predicted
             times to a contact (circles) and to a wall (squares), against 50 digits, for many kinds
             of approach. Crosses are the quadratic formula of textbooks. (c) Velocities are reversed
@@ -141,23 +138,20 @@ STUDY = Study(
             The legend has the number of events after which half of the digits are lost, and in
             brackets the number that λ predicts. (d) Residuals of mean times, and of the virial
             theorem, in extreme scenes: each effect at its extremes, or discs that hardly fit. Rare
-            events without an error bar are left out.
-            """,
+            events without an error bar are left out.""",
             tables=("stability",),
         ),
         "calibration": Figure(
             "Error bars, tested",
             "5 Numerical stability",
-            """
-            Mean square of scores over seeds, for each quantity with an error, of each call in each
-            scene, and of each study at a small size. A score is the deviation over its own standard
-            error, from the exact value or from the mean over all seeds if no exact value is known;
-            the mean square is 1 if errors are right. Symbols are quantities of one scene: plain
-            discs (circles), discs with effects (squares) and more than two discs (triangles). The
-            grey band is five standard deviations of the mean square of as many normal scores.
+            """Mean square of scores over seeds, for each quantity with an error, of each call in
+            each scene, and of each study at a small size. A score is the deviation over its own
+            standard error, from the exact value or from the mean over all seeds if no exact value
+            is known; the mean square is 1 if errors are right. Symbols are quantities of one scene:
+            plain discs (circles), discs with effects (squares) and more than two discs (triangles).
+            The grey band is five standard deviations of the mean square of as many normal scores.
             Symbols of the shortest runs that the call accepts are open; longer ones, with fewer
-            seeds, are left out. No build repeats these counts.
-            """,
+            seeds, are left out. No build repeats these counts.""",
             long_runs={"calibration": "paper/long_run/calibration/calibration.csv"},
         ),
     },

@@ -75,15 +75,13 @@ STUDY = Study(
         "tails": Figure(
             "Tails of the times between events",
             DYNAMICS,
-            """
-            (a) Probability that the next event takes longer than t, in units of the exact mean time
-            τ. Open symbols come from initial states near the motions that last, with exact weights,
-            and dots from plain counting. Discs that move almost along an axis pass clear of each
-            other for a time ∝ 1/(their drift). The tail therefore falls as C/t³, with the exact C
-            (lines), and not exponentially (dashed). (b) The same probabilities divided by C/t³. (c)
-            Beyond h/4 no such motion avoids vertical hops: the tail looks exponential, but its rate
-            is not 1/τ (dashed). Error bars are one standard error.
-            """,
+            """(a) Probability that the next event takes longer than t, in units of the exact mean
+            time τ. Open symbols come from initial states near the motions that last, with exact
+            weights, and dots from plain counting. Discs that move almost along an axis pass clear
+            of each other for a time ∝ 1/(their drift). The tail therefore falls as C/t³, with the
+            exact C (lines), and not exponentially (dashed). (b) The same probabilities divided by
+            C/t³. (c) Beyond h/4 no such motion avoids vertical hops: the tail looks exponential,
+            but its rate is not 1/τ (dashed). Error bars are one standard error.""",
             tables=("tails",),
         ),
     },

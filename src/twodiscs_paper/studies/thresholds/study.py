@@ -62,17 +62,15 @@ STUDY = Study(
         "thresholds": Figure(
             "Power laws where events die out",
             DYNAMICS,
-            """
-            Mean times near the radius at which their event ends, r = r_c − δ. For vertical hops r_c
-            = w/4, for horizontal ones h/4, and for all other events the largest radius. (a) Times
-            between hops by event-driven molecular dynamics (circles and squares), exact (lines) and
-            by their limiting laws ∝ δ⁻² (dashed), and mean first passages from a random moment
-            (crosses). Grey lines have the slopes of inertial and of diffusive motion. (b) Times
-            divided by their limiting laws, which have the exponent −2 for hops that become blocked
-            and 1 for events that end with the largest radius. Full symbols come from initial states
-            in a strip around the surface of the hop, where the flux is measured and not the waiting
-            time. Error bars are one standard error.
-            """,
+            """Mean times near the radius at which their event ends, r = r_c − δ. For vertical hops
+            r_c = w/4, for horizontal ones h/4, and for all other events the largest radius. (a)
+            Times between hops by event-driven molecular dynamics (circles and squares), exact
+            (lines) and by their limiting laws ∝ δ⁻² (dashed), and mean first passages from a random
+            moment (crosses). Grey lines have the slopes of inertial and of diffusive motion. (b)
+            Times divided by their limiting laws, which have the exponent −2 for hops that become
+            blocked and 1 for events that end with the largest radius. Full symbols come from
+            initial states in a strip around the surface of the hop, where the flux is measured and
+            not the waiting time. Error bars are one standard error.""",
             tables=("distributions", "thresholds"),
             main_tables=("mean_times",),
         ),
