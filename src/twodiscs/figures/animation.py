@@ -167,14 +167,11 @@ def draw_walls(axes, scene):
     if not scene.periodic:
         drawing.rectangle(axes, x0, x1, y0, y1, width=1.2)
         return
-    wall, opening = {"lw": 1.2}, {"lw": 0.8, "ls": (0, (1, 2))}
-    for axis, ends in (
-        ("x", [([x, x], [y0, y1]) for x in (x0, x1)]),
-        ("y", [([x0, x1], [y, y]) for y in (y0, y1)]),
-    ):
+    for axis, ends in (("x", (x0, x1)), ("y", (y0, y1))):
+        style = {"lw": 0.8, "ls": (0, (1, 2))} if axis in scene.periodic else {"lw": 1.2}
         for end in ends:
-            style = opening if axis in scene.periodic else wall
-            axes.plot(*end, color=BLACK, clip_on=False, **style)
+            line = ([end, end], [y0, y1]) if axis == "x" else ([x0, x1], [end, end])
+            axes.plot(*line, color=BLACK, clip_on=False, **style)
 
 
 def draw_separation(strip, motion):

@@ -126,7 +126,7 @@ def _draw(result, figure):
         if (draw_study := plugin("draw_study")) is None:
             raise InputError(f"result must be a table of a scene, not the study {table!r}")
         return draw_study(result, figure)
-    box, rows, fitting, radius = _read(result)
+    box, rows, fitting = _read(result)
     if not fitting:
         if table is not None and "box" not in result.attrs:
             raise InputError(
@@ -142,7 +142,7 @@ def _draw(result, figure):
         raise InputError(
             f"scene must be two plain discs for a drawing, but it has {more}; plot a trajectory"
         )
-    return draw(name, box, rows, radius)
+    return draw(name, box, rows, box.radius if isinstance(box, Scene) else None)
 
 
 def _chosen(figure, fitting, rows):
@@ -169,7 +169,7 @@ def _beside(result, path, name, axes):
     """Draw quantities over the radius into ``axes`` of another figure, which is returned."""
     if not isinstance(axes, Axes) or axes.name != "rectilinear":
         raise InputError(f"ax must be one plane Axes of matplotlib, not {quote(axes)}")
-    box, rows, fitting, _ = _read(result)
+    box, rows, fitting = _read(result)
     fitting = [name for name in fitting if name in CURVES]
     if not fitting:
         raise InputError(f"result must be over the radius to be drawn in ax, not {quote(result)}")
@@ -188,22 +188,22 @@ def _show(figure):
 
 
 def _read(result):
-    """Return (box, rows, names of the figures that show them, radius of a trajectory).
+    """Return (box, rows, names of the figures that show them); a trajectory has its scene.
 
     There are no names if no figure shows the ``result``. A scene and a box have no rows.
     """
     if isinstance(result, Box):
-        return result, [], [*BOX_DRAWINGS], None
+        return result, [], [*BOX_DRAWINGS]
     if scene := of_attrs(result, Scene):
-        return scene, trajectory_rows(result), ["hopping_trajectory"], scene.radius
+        return scene, trajectory_rows(result), ["hopping_trajectory"]
     if box := of_attrs(result, Box):
-        return box, *_read_table(result, box), None
+        return box, *_read_table(result, box)
     results = result if isinstance(result, list | tuple) else [result]
     results = [one for item in results for one in (item if isinstance(item, Scan) else [item])]
     for kind in (Measurements, Intervals):
         if results and all(isinstance(one, kind) for one in results):
-            return *_read_results(results), None
-    return None, [], [], None
+            return _read_results(results)
+    return None, [], []
 
 
 def _read_results(results):

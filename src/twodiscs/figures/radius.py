@@ -215,18 +215,11 @@ def _approach(axes, box, by_quantity):
 
 def draw_pressure(box, rows):
     """Draw the pressures from the rows of mean_times.csv, and the terms of the virial."""
-    radii = np.concatenate(
-        [np.append(branch, np.nan) for branch in curves.branches(box, rows=rows)]
-    )
-    summed = virial.has_theorem(box)
+    radii = [radius for branch in curves.branches(box, rows=rows) for radius in (*branch, np.nan)]
+    radii, summed = np.array(radii), virial.has_theorem(box)
     counted = {row["event"] for row in rows}
-    events = [event for event in ("right_wall", "top_wall") if event in counted]
-    series = [
-        _pressure_series(
-            f"disc 1, {event_name(event)}", box, event, rows, radii, virial.pressure_factor
-        )
-        for event in events
-    ]
+    names = {e: f"disc 1, {event_name(e)}" for e in ("right_wall", "top_wall") if e in counted}
+    series = _pressure_series(names, box, rows, radii, virial.pressure_factor)
     label = "pressure over that of an ideal gas"
     judged = any(panels.is_judged(row) for part in series for row in part.rows)
     figure, main, lower, beneath = panels.radius_panels(box, label, judged, summed)
@@ -239,7 +232,7 @@ def draw_pressure(box, rows):
         end = box.largest_radius
         farthest = min(0.12, 1 - max(box.thresholds, default=0) / end)
         near = [box.scene(float(r)) for r in end * (1 - np.geomspace(0.99 * farthest, 1e-6))]
-        for event in events:
+        for event in names:
             laws = [
                 virial.pressure_factor(scene, event) * scene.accessible_fraction(event) / time
                 for scene in near
@@ -254,22 +247,27 @@ def draw_pressure(box, rows):
     return figure
 
 
-def _pressure_series(name, box, event, rows, radii, factor):
-    """Return the ``Series`` of ``factor`` (scene, event) times the rate of an event."""
-    scenes = [None if np.isnan(radius) else box.scene(float(radius)) for radius in radii]
-    rates = [None if scene is None else rate(scene, event) for scene in scenes]
-    pairs = zip(scenes, rates, strict=True)
-    exact = [np.nan if n is None else factor(scene, event) * n for scene, n in pairs]
-    shown = []
-    for row in rows:
-        if row["event"] == event and row["stderr"] is not None:
-            scene, time = box.scene(row["radius"]), row["estimate"]
-            value = factor(scene, event) * scene.accessible_fraction(event) / time
-            # If the time is too long, the rate is too low.
-            measured = {"estimate": value, "stderr": value * row["stderr"] / time}
-            measured["z"] = None if row["z"] is None else -row["z"]
-            shown.append(row | measured)
-    return panels.Series(name, shown, np.array(exact))
+def _pressure_series(names, box, rows, radii, factor):
+    """Return a ``Series`` of ``factor`` (scene, event) times the rate of each event {event: name}.
+
+    ``radii`` are those of the curves.
+    """
+    scenes, series = [None if np.isnan(r) else box.scene(float(r)) for r in radii], []
+    for event, name in names.items():
+        rates = [None if scene is None else rate(scene, event) for scene in scenes]
+        pairs = zip(scenes, rates, strict=True)
+        exact = [np.nan if n is None else factor(scene, event) * n for scene, n in pairs]
+        shown = []
+        for row in rows:
+            if row["event"] == event and row["stderr"] is not None:
+                scene, time = box.scene(row["radius"]), row["estimate"]
+                value = factor(scene, event) * scene.accessible_fraction(event) / time
+                # If the time is too long, the rate is too low.
+                measured = {"estimate": value, "stderr": value * row["stderr"] / time}
+                measured["z"] = None if row["z"] is None else -row["z"]
+                shown.append(row | measured)
+        series.append(panels.Series(name, shown, np.array(exact)))
+    return series
 
 
 def _virials(axes, box, rows, radii):
@@ -279,12 +277,11 @@ def _virials(axes, box, rows, radii):
         "top_wall": "top and bottom walls",
         "disc_collision": "disc collisions, subtracted",
     }
-    series = [
-        _pressure_series(
-            name, box, event, rows, radii, lambda scene, e: abs(virial.weights(scene)[e])
-        )
-        for event, name in names.items()
-    ]
+
+    def weight(scene, event):
+        return abs(virial.weights(scene)[event])
+
+    series = _pressure_series(names, box, rows, radii, weight)
     panels.draw_series(axes, None, radii, series)
     axes.set(xlim=(0, 1.02 * box.last_radius), xlabel="radius $r$ (length)")
     axes.set_ylabel(r"virial$\,/\,2\langle E_{\mathrm{k}}\rangle$")
