@@ -187,15 +187,13 @@ def load_result(path: str | PathLike[str]) -> Measurements | Any:
     """
     if not isinstance(path, str | PathLike) or "\0" in str(path):
         raise InputError(f"path must be the path of a file, not {quote(path)}")
-    path = str(path)
+    path, saved = str(path), "path must be a file that save() wrote, or a point of a build"
     try:
         content = read_json(path)
     except OSError as error:
         raise InputError(f"path must be a file to read, not {path!r}: {error.strerror}") from None
     except InputError:
-        raise InputError(
-            f"path must be a file that save() wrote, or a point of a build, not {path!r}"
-        ) from None
+        raise InputError(f"{saved}, not {path!r}") from None
     # Numbers may change with the second digit of a version, not with the third.
     known, version = twodiscs.__version__.rpartition(".")[0], content.get("twodiscs")
     if not str(version).startswith(f"{known}."):
@@ -206,7 +204,4 @@ def load_result(path: str | PathLike[str]) -> Measurements | Any:
     try:
         return from_dict(content)
     except MALFORMED_ERRORS as error:
-        raise InputError(
-            f"path must be a file that save() wrote, or a point of a build, but the content of "
-            f"{path!r} was changed"
-        ) from error
+        raise InputError(f"{saved}, but the content of {path!r} was changed") from error

@@ -22,7 +22,7 @@ from twodiscs.model.formats import quote
 from twodiscs.model.scene import Scene
 from twodiscs.model.seeds import job_seed
 from twodiscs.model.two_geometry import ENERGY
-from twodiscs.sampling.initial_states import components, disc_fields
+from twodiscs.sampling.initial_states import components, disc_fields, make_records
 
 
 class Trajectory(pd.DataFrame):
@@ -94,7 +94,6 @@ class Trajectory(pd.DataFrame):
         array([-0.1522, -0.1876])
         """
         scene = self.scene
-        names = components(scene)
         require_all_rows(self, scene)
         known = self["time"].to_numpy()
         allowed = f"numbers from {known[0]!s} to {known[-1]!s}"
@@ -102,9 +101,8 @@ class Trajectory(pd.DataFrame):
             "times", times, allowed, lambda at: np.all((at >= known[0]) & (at <= known[-1]))
         )
         row = np.searchsorted(known, at, side="right") - 1
-        states = np.empty(at.size, [(name, float) for name in names])
-        for name in names:
-            states[name] = self[name].to_numpy()[row]
+        rows = np.array([self[name].to_numpy()[row] for name in components(scene)])
+        states = make_records(scene, rows)
         _fly(scene, states, at - known[row])
         return states
 
