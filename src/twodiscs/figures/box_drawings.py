@@ -28,7 +28,10 @@ def draw_model(box):
     radius = 0.13 * min(width, height)
     a, b = width / 2 - radius, height / 2 - radius
     right, top = width / 2, height / 2
-    figure, axes = drawing.single((-right, right, -top, top), 0.3, 0.34, 0.3, 0.3)
+    # Inches: margins of 0.3, and 0.34 on the right.
+    inches, spare = drawing.scale(width, height, COLUMN - 0.3 - 0.34, 3.6 - 0.3 - 0.3)
+    figure = new_figure(0.3 + 0.3 + inches * height)
+    axes = drawing.add_axes(figure, 0.3 + spare, 0.3, inches, (-right, right, -top, top))
 
     drawing.rectangle(axes, -right, right, -top, top, width=1.2)
     drawing.rectangle(axes, -a, a, -b, b, edge=GREY, width=0.6, linestyle=(0, (4, 2.5)))

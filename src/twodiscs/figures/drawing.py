@@ -9,7 +9,7 @@ from math import sqrt
 
 from matplotlib.patches import Circle, Polygon, Rectangle
 
-from twodiscs.figures.style import BLACK, BLUE, COLUMN, GREY, VERMILLION, new_figure
+from twodiscs.figures.style import BLACK, BLUE, GREY, VERMILLION
 
 #: Fill and outline of disc 1 and disc 2.
 DISCS = (("#CFE3F1", BLUE), ("#F8DDC8", VERMILLION))
@@ -42,15 +42,6 @@ def add_axes(figure, left, bottom, inches, extent):
     axes.set(xlim=(x0, x1), ylim=(y0, y1))
     axes.set_axis_off()
     return axes
-
-
-def single(extent, left, right, bottom, top):
-    """Return (figure, axes) of one panel as large as a column allows, with margins in inches."""
-    x0, x1, y0, y1 = extent
-    room_x = COLUMN - left - right
-    inches, spare = scale(x1 - x0, y1 - y0, room_x, 3.6 - bottom - top)
-    figure = new_figure(bottom + top + inches * (y1 - y0))
-    return figure, add_axes(figure, left + spare, bottom, inches, extent)
 
 
 def label(axes, text, at, offset=(0, 0), **options):
