@@ -5,6 +5,9 @@ from dataclasses import replace
 
 from twodiscs.model.scene import Scene
 
+#: Without effects.
+PAPER = Scene(1.5, 1.0, 0.2)
+
 #: Each of two unequal discs is the larger and lighter one in one of these scenes.
 SCENES = {
     "unequal": Scene(1.5, 1.0, 0.15, radius_ratio=0.6, mass_ratio=3.0),

@@ -4,14 +4,11 @@ Without these tests counts of the ensemble could miss an event, or end before or
 enough.
 """
 
-import math
 from itertools import product
 
-import numpy as np
 import pytest
 from dynamics.rates import check_rates
-from effect_scenes import ALL, SCENES
-from factory import all_reached
+from effect_scenes import ALL, PAPER, SCENES
 from marks import slow
 
 from twodiscs.dynamics import runs
@@ -20,9 +17,7 @@ from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import WALL_X1, WALL_X2, WALL_Y1, WALL_Y2
 from twodiscs.dynamics.two import event_counts
 from twodiscs.model.events import DECLARED_EVENTS, EVENT_AXES, EVENTS, HOPS, WALLS
-from twodiscs.model.scene import Box, Scene
-
-PAPER = Scene(1.5, 1.0, 0.2)
+from twodiscs.model.scene import Box
 
 #: A radius in each regime, both sides of the thresholds, where the discs hardly fit; other boxes.
 RADII = (0.01, 0.05, 0.2, 0.24, 0.2499, 0.2501, 0.3, 0.36, 0.376, 0.38, 0.3839)
@@ -81,24 +76,6 @@ def test_what_is_not_watched_is_not_detected():
     assert not any(bare[event] for event in (*HOPS, *WALLS))
     assert [walls[hop] for hop in HOPS] == [0, 0]
     assert min(walls[event] for event in (*WALLS, "disc_collision")) > 0
-
-
-def test_a_budget_is_spent():
-    target = dict.fromkeys(EVENTS, 1e-6)
-    spent = runs.DynamicsRun(PAPER, target, 2 * 10**7, 1).run()
-    assert not all_reached(spent)
-    # The last round may run over the budget by the scatter of the events in it, not by more.
-    assert 1.8e7 < spent.events < 2.02e7
-    assert spent == runs.DynamicsRun(PAPER, target, 2 * 10**7, 1).run()
-
-
-def test_relative_errors_are_those_of_the_replicas():
-    counts = np.random.default_rng(1).poisson([3.0, 5.0], (400, 2))
-    counts = np.column_stack([counts, np.zeros(400, int)])
-    found = runs.relative_errors(counts.sum(0), counts.T @ counts, np.full(3, 400))
-    expected = counts.std(0)[:2] / math.sqrt(400) / counts.mean(0)[:2]
-    assert found[:2] == pytest.approx(expected, rel=1e-12)
-    assert found[2] == math.inf
 
 
 def test_a_blocked_hop_is_not_waited_for():

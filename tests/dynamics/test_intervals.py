@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 import pytest
-from effect_scenes import SCENES
+from effect_scenes import PAPER, SCENES
 from marks import slow
 
 import twodiscs as td
@@ -20,8 +20,6 @@ from twodiscs.points.intervals_point import BIN_GROWTH, N_BINS, wide_edges
 from twodiscs.sampling.many import many_initial_states
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import density_at_zero
-
-PAPER = td.Scene(1.5, 1.0, 0.2)
 
 
 @pytest.mark.parametrize(("event", "side"), [("vertical_hop", 1.0), ("horizontal_hop", 1.5)])
@@ -98,7 +96,7 @@ CELLS = td.Scene(4.0, 2.0, 0.15, discs=20, periodic="x", friction=4.0)
         (RARE, "vertical_hop"),
         slow(THREE, "horizontal_hop"),
         slow(RING, "vertical_hop"),
-        (CELLS, "vertical_hop"),
+        slow(CELLS, "vertical_hop"),
         slow(td.Scene(4.0, 2.0, 0.2, discs=20), "horizontal_hop"),
     ],
     ids=repr,

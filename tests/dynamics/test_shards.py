@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from commands import python
-from effect_scenes import ALL, SCENES
+from effect_scenes import ALL, PAPER, SCENES
 from marks import slow
 
 from twodiscs.dynamics.engine import find_engine
@@ -20,7 +20,6 @@ from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import insertions, many_initial_states
 
-PAPER = Scene(1.5, 1.0, 0.2)
 SCENES_BY_NAME = {
     "plain": PAPER,
     "combination": SCENES["combination"],

@@ -8,7 +8,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from effect_scenes import ALL, SCENES
+from effect_scenes import ALL, PAPER, SCENES
 from marks import slow
 
 from twodiscs.analysis.tables import TrajectoryTable
@@ -17,8 +17,6 @@ from twodiscs.model.checks import InputError
 from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling.initial_states import components
 from twodiscs.theory.exact import event_rate, mean_times
-
-PAPER = Scene(1.5, 1.0, 0.2)
 
 
 def follow(*given, **named):
@@ -39,14 +37,6 @@ def test_a_trajectory_shows_some_hops_and_is_not_too_long(radius):
     assert (
         expected / math.sqrt(2) <= rows[-1]["time"] * (1 + 1e-12) <= 1.001 * expected * math.sqrt(2)
     )
-
-
-def test_centres_go_on_beyond_the_box_along_periodic_axes():
-    """At speeds of at most 1."""
-    rows = follow(Scene(1.5, 1.0, 0.1, periodic="xy"), 3, duration=40.0)
-    times, centres = np.array([row[0] for row in rows]), np.array([row[4][:4] for row in rows])
-    assert np.all(np.abs(np.diff(centres, axis=0)).max(axis=1) <= np.diff(times) + 1e-9)
-    assert np.all(np.abs(centres).max(axis=0) > 1.0)
 
 
 MANY = Scene(1.5, 1.0, 0.15, periodic="x", discs=3)

@@ -27,7 +27,7 @@ QUICK = ("square", "paper", "long", *OTHERS)
 TABLED = (*QUICK, "ten", "nearly square", "tiny", "large")
 
 #: Most of the time of a figure is the layout of its texts: fast tests look at them in these boxes.
-LAID_OUT = ("paper", *OTHERS)
+LAID_OUT = ("paper", "effects")
 
 QUANTITIES = {quantity for entry in FIGURES.values() for quantity in entry.needs}
 

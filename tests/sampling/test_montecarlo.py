@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from effect_scenes import ALL, SCENES, exchanged
+from effect_scenes import ALL, PAPER, SCENES, exchanged
 from factory import sample_point
 from marks import slow
 from sampling.uniformity import FALSE_ALARM
@@ -18,8 +18,6 @@ from twodiscs.model.events import HOPS, SHELL_EVENTS, WALLS
 from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
-
-PAPER = Scene(1.5, 1.0, 0.2)
 
 
 def assert_binomial(hits, samples, probability):
@@ -40,16 +38,13 @@ PLAIN = [
 #: fields that keep discs from passing, or from the top.
 MORE_SCENES = [
     slow(Scene(1.5, 1.0, 0.3, periodic="x")),
-    slow(Scene(1.5, 1.0, 0.3, periodic="y")),
     slow(Scene(1.0, 1.0, 0.34, periodic="xy")),
     Scene(1.5, 0.9, 0.4, radius_ratio=0.2, mass_ratio=1e-3),
     Scene(1.5, 1.0, 0.1, radius_ratio=4.0, mass_ratio=1e3),
     Scene(1.5, 1.0, 0.05, field=1.5),
-    Scene(1.5, 1.0, 0.3, field=1.5),
     slow(Scene(1.5, 1.0, 0.3, field=0.1, periodic="x", moment_of_inertia=1.0)),
     Scene(1.5, 1.0, 0.37, moment_of_inertia=0.1),
     Scene(1.0, 1.0, 0.26, depth=1.0),
-    slow(Scene(1.0, 1.0, 0.3, depth=1.0, periodic="xyz")),
 ]
 
 
