@@ -398,21 +398,17 @@ def test_a_method_whose_price_was_printed_can_be_taken():
 
 NOTES = """
 td.sample(SCENE, 10) → You asked for 10 samples and got 1048576, because work is done in
-td.sample(SCENE, 2**20) →
 td.sample(td.Scene(1.5, 1, 0.38), 1e7) → You asked for 10000000 samples and got 196608
 td.sample(SCENE, error=0.5) → You asked for an error of 0.5 and got 0.01, because the
 td.sample(SCENE, error=0.01, budget=1e6, shell=2e-5, quantities="top_wall_area") → You asked
-td.sample(SCENE.with_radius(1e-3), error=0.01, budget=1e6, quantities="volume") →
 td.sample(SCENE, error=0.5, budget=10) → You asked for a budget of 10, but the smallest
 td.intervals(SCENE, "vertical_hop", 10) → You asked for 10 intervals and got 65536
 td.observe(SCENE, lambda a, b: b["x1"], [1], 10) → You asked for 10 replicas and
 td.observe(SCENE, lambda a, b: b["x1"], [1], 8192) →
 td.simulate(SCENE, 0.5) → You asked for an error of 0.5 and got 0.0028, because the smallest run
-td.simulate(SCENE, 0.5, budget=2e5) → You asked for an error of 0.5
 td.simulate(SCENE, 0.5, budget=1) → You asked for a budget of 1, but the smallest run has 250000
 td.simulate(SCENE, duration=100) → You asked for a duration of 100 and got 65536: 1024
 td.transmission(td.Scene(1.5, 1, 0.249), "horizontal_hop", 10) → You asked for 10
-td.transmission(td.Scene(1.5, 1, 0.249), "horizontal_hop", 128) →
 """
 
 

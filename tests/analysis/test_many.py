@@ -13,12 +13,9 @@ from marks import slow
 import twodiscs as td
 from twodiscs.analysis.tables import CheckTable
 from twodiscs.dynamics import runs
-from twodiscs.dynamics.engine import find_engine
-from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import many_rates
 from twodiscs.sampling import initial_states, montecarlo
 from twodiscs.sampling.many import insertions
-from twodiscs.theory import exact
 from twodiscs.theory.flux import rates
 
 #: With an exact value, and without; between walls, and on a ring.
@@ -33,17 +30,6 @@ SCENES = {
 }
 
 KNOWN = ("three on a torus", "three", "three, dense", "eight in a channel", "four, upright")
-
-
-def test_what_is_known_is_told_from_what_is_impossible():
-    for name, scene in SCENES.items():
-        areas, times = exact.areas(scene), exact.mean_times(scene)
-        for event in td.EVENTS:
-            possible = scene.is_possible(event)
-            assert (areas[event] == 0.0) == (not possible)
-            assert (areas[event] is None) == (possible and name not in KNOWN)
-            assert (times[event] is None) == (not possible or name not in KNOWN)
-        assert (exact.volume(scene) is None) == (name not in KNOWN)
 
 
 #: Those whose rows are of another kind: exact, not known, on a ring, in a channel.
@@ -72,16 +58,6 @@ def test_the_check_fails_if_a_rate_is_wrong_and_else_it_does_not(name):
     rows = CheckTable.rows([replace(counted, duration=1.1 * counted.duration), inserted])
     failed = {row["comparison"] for row in rows if row["passed"] is False}
     assert failed >= {kind for kind, _ in compared if kind in ("sum_rule", "flux", "mean_time")}
-
-
-def test_expected_rates_are_near_what_is_counted():
-    for name in ("four", "four on a ring", "three on a torus"):
-        scene = SCENES[name]
-        duration = find_engine(scene).replica_duration(scene)
-        sums, _ = find_engine(scene).run_blocks(scene, scene.events, 8, 0, 2, duration)
-        for event, rate in many_rates.expected_rates(scene).items():
-            seen = sums[td.EVENTS.index(event)] / duration / 2 / REPLICAS
-            assert rate == pytest.approx(seen, rel=0.05), (name, event)
 
 
 @pytest.mark.parametrize("periodic", ["", "x"])

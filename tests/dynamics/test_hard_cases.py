@@ -65,7 +65,6 @@ def test_tiny_discs_aimed_at_each_other(radius, miss):
     (0.2, 0.0, -0.4, -0.25, 0.0, 0.0, 0.8, 0.6),
     # components exactly zero, of either sign, and denormal ones
     (-0.3, 0.1, 0.3, -0.1, 0.0, 0.8, -0.0, -0.6),
-    (-0.3, 0.1, 0.3, -0.1, 5e-324, 0.8, -1e-310, 0.6),
     (-0.3, 0.1, 0.3, -0.1, 1e-300, 0.8, -2.0**-1022, -0.6),
     # almost parallel
     (-0.3, 0.1, 0.3, -0.1, 0.6, 0.3741657386773941, 0.6 - 1e-13, 0.3741657386773941),
@@ -77,12 +76,10 @@ def test_tiny_discs_aimed_at_each_other(radius, miss):
     (-0.2, 0.0, 0.2 - 2.0**-54, 0.0, 0.8, 0.1, -0.5, 0.3),
     # both in corners, at the walls
     (0.55, 0.3, -0.55, -0.3, 0.7, 0.1, -0.2, -0.3),
-    (0.55, 0.3, -0.55, -0.3, -0.7, -0.1, 0.2, 0.35),
     # one disc at rest on its walls, or sliding along one, while the other one comes and goes
     (-0.55, 0.3, -0.55, -0.3, -0.0, 0.0, 0.7, 0.7),
     (-0.55, -0.3, 0.55, 0.3, 0.7, 0.6, 0.0, 0.0),
     (0.55, 0.1, -0.2, -0.1, 0.0, 0.6, 0.5, 0.3),
-    (-0.2, -0.1, 0.2, 0.3, 0.5, 0.3, -0.6, 0.0),
     # discs on opposite walls, moving along them
     (0.55, 0.1, -0.55, -0.1, 0.0, 0.8, 0.0, -0.6),
 ])  # fmt: skip

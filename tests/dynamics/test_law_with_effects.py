@@ -256,32 +256,6 @@ def test_rough_collisions_reverse_what_slides_and_what_approaches(seed, mass, in
     assert again[4:] == pytest.approx(state[4:], abs=1e-12 * size)
 
 
-@pytest.mark.parametrize("side", [-1, 1])
-@pytest.mark.parametrize("axis", [0, 1])
-@pytest.mark.parametrize("disc", [0, 1])
-def test_rough_walls_reverse_what_slides(axis, side, disc):
-    scene = Scene(4.0, 3.0, 0.2, moment_of_inertia=0.5, mass_ratio=2.0, radius_ratio=0.7)
-    half = (4.0, 3.0)[axis] / 2 - scene.radii[disc]
-    places, speeds, spins = [0.0, 0.5, 0.0, -0.5], [0.3, -0.2, 0.1, 0.25], [0.4, -0.6]
-    places[2 * disc + axis], speeds[2 * disc + axis] = side * (half - 0.1), 2.0 * side
-    law, state = two_disc_law(scene), (*places, *speeds, *spins)
-    time, code = next_event(state, math.inf, law)
-    after = after_event(state, time, code, law)
-    assert time == pytest.approx(0.05)
-    # The disc's surface at the wall moves with the centre and turns: ω × (r n) along the wall.
-    turn = side if axis == 0 else -side
-
-    def at_wall(state):
-        return state[4 + 2 * disc + (1 - axis)] + turn * state[8 + disc]
-
-    assert at_wall(after) == pytest.approx(-at_wall(state), abs=1e-15)
-    assert after[4 + 2 * disc + axis] == -2.0 * side
-    assert after[2 * disc + axis] == side * half
-    assert energy(scene, after) == pytest.approx(energy(scene, state), rel=1e-15)
-    still = 4 + 2 * (1 - disc)
-    assert after[still : still + 2] == state[still : still + 2]
-
-
 def test_the_worked_example_is_true():
     assert doctest.testmod(follow).attempted > 4
     assert doctest.testmod(follow).failed == 0

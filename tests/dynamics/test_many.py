@@ -47,9 +47,7 @@ EXACT += [
     Scene(0.6, 7.0, 0.18, discs=many_initial_states.LARGE),
     slow(Scene(7.0, 0.6, 0.18, discs=many_initial_states.LARGE)),
     slow(Scene(7.0, 0.6, 0.18, discs=many_initial_states.LARGE, moment_of_inertia=0.5)),
-    slow(Scene(3.5, 0.6, 0.18, discs=8, moment_of_inertia=0.2)),
     slow(replace(THREE, friction=4.0)),
-    slow(Scene(8.75, 0.6, 0.18, discs=20, friction=4.0)),
 ]
 
 
@@ -67,7 +65,6 @@ OTHERS = [
     Scene(1.5, 1.0, 0.15, discs=4, periodic="x"),
     Scene(1.5, 1.0, 0.15, discs=4, periodic="xy"),
     Scene(1.0, 1.0, 0.249, discs=3, periodic="xy"),
-    slow(Scene(1.0, 1.5, 0.15, discs=4, periodic="y")),
     Scene(1.5, 0.6, 0.18, discs=3, periodic="x"),
     Scene(1.5, 1.0, 0.2, discs=2, periodic="x"),
     Scene(1.5, 1.0, 0.17, discs=5, moment_of_inertia=0.3),

@@ -47,10 +47,8 @@ def test_curves_break_where_times_jump():
     [
         ({}, {"h/4": 0.25, "w/4": 0.375}),
         ({"width": 1.0}, {"h/4": 0.25, "w/4": 0.25}),
-        ({"width": 0.7}, {"w/4": 0.175, "h/4": 0.25}),
         ({"width": 3.0}, {"h/4": 0.25}),  # w/4 is beyond the largest radius
         ({"periodic": "x"}, {"h/2": 0.25, "v": 0.375}),
-        ({"periodic": "y"}, {"h": 0.25, "w/2": 0.375}),
         ({"periodic": "xy"}, {"h/2": 0.25, "w/2": 0.375}),
         # Two discs one above the other need 2 g r < 1/2; one reaches the top if g (h − 2r) < 1/2.
         ({"field": 2.0}, {"h": 0.125, "v": 0.375, "t": 0.375}),
@@ -58,7 +56,6 @@ def test_curves_break_where_times_jump():
         ({"width": 2.0, "height": 1.3, "field": 0.3, "mass_ratio": 4.0}, {"h": 0.325, "f": 0.5}),
         # The larger disc 1 passes behind disc 2 as long as h < (√r1 + √r2)².
         ({"radius_ratio": 0.25}, {"h": 0.4, "x": 4 / 9}),
-        ({"radius_ratio": 4.0}, {"h": 0.1}),
     ],
     ids=str,
 )

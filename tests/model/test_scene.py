@@ -40,9 +40,7 @@ def test_discs_that_jam_do_not_fit():
     [
         (1.5, 1, 0.2, "all-hops", 1),
         (1.5, 1, 0.25, "vertical-hops", 2),  # zero room is blocked
-        (1.5, 1, 0.3, "vertical-hops", 2),
         (1.5, 1, 0.375, "no-hops", 4),
-        (1.5, 1, 0.38, "no-hops", 4),
         (1, 1.5, 0.3, "horizontal-hops", 2),
         (3, 1, 0.49, "vertical-hops", 2),
         (1, 1, 0.25, "no-hops", 4),
@@ -72,22 +70,15 @@ def test_a_copy_is_the_same_whatever_was_asked_before():
 
 
 SCENES = [
-    Scene(1.5, 1.0, 0.2, radius_ratio=1.3),
     Scene(1.5, 1.0, 0.2, radius_ratio=1.9),
     Scene(1.0, 1.0, 0.25, radius_ratio=1.25),
     Scene(1.5, 0.66, 0.29, radius_ratio=0.2),
     Scene(1.5, 0.66, 0.058, radius_ratio=5.0),
-    Scene(1.0, 1.0, 0.4, radius_ratio=0.3),
     Scene(1.0, 0.9, 0.4, radius_ratio=0.35),
     Scene(1.5, 1.0, 0.3, periodic="x"),
     Scene(1.0, 1.0, 0.3, periodic="x"),
-    Scene(1.5, 1.0, 0.3, periodic="y"),
-    Scene(0.6, 1.0, 0.2, periodic="y"),
-    Scene(1.5, 1.0, 0.3, periodic="xy"),
     Scene(1.0, 1.0, 0.32, periodic="xy"),
     Scene(1.5, 1.0, 0.15, field=2.0),
-    Scene(1.5, 1.0, 0.15, field=0.8),
-    Scene(0.7, 1.0, 0.2, field=1.0),
     Scene(0.7, 1.5, 0.2, field=0.4),
     Scene(1.5, 1.0, 0.15, field=0.9, mass_ratio=4.0, radius_ratio=1.5),
     Scene(1.5, 1.0, 0.3, field=1.2, mass_ratio=0.2, radius_ratio=0.6),

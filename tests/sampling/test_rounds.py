@@ -280,19 +280,3 @@ def test_a_budget_of_intervals_has_the_whole_blocks_that_it_can_pay(blocks):
     assert run.planned == int(blocks)
     with pytest.raises(td.InputError, match=r"^budget must allow for 65536 intervals"):
         runs.IntervalsRun(scene, hop, 10**9, 5, int(0.999 * events))
-
-
-def test_intervals_in_pieces_are_those_of_one_process():
-    run = runs.IntervalsRun(PAPER.scene(0.1), "vertical_hop", 200_000, 5)
-    assert run.components["all"].planned == 4
-    found = run.point({"all": done_in_shards(run.components["all"], 1)})
-    assert found == run.run()
-    equal, wide = found.equal.counts, found.wide
-    assert sum(equal) + found.overflow == found.intervals
-    assert wide.counts == np.add.reduceat(equal[: wide.edges[-1]], wide.edges[:-1]).tolist()
-    # A second method: the sums of the chains in floating point.
-    totals, _ = runs.record_blocks(run.scene, run.event, 5, 0, 4, np.ones(1, np.bool_))
-    means = totals / runs.RETURNS
-    assert found.mean == pytest.approx(math.fsum(means) / means.size, rel=1e-14)
-    error = np.std(means, ddof=1) / math.sqrt(means.size)
-    assert found.stderr == pytest.approx(error, rel=1e-13)

@@ -203,19 +203,6 @@ def test_separations_have_the_invariant_law(width, height, radius):
     uniformity.assert_uniform((slack_y[:2000] / rooms) ** 2)
 
 
-@pytest.mark.parametrize("radius", [0.2, 0.3, 0.38, JAM * (1 - 1e-9)])
-def test_both_orders_along_both_axes_have_the_same_probability(radius):
-    """Those of ergodic components, too; the discs are in the box and do not overlap."""
-    scene, n = Scene(1.5, 1.0, radius), 20_000
-    x1, y1, x2, y2 = states(scene, n, 5)[:4]
-    counts = np.bincount(2 * (x1 > x2) + (y1 > y2), minlength=4)
-    assert np.all(np.abs(counts - n / 4) <= 5 * math.sqrt(n * 3 / 16))
-    assert np.all(np.abs([x1, x2]) <= scene.range_x / 2)
-    assert np.all(np.abs([y1, y2]) <= scene.range_y / 2)
-    gap = np.hypot(x1 - x2, y1 - y2) - scene.contact_distance
-    assert gap.min() >= -1e-15
-
-
 # Proposals in the neck of a hop -----------------------------------------------------------------
 
 

@@ -117,21 +117,3 @@ def test_tail_constants_of_blocked_drifts():
     for event in (*HOPS, "disc_collision"):
         turned = tail_constant(scene.turned(), TURNED[event])
         assert tail_constant(scene, event) == pytest.approx(turned, rel=1e-13)
-
-
-def chance(scene, hop, time):
-    """Return the probability of drifts in separate rows that avoid a ``hop``, from its tail C/t³.
-
-    By Palm's relation P(none within t) = C/(2 τ t²), where τ is 3πV/(4A) for a hop of the area A.
-    """
-    area, volume = exact.areas(scene)[hop], exact.volume(scene)
-    return 2 * tail_constant(scene, hop) * area / (3 * math.pi * volume * time**2)
-
-
-def test_drifts_make_the_bound_of_the_tail():
-    scene, time = Scene(1.5, 1.0, 0.1), 50.0
-    both = sum(chance(scene, hop, time) for hop in HOPS)
-    tau = exact.mean_times(scene)["disc_collision"]
-    assert 2 * tau * both / time == pytest.approx(
-        tail_constant(scene, "disc_collision") / time**3, rel=1e-13
-    )

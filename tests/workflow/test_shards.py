@@ -9,7 +9,6 @@ import shutil
 import pytest
 from checkout import folder, one_scene
 
-from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.scene import Scene
 from twodiscs.points.base import file_content, write_json
 from twodiscs_paper.configuration.yaml_files import load
@@ -81,16 +80,6 @@ def test_shards_are_jobs_of_a_dry_run_and_one_of_another_scene_is_refused(unbuil
     place_at(place.path, unbuilt, accuracy=5e-4)
     assert planned()
     assert not planned() & first
-
-
-def test_shards_have_the_random_numbers_of_their_point():
-    """Those of another radius would make errors of two radii the same."""
-    radii = [0.05, 0.24, 0.245]
-    (scene,) = load(TINY | {"scenes": [TINY["scenes"][0] | {"radii": radii}]}).scenes
-    stage, whole = STAGES["dynamics"], scene.arguments("dynamics")
-    assert len({stage.run(scene.box.scene(radius), whole).seed for radius in radii}) == 3
-    shard = scene.shard_arguments("dynamics")
-    assert all(whole[key] == shard[key] for key in ("seed", "name"))
 
 
 @pytest.mark.slow
