@@ -14,11 +14,10 @@ from snakemake.utils import update_config
 
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.stages import STAGES
-from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENT_AXES, EVENTS, HOPS
 from twodiscs.model.scene import Box, Scene
 from twodiscs.model.seeds import job_seed, stream_seed
-from twodiscs_paper.configuration import scene_block, schema, yaml_files
+from twodiscs_paper.configuration import scene_block, yaml_files
 from twodiscs_paper.configuration.request import RequestedQuantities
 from twodiscs_paper.configuration.yaml_files import ConfigError, read
 
@@ -46,24 +45,6 @@ def test_the_draft_is_a_quick_look_at_the_scenes_of_the_default_configuration():
         assert quick.quantities.names == slow.quantities.names
         assert len(quick.radii) <= 10 < len(slow.radii)
         assert quick.dynamics["accuracy"] == dict.fromkeys(EVENTS, 1e-2)
-
-
-# The schema
-
-
-def test_every_effect_is_a_key_with_its_meaning_range_and_default():
-    blocks = schema.keys()["properties"]["scenes"]["items"]["properties"]
-    keys = {"box": {"width", "height"}, "effects": set()}
-    for name, effect in EFFECTS.items():
-        place = "box" if effect.of_box else "effects"
-        keys[place].add(name)
-        node = blocks[place]["properties"][name]
-        assert effect.meaning[1:] in node["description"]
-        if effect.is_number:
-            assert node["maximum"] == effect.high
-            assert node["minimum"] in (effect.low, effect.default)
-            assert node.get("default") == effect.default
-    assert {place: {*blocks[place]["properties"]} for place in keys} == keys
 
 
 # Defaults and forms

@@ -5,14 +5,13 @@ Without it an infinite field or a text as a length would reach the physics.
 Allowed values are returned in their plain type, others are named in a short sentence.
 """
 
-import math
 from fractions import Fraction
 
 import numpy as np
 import pytest
 
 from twodiscs.model import checks
-from twodiscs.model.effects import ABSENT_VALUES, EFFECTS
+from twodiscs.model.effects import ABSENT_VALUES
 from twodiscs.model.scene import Box, Scene
 from twodiscs.model.seeds import stream_seed
 
@@ -62,22 +61,3 @@ def test_odd_values_are_named_in_a_short_sentence(value):
         with pytest.raises(checks.InputError, match=r"must|does not fit") as caught:
             call()
         assert len(str(caught.value)) < 300
-
-
-NUMBERS = {name: effect for name, effect in EFFECTS.items() if effect.is_number}
-
-
-@pytest.mark.parametrize("effect", NUMBERS.values(), ids=NUMBERS)
-def test_a_value_is_a_float_in_range_or_that_of_absence(effect):
-    for value in (effect.low, Fraction(effect.high)):
-        found = effect.checked(value)
-        assert type(found) is float
-        assert found == value
-    for value in (effect.default, None, *([] if effect.default is None else [int(effect.default)])):
-        assert effect.checked(value) is effect.default
-    for bad in (-1.0, math.nan, math.inf, "0.5", b"1", True, False, [], 1j, 10**400):
-        with pytest.raises(ValueError, match=rf"^{effect.name} must be a positive"):
-            effect.checked(bad)
-    for bad in (math.nextafter(effect.low, 0), math.nextafter(effect.high, math.inf)):
-        with pytest.raises(ValueError, match=rf"^{effect.name} must lie between .* and "):
-            effect.checked(bad)
