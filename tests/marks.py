@@ -6,10 +6,10 @@
   seconds to compile. The law of every scene and its kicks are tested in Python, all effects at once
   among them; counts, intervals and passages with friction are fast, and strips have their loop.
 * Rough discs, many, moved in time or on a ring with cells: one trajectory is compared with the
-  engine of two, counts with theory. Cells in a box that count no events, and cells that count
-  events between kicks: counts without kicks, and on a ring trajectories and intervals with kicks,
-  are fast.
-* Intervals of few discs on a ring: those between walls, and those of cells on a ring, are fast.
+  engine of two, counts with theory. Cells in a box that count no events, cells of many discs on a
+  torus, and cells that count events between kicks: counts without kicks, few discs on a torus, and
+  on a ring trajectories with kicks are fast.
+* Intervals of few discs on a ring, and of cells: those of few discs between walls are fast.
 * 2e7 events without drift, many more scenes of theory and Monte Carlo, all figures in all boxes:
   some are fast.
 * 16 seeds of each call and each study, whole animations: seeds of two calls, and of two studies
