@@ -76,7 +76,7 @@ MUTANTS = [
     ("paths end too soon", "<= self.fastest * left else", "<= 0.5 * self.fastest * left else"),
     ("off by one return", "wanted + (1.0 if rising < 0.0 else 0.0)", "wanted"),
     ("age after a hop", "age[i] = time - until if hop", "age[i] = time if hop"),
-    ("wrong image on a ring", "dx - math.copysign(ring[0], dx)", "dx + math.copysign(ring[0], dx)"),
+    ("wrong image on a ring", "dx - math.copysign(ring, dx)", "dx + math.copysign(ring, dx)"),
     ("squares of two classes counted twice", "products + np.triu(products, 1).T", "products + products.T"),
     ("clusters in a bound", "(CLUSTER_ALLOWANCE * -math.log1p", "(-math.log1p"),
     ("two tails", "ndtri(alarm / (2 * comparisons))", "ndtri(alarm / comparisons)"),

@@ -144,7 +144,7 @@ def test_a_flight_on_a_ring_ends_before_a_third_image_comes_near(width, discs):
     """The largest relative speed is √2, and half the ring is the most between two looks."""
     law = many.many_disc_law(Scene(width, 1.0, 0.1, discs=discs, periodic="x"))
     fastest = math.sqrt(2)
-    assert law.ring_x[2] * fastest == pytest.approx(width / 2, rel=1e-15)
+    assert law.ring_x / 2 / many.SQRT_2 * fastest == pytest.approx(width / 2, rel=1e-15)
     # Two discs side by side, in opposite directions: they look again, then meet the next image.
     x, y = np.zeros((discs, 1)), np.linspace(-0.35, 0.35, discs)[:, None].copy()
     u, v = np.zeros((discs, 1)), np.zeros((discs, 1))

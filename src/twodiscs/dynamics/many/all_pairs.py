@@ -33,9 +33,13 @@ from twodiscs.dynamics.law import (
 from twodiscs.model.events import by_kind
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import many_initial_states
+from twodiscs.sampling.many.insertions import periods, ring_separation
 
 #: A flight on a ring that ends without an event.
 LOOK_AGAIN = -1.0
+
+#: The largest relative speed of two discs.
+SQRT_2 = math.sqrt(2)
 
 #: Classes of events, in the order of all counts. Both walls of an axis are in one class.
 CLASSES = ("vertical_hop", "horizontal_hop", "disc_collision", "right_wall", "top_wall")
@@ -57,16 +61,15 @@ EVENT_CLASSES = by_kind(
 class ManyLaw(NamedTuple):
     """The constants of the motion: half-ranges of the centres, σ, and those of effects.
 
-    ``ring_x`` is (circumference, half of it, the longest flight) if x is periodic; ``half_x`` is
-    None then. So it is for y. ``rough`` is that of ``law.Law``, ``spin`` is √(1/κ). They are None
-    without the effect.
+    ``ring_x`` is the circumference if x is periodic; ``half_x`` is None then. So it is for y.
+    ``rough`` is that of ``law.Law``, ``spin`` is √(1/κ). They are None without the effect.
     """
 
     half_x: float | None
     half_y: float | None
     sigma: float
-    ring_x: tuple | None = None
-    ring_y: tuple | None = None
+    ring_x: float | None = None
+    ring_y: float | None = None
     rough: tuple | None = None
     spin: float | None = None
 
@@ -106,15 +109,11 @@ def new_lanes(states, remaining, law):
 
 def many_disc_law(scene):
     """Return the ``ManyLaw`` of a ``Scene``."""
-    halves, rings, rough = [scene.range_x / 2, scene.range_y / 2], [None, None], None
-    for k, axis in enumerate("xy"):
-        if axis in scene.periodic:
-            halves[k], half = None, scene.side(axis) / 2
-            rings[k] = scene.side(axis), half, half / math.sqrt(2)
-    if scene.moment_of_inertia is not None:
-        rough = divided(1.0, scene.moment_of_inertia, 1.0)
+    half_x = None if "x" in scene.periodic else scene.range_x / 2
+    half_y = None if "y" in scene.periodic else scene.range_y / 2
     spin = many_initial_states.spin_factor(scene)
-    return ManyLaw(*halves, scene.contact_distance, *rings, rough, spin)
+    rough = None if spin is None else divided(1.0, scene.moment_of_inertia, 1.0)
+    return ManyLaw(half_x, half_y, scene.contact_distance, *periods(scene), rough, spin)
 
 
 def new_kicks(scene, lanes):
@@ -256,15 +255,6 @@ def walled_quotient(position, velocity, half):
     return wall_quotient(position, velocity, half)
 
 
-@optional(lambda separation, ring: separation)
-def nearest(separation, ring):
-    """Return the separation of the nearest image along a periodic axis."""
-    period, half, _ = ring
-    separation -= period if separation > half else 0.0
-    separation += period if separation < -half else 0.0
-    return separation
-
-
 @optional(lambda before, after, ring: crosses(before, after))
 def changes_order(before, after, ring):
     """Return whether a separation changes sign in a flight; on a ring, that of the nearest image.
@@ -272,8 +262,8 @@ def changes_order(before, after, ring):
     A flight on a ring changes a separation by less than half of the circumference. If the change is
     larger, another image has become the nearest one.
     """
-    before, after = nearest(before, ring), nearest(after, ring)
-    return crosses(before, after) & (abs(after - before) < ring[1])
+    before, after = ring_separation(before, ring), ring_separation(after, ring)
+    return crosses(before, after) & (abs(after - before) < ring / 2)
 
 
 @optional(lambda before, after, ring: crosses(before, after))
@@ -294,7 +284,7 @@ def first_image(gap, speed, other_gap, other_speed):
 def meeting_along_x(dx, dy, du, dv, sigma, ring):
     """Return (gap, speed) of two discs; on a ring of x, of the image that is met first."""
     gap, speed = pair_contact(dx, dy, du, dv, sigma)
-    other_gap, other_speed = pair_contact(dx - math.copysign(ring[0], dx), dy, du, dv, sigma)
+    other_gap, other_speed = pair_contact(dx - math.copysign(ring, dx), dy, du, dv, sigma)
     return first_image(gap, speed, other_gap, other_speed)
 
 
@@ -302,7 +292,7 @@ def meeting_along_x(dx, dy, du, dv, sigma, ring):
 def pair_meeting(dx, dy, du, dv, sigma, ring_x, ring):
     """Return (gap, speed) of two discs; along periodic axes, of the image that is met first."""
     gap, speed = meeting_along_x(dx, dy, du, dv, sigma, ring_x)
-    dy -= math.copysign(ring[0], dy)
+    dy -= math.copysign(ring, dy)
     other_gap, other_speed = meeting_along_x(dx, dy, du, dv, sigma, ring_x)
     return first_image(gap, speed, other_gap, other_speed)
 
@@ -317,8 +307,9 @@ def pair_contact(dx, dy, du, dv, sigma):
 @optional(lambda limit, code, ring: (limit, code))
 def soonest(limit, code, ring):
     """Return (time, code) of the end of a flight without an event."""
-    again = ring[2] < limit
-    return ring[2] if again else limit, LOOK_AGAIN if again else code
+    longest = ring / 2 / SQRT_2
+    again = longest < limit
+    return longest if again else limit, LOOK_AGAIN if again else code
 
 
 @compiled
@@ -354,7 +345,8 @@ def find_events(all_lanes, law, kicks=None):
             xj, yj, uj, vj = x[j], y[j], u[j], v[j]
             for l in range(lanes):
                 gap, speed = pair_meeting(
-                    nearest(xi[l] - xj[l], law.ring_x), nearest(yi[l] - yj[l], law.ring_y),
+                    ring_separation(xi[l] - xj[l], law.ring_x),
+                    ring_separation(yi[l] - yj[l], law.ring_y),
                     ui[l] - uj[l], vi[l] - vj[l], law.sigma, law.ring_x, law.ring_y,
                 )  # fmt: skip
                 times[l], speeds[l], codes[l] = earlier_event(
@@ -383,8 +375,9 @@ def advance(all_lanes, law, hops_x):
         for l in range(lanes):
             on_x, on_y = codes[l] == number, codes[l] == number + 1.0
             oxi[l], oyi[l] = xi[l], yi[l]
-            xi[l] = nearest(snap_to_wall(xi[l] + ui[l] * times[l], on_x, law.half_x), law.ring_x)
-            yi[l] = nearest(snap_to_wall(yi[l] + vi[l] * times[l], on_y, law.half_y), law.ring_y)
+            at_x = snap_to_wall(xi[l] + ui[l] * times[l], on_x, law.half_x)
+            at_y = snap_to_wall(yi[l] + vi[l] * times[l], on_y, law.half_y)
+            xi[l], yi[l] = ring_separation(at_x, law.ring_x), ring_separation(at_y, law.ring_y)
             rub_walls(ui, vi, l, on_x, on_y, si, law.rough)
             ui[l] = -ui[l] if on_x else ui[l]
             vi[l] = -vi[l] if on_y else vi[l]
@@ -402,7 +395,7 @@ def advance(all_lanes, law, hops_x):
                 hops[l] += 1.0 if hops_vertically(oyi[l] - oyj[l], dy, law.ring_y) else 0.0
                 if hops_x is not None:
                     across[l] += 1.0 if changes_order(oxi[l] - oxj[l], dx, law.ring_x) else 0.0
-                dx, dy = nearest(dx, law.ring_x), nearest(dy, law.ring_y)
+                dx, dy = ring_separation(dx, law.ring_x), ring_separation(dy, law.ring_y)
                 square = dx * dx + dy * dy
                 exchange = (dx * (ui[l] - uj[l]) + dy * (vi[l] - vj[l])) / square
                 meets = (codes[l] == number) & (square > VANISHING_SQUARE)
@@ -474,11 +467,11 @@ def count_events(states, seed, first, lanes, duration, law, hops_x, kicks):
 
 @optional(lambda laps, positions, velocities, times, ring: None)
 def count_laps(laps, positions, velocities, times, ring):
-    """Add to ``laps`` (N, lanes) the rounds that flights complete, as ``nearest`` undoes them."""
+    """Add to ``laps`` (N, lanes) the rounds that flights complete."""
     for i in range(laps.shape[0]):
         for l in range(laps.shape[1]):
             then = positions[i, l] + velocities[i, l] * times[l]
-            laps[i, l] += (1.0 if then > ring[1] else 0.0) - (1.0 if then < -ring[1] else 0.0)
+            laps[i, l] += (1.0 if then > ring / 2 else 0.0) - (1.0 if then < -ring / 2 else 0.0)
 
 
 @optional(lambda first, stop, kicks: None)

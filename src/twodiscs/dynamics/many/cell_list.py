@@ -37,6 +37,7 @@ from twodiscs.dynamics.many import all_pairs
 from twodiscs.dynamics.many.all_pairs import COLLISIONS, HORIZONTAL_HOPS, N_CLASSES, VERTICAL_HOPS
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import cell_grid as grids
+from twodiscs.sampling.many.insertions import ring_separation
 from twodiscs.sampling.many.many_initial_states import spins_in
 
 #: The class of the entries of a log that a kick makes, one for each disc.
@@ -174,7 +175,7 @@ def note_spin(states, k, disc, s):
 @optional(lambda position, laps, ring: position)
 def unfold(position, laps, ring):
     """Return a ``position`` after a number of ``laps`` around a ring."""
-    return position + laps * ring[0]
+    return position + laps * ring
 
 
 @optional(lambda time, log: None)
@@ -209,8 +210,8 @@ def image_separation(apart, column, columns, ring):
 
     It need not be the nearest image on a ring of less than four columns. For rows it is the same.
     """
-    apart -= ring[0] if column < 0 else 0.0
-    return apart + (ring[0] if column >= columns else 0.0)
+    apart -= ring if column < 0 else 0.0
+    return apart + (ring if column >= columns else 0.0)
 
 
 @inlined
@@ -430,8 +431,8 @@ def fly(i, now, motion, counts, log, hops, hops_x):
 @inlined
 def collide(i, j, motion, law):
     """Exchange the velocities of two discs along the line of their centres."""
-    dx = all_pairs.nearest(motion.x[i] - motion.x[j], law.ring_x)
-    dy = all_pairs.nearest(motion.y[i] - motion.y[j], law.ring_y)
+    dx = ring_separation(motion.x[i] - motion.x[j], law.ring_x)
+    dy = ring_separation(motion.y[i] - motion.y[j], law.ring_y)
     du, dv = motion.u[i] - motion.u[j], motion.v[i] - motion.v[j]
     square = dx * dx + dy * dy
     exchange = (dx * du + dy * dv) / square if square > VANISHING_SQUARE else 0.0
@@ -447,7 +448,7 @@ def collide(i, j, motion, law):
 def pass_seam(i, column, columns, positions, laps, ring):
     """Return the number of a column or row; a disc past the seam of a ring is put back."""
     step = 1.0 if column == columns else (-1.0 if column < 0 else 0.0)
-    positions[i] -= step * ring[0]
+    positions[i] -= step * ring
     laps[i] += step
     return grids.wrap_column(column, columns, ring)
 

@@ -108,7 +108,7 @@ def follow_pair(states, remaining, gap, net, hops, law, kicks):
         for l in range(remaining.size):
             apart = old_x[0, l] - old_x[1, l]
             if all_pairs.changes_order(apart, x[0, l] - x[1, l], law.ring_x):
-                apart = all_pairs.nearest(apart, law.ring_x)
+                apart = insertions.ring_separation(apart, law.ring_x)
                 net[l] += math.copysign(1.0, rising[l])
                 hops[l] += 1.0
                 if gap > 0.0:

@@ -128,7 +128,7 @@ def put_states(states, n, at, lags):
 @optional(lambda beyond, i, then, x, ring: None)
 def count_turns(beyond, i, then, x, ring):
     """Set how far ``beyond`` its cell, where it is at ``x``, disc ``i`` has come, to ``then``."""
-    beyond[i] = ring[0] * np.floor((then - x) / ring[0] + 0.5)
+    beyond[i] = ring * np.floor((then - x) / ring + 0.5)
 
 
 @optional(lambda at, spins: None)

@@ -146,25 +146,17 @@ def is_free(centres, k, x, y, box, but):
     return True
 
 
-def _free_at_sides(centres, k, y, box, ring):
-    free = 1.0 if is_free(centres, k, box.half_x, y, box, -1) else 0.0
-    return free + (1.0 if is_free(centres, k, -box.half_x, y, box, -1) else 0.0)
+def _free_at_walls(centres, k, x, y, opposite_x, opposite_y, box, ring):
+    free = 1.0 if is_free(centres, k, x, y, box, -1) else 0.0
+    return free + (1.0 if is_free(centres, k, opposite_x, opposite_y, box, -1) else 0.0)
 
 
-@optional(_free_at_sides)
-def free_at_sides(centres, k, y, box, ring):
-    """Return the number of x-walls, 0 to 2, at which a disc is free at height ``y``."""
-    return 0.0
+@optional(_free_at_walls)
+def free_at_walls(centres, k, x, y, opposite_x, opposite_y, box, ring):
+    """Return at how many of two opposite points, which are on walls, a disc is free.
 
-
-def _free_at_top_and_bottom(centres, k, x, box, ring):
-    free = 1.0 if is_free(centres, k, x, box.half_y, box, -1) else 0.0
-    return free + (1.0 if is_free(centres, k, x, -box.half_y, box, -1) else 0.0)
-
-
-@optional(_free_at_top_and_bottom)
-def free_at_top_and_bottom(centres, k, x, box, ring):
-    """Return the number of y-walls, 0 to 2, at which a disc is free at ``x``."""
+    Along a periodic axis there are no walls.
+    """
     return 0.0
 
 
@@ -197,8 +189,10 @@ def sample_blocks(seed, first, stop, discs, box):
                 x, y = box.half_x * signed_uniform(state), box.half_y * signed_uniform(state)
                 free, _ = free_place(state, centres, last, y, box, starts, ends)
                 weights[0] = free / length
-                weights[1] = free_at_sides(centres, last, y, box, box.ring_x) / 2
-                weights[2] = free_at_top_and_bottom(centres, last, x, box, box.ring_y) / 2
+                sides = box.half_x, y, -box.half_x, y
+                weights[1] = free_at_walls(centres, last, *sides, box, box.ring_x) / 2
+                top = x, box.half_y, x, -box.half_y
+                weights[2] = free_at_walls(centres, last, *top, box, box.ring_y) / 2
                 j = np.int64(next_bits(state) % np.uint64(last))
                 p, q, square = draw_in_disc(state)
                 scale = box.sigma / math.sqrt(square)
