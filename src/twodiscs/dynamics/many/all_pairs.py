@@ -198,35 +198,25 @@ def only_lane(spins):
     return spins[:, 0]
 
 
-@inlined
-def rub(dx, dy, du, dv, spin, meets, rough):
-    """Return the changes (of u and v of the first disc, of both spins) of discs that meet.
-
-    (dx, dy) and (du, dv) are the first minus the second, ``spin`` is the sum. The law is that of
-    ``law.rough_collision``. The impulse along the line of centres changes nothing here.
-    """
-    distance = math.sqrt(dx * dx + dy * dy)
-    slip = (dx * dv - dy * du) / distance - spin
-    push = slip * rough[0] / distance if meets else 0.0
-    return dy * push, -dx * push, slip * rough[1] if meets else 0.0
-
-
 @optional(lambda first, i, second, j, dx, dy, meets, rough: None)
 def rub_discs(first, i, second, j, dx, dy, meets, rough):
     """Reverse the velocity of the surfaces of two discs against each other.
 
-    ``first`` and ``second`` are arrays (u, v, s), in which the discs have the entries i and j.
+    ``first`` and ``second`` are arrays (u, v, s), in which the discs have the entries i and j. (dx,
+    dy) is the first centre minus the second. The law is that of ``law.rough_collision``. The
+    impulse along the line of centres changes nothing here.
     """
     (u, v, s), (other_u, other_v, other_s) = first, second
-    change_u, change_v, change_s = rub(
-        dx, dy, u[i] - other_u[j], v[i] - other_v[j], s[i] + other_s[j], meets, rough
-    )
-    u[i] += change_u
-    v[i] += change_v
-    other_u[j] -= change_u
-    other_v[j] -= change_v
-    s[i] += change_s
-    other_s[j] += change_s
+    distance = math.sqrt(dx * dx + dy * dy)
+    turn = dx * (v[i] - other_v[j]) - dy * (u[i] - other_u[j])
+    slip = turn / distance - (s[i] + other_s[j])
+    push, spin = slip * rough[0] / distance if meets else 0.0, slip * rough[1] if meets else 0.0
+    u[i] += dy * push
+    v[i] -= dx * push
+    other_u[j] -= dy * push
+    other_v[j] += dx * push
+    s[i] += spin
+    other_s[j] += spin
 
 
 @optional(lambda u, v, l, on_x, on_y, s, rough: None)

@@ -332,14 +332,17 @@ def new_bands(discs, borders, hops):
 @optional(lambda cells, at, speeds, bands: None)
 def fill_bands(cells, at, speeds, bands):
     """Put the discs, which are in these ``cells`` (N,) along an axis, into their ``bands``."""
-    n = 0
-    for band in range(bands.first.size - 1):
-        for i in range(cells.size):
-            if cells[i] == band:
-                bands.entry[i], bands.disc[n] = n, i
-                bands.at[n], bands.speed[n], bands.since[n] = at[i], speeds[i], 0.0
-                n += 1
-        bands.first[band + 1] = n
+    bands.first[:] = 0
+    for i in range(cells.size):
+        bands.first[cells[i]] += 1
+    for band in range(1, bands.first.size):
+        bands.first[band] += bands.first[band - 1]
+    # They are the ends of bands until these are filled, from behind.
+    for i in range(cells.size - 1, -1, -1):
+        bands.first[cells[i]] -= 1
+        n = bands.first[cells[i]]
+        bands.entry[i], bands.disc[n] = n, i
+        bands.at[n], bands.speed[n], bands.since[n] = at[i], speeds[i], 0.0
 
 
 @inlined

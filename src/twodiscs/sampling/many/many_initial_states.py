@@ -254,12 +254,6 @@ def subtract_mean(velocities, row, ring):
         velocities[row, i] -= mean
 
 
-@optional(lambda ring_x, ring_y: ring_x)
-def either(ring_x, ring_y):
-    """Return one of two periods that is not None, None between walls."""
-    return ring_y
-
-
 @optional(lambda velocities, ring: None)
 def scale_energy(velocities, ring):
     """Scale ``velocities`` (2, N) to the energy 1/2."""
@@ -277,7 +271,7 @@ def keep_still(velocities, ring_x, ring_y):
     """Make the momenta along periodic axes 0, at the energy 1/2."""
     subtract_mean(velocities, 0, ring_x)
     subtract_mean(velocities, 1, ring_y)
-    scale_energy(velocities, either(ring_x, ring_y))
+    scale_energy(velocities, ring_y if ring_x is None else ring_x)
 
 
 @optional(lambda discs, spin: (np.empty((2, discs)), np.empty(discs - 1)))
