@@ -14,7 +14,7 @@ from itertools import cycle
 import numpy as np
 from matplotlib import rcParams
 from matplotlib.lines import Line2D
-from matplotlib.ticker import Formatter
+from matplotlib.ticker import FuncFormatter
 
 from twodiscs.figures import drawing
 from twodiscs.figures.curves import limits
@@ -337,17 +337,11 @@ def logarithmic(axes, radii, series):
     label_decades(axes.yaxis, high / low)
 
 
-class _PlainNumbers(Formatter):
-    """Labels of ticks as numbers over 10^``power``, at the ticks that begin with a digit."""
-
-    def __init__(self, digits, power):
-        self.digits, self.power = digits, power
-
-    def __call__(self, x, pos=None):
-        return f"{x / 10.0**self.power:g}" if f"{x:e}"[0] in self.digits else ""
-
-    def get_offset(self):
-        return rf"$\times10^{{{self.power}}}$" if self.power else ""
+def _plain_numbers(digits, power):
+    """Return labels of ticks as numbers over 10^``power``, at the ticks that begin with a digit."""
+    labels = FuncFormatter(lambda x, _: f"{x / 10.0**power:g}" if f"{x:e}"[0] in digits else "")
+    labels.set_offset_string(rf"$\times10^{{{power}}}$" if power else "")
+    return labels
 
 
 def label_decades(axis, ratio):
@@ -363,5 +357,5 @@ def label_decades(axis, ratio):
     power = math.floor(math.log10(max(axis.get_view_interval())))
     low, high = rcParams["axes.formatter.limits"]
     power = 0 if low < power < high else power
-    axis.set_major_formatter(_PlainNumbers("123456789", power))
-    axis.set_minor_formatter(_PlainNumbers(digits, power))
+    axis.set_major_formatter(_plain_numbers("123456789", power))
+    axis.set_minor_formatter(_plain_numbers(digits, power))
