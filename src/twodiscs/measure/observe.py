@@ -191,7 +191,7 @@ class Observed(Result):
     sums = float
 
     def _again(self, **asked):
-        if self.kind == "observe" and asked["function"] == self.settings["function"]:
+        if "function" in asked and asked["function"] == self.settings["function"]:
             asked["function"] = self.function
         return super()._again(**asked)
 

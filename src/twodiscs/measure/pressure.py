@@ -25,6 +25,7 @@ from twodiscs.model.checks import InputError
 from twodiscs.model.events import EVENT_AXES, WALLS
 from twodiscs.model.formats import quote
 from twodiscs.model.scene import Scene
+from twodiscs.points.dynamics_point import DynamicsPoint
 from twodiscs.theory import exact, n_discs, virial
 
 
@@ -151,7 +152,7 @@ def pressure(of):
     """
     if isinstance(of, Scene):
         return {name: _combine_rates(of, *term) for name, term in terms(of).items()}
-    if isinstance(of, Measurements) and of.kind == "simulate":
+    if isinstance(of, Measurements) and isinstance(of.point, DynamicsPoint):
         scene, rows = of.scene, {row["event"]: row for row in of.rows}
         return Pressures(
             scene,
