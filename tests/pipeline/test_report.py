@@ -119,4 +119,4 @@ def test_the_section_on_accuracy_has_the_worst_error_and_the_time_of_others(tmp_
     assert (row["radius"], row["quantity"], row["asked"]) == (0.2, "top_wall_time", 1e-2)
     assert row["reached"] == pytest.approx(1e-2)
     assert (row["seconds"], row["times"]) == ("3 s", ["1.7 min", "2.8 h", "12 d", "3.2 years"])
-    assert report.ERRORS == (1e-3, 1e-4, 1e-5, 1e-6)
+    assert report.TABULATED_ERRORS == (1e-3, 1e-4, 1e-5, 1e-6)

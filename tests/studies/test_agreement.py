@@ -91,8 +91,6 @@ def test_rows_are_as_by_hand(rows):
     """
     due = 32, np.mean(np.square([*SCORES.values()])), math.sqrt(2 / 32)
     assert one(rows, quantity="mean_square") == pytest.approx(due)
-    assert one(rows, event="right_wall") == (8, pytest.approx(-1), None)
-    assert one(rows, event="vertical_hop", other="disc_collision") == (8, pytest.approx(0), None)
     assert one(rows, quantity="error_ratio") == (1, pytest.approx(3), None)
     error = math.hypot(7 * 100, 10) / 6 * 0.5 / math.sqrt(40_000) / 0.25
     assert one(rows, quantity="density_at_zero", scene="a") == pytest.approx((2, 1.35, error))

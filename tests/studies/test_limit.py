@@ -60,7 +60,7 @@ def test_early_turns_pass_with_the_exact_probability():
 
     exact, _ = dblquad(integrand, 0, 1, math.sqrt(0.5), 1)
     found = limit.amplitude(24, 5, near=1e9)
-    longest = limit.NEAR * limit.FARTHEST
+    longest = limit.UNIFORM_TURNS * limit.FARTHEST_TURN
     assert abs(found.value / longest - exact) < SIGMA * found.stderr / longest
 
 

@@ -40,7 +40,7 @@ KEY_OF_ALL = ("accuracy_cost", "tails", "distributions", "passages", "effects")
 #: The tables that have an error for each radius, by the stage that makes them, and the errors whose
 #: time the report has.
 ACCURATE = {"dynamics": "mean_times", "monte_carlo": "volume"}
-ERRORS = (1e-3, 1e-4, 1e-5, 1e-6)
+TABULATED_ERRORS = (1e-3, 1e-4, 1e-5, 1e-6)
 
 #: Pixels: the width of a thumbnail.
 THUMBNAIL = 320
@@ -98,7 +98,8 @@ def accuracies(folder, scene):
     """Return the rows of the section on accuracy: what the jobs of a scene reached in what time.
 
     A row is a stage at a radius: the relative error asked for and the largest one that was reached,
-    with its quantity, the processor time, and the times that ``ERRORS`` take at the same speed.
+    with its quantity, the processor time, and the times that ``TABULATED_ERRORS`` take at the same
+    speed.
     """
     jobs_of, rows = taken(folder, scene), []
     for stage, name in ACCURATE.items():
@@ -110,7 +111,7 @@ def accuracies(folder, scene):
             events, seconds = jobs.get(radius, (None, None))
             if known and events and speed:
                 reached = max(known)
-                times = [events / speed * (reached / error) ** 2 for error in ERRORS]
+                times = [events / speed * (reached / error) ** 2 for error in TABULATED_ERRORS]
                 rows.append(
                     {
                         "radius": radius,
@@ -237,7 +238,7 @@ def contents(folder, files, scenes, run):
         "accuracies": {
             scene["name"]: rows for scene in scenes if (rows := accuracies(folder, scene))
         },
-        "errors": ERRORS,
+        "errors": TABULATED_ERRORS,
         "missed": [line for scene in scenes for line in missed(folder, scene)],
         "agreements": [agreed for scene in scenes if (agreed := agreement(folder, scene))],
         "commit": commit(Path(__file__).parent),

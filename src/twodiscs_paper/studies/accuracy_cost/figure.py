@@ -25,7 +25,7 @@ from twodiscs.figures.style import (
 WIDTH, HEIGHT = 7.0, 4.3
 
 #: The ends of the axes: relative errors, and seconds.
-ERRORS, SECONDS = (1.0, 1e-6), (1e-7, 1e6)
+ERROR_RANGE, SECONDS_RANGE = (1.0, 1e-6), (1e-7, 1e6)
 
 GUIDES = {"1 s": 1.0, "1 min": 60.0, "1 h": 3600.0, "1 day": 86400.0}
 
@@ -47,20 +47,20 @@ class MethodCurve(NamedTuple):
     marker: str
 
 
-HOP, AREA = "horizontal_hop_time", "disc_collision_area"
+HOP_TIME, COLLISION_AREA = "horizontal_hop_time", "disc_collision_area"
 TIMES = (
-    MethodCurve("time_step", HOP, False, "time steps", VERMILLION, "s"),
-    MethodCurve("scalar", HOP, False, "one by one", ORANGE, "D"),
-    MethodCurve("lockstep", HOP, False, "dynamics", BLUE, "o"),
-    MethodCurve("lockstep", HOP, True, "dynamics", SKY, "o"),
-    MethodCurve("strip", HOP, True, "strips", GREEN, "^"),
+    MethodCurve("time_step", HOP_TIME, False, "time steps", VERMILLION, "s"),
+    MethodCurve("scalar", HOP_TIME, False, "one by one", ORANGE, "D"),
+    MethodCurve("lockstep", HOP_TIME, False, "dynamics", BLUE, "o"),
+    MethodCurve("lockstep", HOP_TIME, True, "dynamics", SKY, "o"),
+    MethodCurve("strip", HOP_TIME, True, "strips", GREEN, "^"),
 )
 SAMPLES = (
-    MethodCurve("shell", AREA, False, "area, shells", VERMILLION, "s"),
-    MethodCurve("surface", AREA, False, "area, surface", GREEN, "^"),
+    MethodCurve("shell", COLLISION_AREA, False, "area, shells", VERMILLION, "s"),
+    MethodCurve("surface", COLLISION_AREA, False, "area, surface", GREEN, "^"),
     MethodCurve("conditioned", "volume", False, "volume, conditioned", PURPLE, "v"),
     MethodCurve("rejection", "volume", False, "volume, rejection", BLUE, "o"),
-    MethodCurve("shell", AREA, True, "area, shells", ORANGE, "D"),
+    MethodCurve("shell", COLLISION_AREA, True, "area, shells", ORANGE, "D"),
     MethodCurve("rejection", "volume", True, "volume, rejection", SKY, "o"),
 )
 
@@ -84,17 +84,18 @@ def draw(box, tables):
         ("mean time between horizontal hops", "volume, area of disc collisions"), strict=True,
     ):  # fmt: skip
         axes.set_label(letter)
-        axes.set(xscale="log", yscale="log", xlim=ERRORS, ylim=SECONDS, xlabel="relative error")
+        axes.set(xscale="log", yscale="log", xlim=ERROR_RANGE, ylim=SECONDS_RANGE)
+        axes.set_xlabel("relative error")
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_major_locator(LogLocator(numticks=16))
             axis.set_minor_locator(NullLocator())
         axes.set_title(f"({letter})  {title}", loc="left")
         for name, seconds in GUIDES.items():
             axes.axhline(seconds, color=GREY, lw=0.4, zorder=0)
-            drawing.label(axes, name, (ERRORS[1], seconds), (3, 0), ha="left", fontsize=6.8)
+            drawing.label(axes, name, (ERROR_RANGE[1], seconds), (3, 0), ha="left", fontsize=6.8)
         for one in series:
             _draw_series(axes, kept, rows, one, radii)
-        _draw_exact(axes, rows, radii[0], "volume" if series is TIMES else AREA)
+        _draw_exact(axes, rows, radii[0], "volume" if series is TIMES else COLLISION_AREA)
         axes.plot([], [], ls="", label="this build", **panels.open_symbol(BLACK, "o", 0.8))
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=2, columnspacing=1.0)
     figure.axes[0].set_ylabel("processor time on one core (s)")
@@ -148,7 +149,7 @@ def _spread(row):
 
 def _law(c, floor):
     """Return (errors, seconds) of a method with c, above the ``floor``."""
-    errors = np.geomspace(*ERRORS, 400)
+    errors = np.geomspace(*ERROR_RANGE, 400)
     if floor:
         above = floor * (1 + np.geomspace(1e-14, 1, 200))
         errors = np.sort(np.append(errors[errors > floor], above))
@@ -167,7 +168,7 @@ def _draw_law(axes, c, floor, one, setting, is_last):
         style = {"rotation": 90, "va": "top", "fontsize": 6.8, "bbox": WHITE}
         offset, style["ha"] = ((2, -3), "left") if is_last else ((-2, -3), "right")
         text = f"${SETTINGS[one.method]}={number}$"
-        drawing.label(axes, text, (floor, SECONDS[1]), offset, **style)
+        drawing.label(axes, text, (floor, SECONDS_RANGE[1]), offset, **style)
 
 
 def _draw_exact(axes, rows, radius, quantity):
@@ -177,11 +178,11 @@ def _draw_exact(axes, rows, radius, quantity):
     seconds = median(row["seconds"] for row in own if row["method"] == "exact")
     axes.axhline(seconds, color=BLACK, lw=1.0, zorder=2)
     text = f"exact: {1e3 * seconds:.2g} ms, error $10^{{-15}}$"
-    drawing.label(axes, text, (ERRORS[1], seconds), (-3, -2), ha="right", va="top", bbox=WHITE)
-    if quantity == AREA:
+    drawing.label(axes, text, (ERROR_RANGE[1], seconds), (-3, -2), ha="right", va="top", bbox=WHITE)
+    if quantity == COLLISION_AREA:
         nodes = [row for row in own if row["method"] == "quadrature"]
         seconds = median(row["seconds"] for row in nodes)
-        shown = [row for row in nodes if row["error"] > ERRORS[1]]
+        shown = [row for row in nodes if row["error"] > ERROR_RANGE[1]]
         error = [row["error"] for row in shown]
         text = f"quadrature, 1 to {len(error)} nodes"
         axes.plot(error, [seconds] * len(error), "P", color=BLACK, ms=SIZES["P"], label=text)

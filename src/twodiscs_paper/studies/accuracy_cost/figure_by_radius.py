@@ -14,7 +14,7 @@ PANELS = {
 }
 
 #: Inches: the height of the figure; the ends of the ordinate, seconds.
-HEIGHT, SECONDS = 4.1, (1e-11, 1e5)
+HEIGHT, PRICE_RANGE = 4.1, (1e-11, 1e5)
 
 
 def draw(box, tables):
@@ -29,7 +29,7 @@ def draw(box, tables):
             own = [r for r in rows if r["quantity"] == quantity and r["method"] in methods]
             x, y = ([row[column] for row in own] for column in ("distance", "c"))
             one.plot(x, y, lw=0.7, **panels.open_symbol(colour, marker, 0.8))
-        one.set(xscale="log", yscale="log", ylim=SECONDS)
+        one.set(xscale="log", yscale="log", ylim=PRICE_RANGE)
         one.label_outer()
         if letter in "ac":
             one.set_ylabel(r"time $\times$ error$^2$ (s)")

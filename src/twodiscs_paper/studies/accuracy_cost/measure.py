@@ -37,9 +37,9 @@ from twodiscs_paper.studies.accuracy_cost import scalar, timestepping
 from twodiscs_paper.study import row
 
 #: The hop of all mean times, and the relative distance of the hard radius from where it is blocked.
-HOP, NEAR = "horizontal_hop", 1e-4
+TIMED_HOP, HARD_DISTANCE = "horizontal_hop", 1e-4
 EASY = Scene(1.5, 1.0, 0.2)
-HARD = EASY.with_radius(EASY.threshold(HOP) * (1 - NEAR))
+HARD = EASY.with_radius(EASY.threshold(TIMED_HOP) * (1 - HARD_DISTANCE))
 
 AREA = "disc_collision_area"
 
@@ -86,13 +86,13 @@ class Method(NamedTuple):
 
 def _by_counts(name, scene, events, replicas, block, **more):
     """Return the ``Method`` whose ``block`` counts ``events`` of a number of ``replicas``."""
-    hop = events.index(HOP)
-    expected = exact.rate(scene, HOP) * find_engine(scene).replica_duration(scene) * replicas
+    hop = events.index(TIMED_HOP)
+    expected = exact.rate(scene, TIMED_HOP) * find_engine(scene).replica_duration(scene) * replicas
 
     def estimate(sums, blocks):
         return sums[hop] / (blocks * expected)
 
-    return Method(name, f"{HOP}_time", scene, block, estimate, **more)
+    return Method(name, f"{TIMED_HOP}_time", scene, block, estimate, **more)
 
 
 def lockstep_method(scene, seed, blocks=1):
@@ -131,15 +131,15 @@ def steps_method(scene, seed, step):
 
 def strip_method(scene, seed, blocks=8):
     """Return the ``Method`` of initial states in a strip next to the hop, ``blocks`` as one."""
-    near = strip.choose_strip(scene, HOP)
-    fractions = strip.stratum_fractions(scene, HOP, near)
-    expected = exact.rate(scene, HOP) * 2 * near.time / near.fraction
+    near = strip.choose_strip(scene, TIMED_HOP)
+    fractions = strip.stratum_fractions(scene, TIMED_HOP, near)
+    expected = exact.rate(scene, TIMED_HOP) * 2 * near.time / near.fraction
 
     def block(i):
-        return strip.run_blocks(scene, HOP, near, seed, i * blocks, (i + 1) * blocks)[0]
+        return strip.run_blocks(scene, TIMED_HOP, near, seed, i * blocks, (i + 1) * blocks)[0]
 
     return Method(
-        "strip", f"{HOP}_time", scene, block,
+        "strip", f"{TIMED_HOP}_time", scene, block,
         lambda sums, n: stratified_mean(fractions, *sums)[0] / expected, setting=near.time,
     )  # fmt: skip
 
@@ -391,7 +391,7 @@ def long_run(seed, blocks):
 def radius_rows():
     """Yield the rows of the part ``radius``: c of each quantity and method, by ``td.cost``."""
     for distance in DISTANCES:
-        scene = EASY.with_radius(EASY.threshold(HOP) * (1 - distance))
+        scene = EASY.with_radius(EASY.threshold(TIMED_HOP) * (1 - distance))
         for price in twodiscs.cost(scene).prices:
             if price.method != "exact":
                 cells = {"distance": distance, "c": price.c, "floor": price.floor}

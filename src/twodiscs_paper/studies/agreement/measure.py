@@ -1,4 +1,4 @@
-"""Statistics over the comparisons of all scenes: correlations, and errors of chains."""
+"""Statistics over the comparisons of all scenes: scores, and errors of chains."""
 
 import math
 import statistics
@@ -11,9 +11,6 @@ from twodiscs.points.estimates import Estimate, density_of_chains_at_zero, sums_
 from twodiscs.theory import exact
 from twodiscs.theory.three import integrals
 from twodiscs_paper.study import row
-
-#: The pairs of events whose scores are correlated.
-PAIRS = (("right_wall", "top_wall"), ("vertical_hop", "disc_collision"))
 
 #: Bins with fewer intervals do not show how errors of chains differ from errors of counts.
 WELL_FILLED = 1000
@@ -30,27 +27,12 @@ def normal_tests(check):
 
 
 def scores(tests):
-    """Yield the rows on the scores of ``tests`` (see ``normal_tests``) of all scenes."""
-    if not tests:
-        return
-    number = len(tests)
-    mean_square = Estimate(
-        statistics.fmean(one["z"] ** 2 for one in tests), math.sqrt(2 / number), number
-    )
-    yield row({}, mean_square, quantity="mean_square", count=number)
-    z = {(one["scene"], one["radius"], one["quantity"]): one["z"] for one in tests}
-    for event, other in PAIRS:
-        pairs = [
-            (value, z[scene, radius, f"{other}_time"])
-            for (scene, radius, quantity), value in z.items()
-            if quantity == f"{event}_time" and (scene, radius, f"{other}_time") in z
-        ]
-        if len(pairs) > 2:
-            found = {
-                "count": len(pairs),
-                "estimate": statistics.correlation(*zip(*pairs, strict=True)),
-            }
-            yield row(found, quantity="correlation", event=event, other=other)
+    """Yield the row on the scores of ``tests`` (see ``normal_tests``) of all scenes."""
+    if tests:
+        number = len(tests)
+        square = statistics.fmean(one["z"] ** 2 for one in tests)
+        found = Estimate(square, math.sqrt(2 / number), number)
+        yield row({}, found, quantity="mean_square", count=number)
 
 
 def error_ratio(bins):
@@ -127,19 +109,13 @@ def rows(tables):
 
     ``tables`` has the rows of <scene>/check, <scene>/hop_histogram and effects.
     """
-    by_name = {"check": {}, "hop_histogram": {}}
-    for path, found in tables.items():
-        scene, _, name = path.rpartition("/")
-        if scene:
-            by_name[name][scene] = found
-    yield from scores(
-        [
-            one | {"scene": scene}
-            for scene, found in by_name["check"].items()
-            for one in normal_tests(found)
-        ]
-    )
-    histograms = by_name["hop_histogram"]
+    checks = [rows for path, rows in tables.items() if path.endswith("/check")]
+    yield from scores([one for rows in checks for one in normal_tests(rows)])
+    histograms = {
+        path.removesuffix("/hop_histogram"): rows
+        for path, rows in tables.items()
+        if path.endswith("/hop_histogram")
+    }
     yield error_ratio([one for found in histograms.values() for one in found])
     for scene, found in histograms.items():
         yield from densities(scene, found)

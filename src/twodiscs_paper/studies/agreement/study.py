@@ -9,21 +9,18 @@ class AgreementTable(Table):
 
     columns = {
         "quantity": TEXT(
-            "mean_square: of the scores z of mean times by dynamics; correlation: Pearson's, of "
-            "the scores z of two mean times over the radii of all scenes; error_ratio: the "
-            "largest error of a bin of hop_histogram.csv over the error of independent counts, 1 "
-            "or more; density_at_zero: of chains in hop_histogram.csv, p(0) of p(0) − at² in the "
-            "first two bins; effects: the largest |z| of mean times with effects; third_virial: "
-            "B₃/B₂² of hard discs, from exact volumes"
+            "mean_square: of the scores z of mean times by dynamics; error_ratio: the largest "
+            "error of a bin of hop_histogram.csv over the error of independent counts, 1 or more; "
+            "density_at_zero: of chains in hop_histogram.csv, p(0) of p(0) − at² in the first two "
+            "bins; effects: the largest |z| of mean times with effects; third_virial: B₃/B₂² of "
+            "hard discs, from exact volumes"
         ),
         "scene": TEXT("the scene; empty for all scenes"),
         "event": TEXT("the event"),
-        "other": TEXT("the event with which it is correlated"),
         "radius": RADIUS,
         "count": COUNT(
-            "scores behind the value; for a correlation, pairs of scores; for error_ratio, bins; "
-            "for effects, tests: mean times that can fail and whose count is not the sum of other "
-            "counts"
+            "scores behind the value; for error_ratio, bins; for effects, tests: mean times that "
+            "can fail and whose count is not the sum of other counts"
         ),
         "estimate": SEE_QUANTITY("the value"),
         "stderr": NUMBER(
@@ -51,7 +48,7 @@ def _reads(configuration):
 
 STUDY = Study(
     "agreement",
-    builds="how deviations from the exact values are correlated",
+    builds="how large deviations from the exact values are",
     tables=(AgreementTable,),
     seconds=2.0,
     order=8,

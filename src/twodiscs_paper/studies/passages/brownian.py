@@ -202,7 +202,7 @@ def crossing_estimates(point, counts):
     if point["program"] in REJECTING:
         step, room = point["step"], 2.0 ** -point["halvings"]
         length = REJECTING[point["program"]] * step
-        farthest = min(brownian_steps.LONGEST * length, 1.0)
+        farthest = min(brownian_steps.LONGEST_MOVE * length, 1.0)
         area = (1 + room - math.sqrt(1 - farthest**2)) ** 2
         tried = length / math.sqrt(2 * math.pi) * area / side_volume(room)
         tried *= MOVES.get(point["program"], 1)

@@ -17,6 +17,7 @@ from twodiscs_paper.studies.passages.figure import (
     residuals,
     scale,
 )
+from twodiscs_paper.studies.passages.powers import law_scale
 from twodiscs_paper.study import select
 
 #: The distances that are named above the panel of smooth discs, in halvings, and the end of its
@@ -93,21 +94,13 @@ def _smooth(axes, rows, kept, ours):
 def _units(rows):
     """Return (δ^(1/6), (1 − κ) in units of ∛(σ²ε)/A, its error) of ``rows``, as arrays."""
     distance, value, error = columns(rows, "distance", "estimate", "stderr")
-    unit = np.array([cube_root(row) for row in rows])
-    return distance ** (1 / 6), (1 - value) / unit, error / unit
+    scale = np.array(list(map(law_scale, rows)))
+    return distance ** (1 / 6), (1 - value) * scale, error * scale
 
 
 def place(box, hop):
     """Return the sides of a ``Box`` and the radius where a ``hop`` becomes blocked, in mathtext."""
     return f"${panels.sides(box)}$, ${QUARTERS[EVENT_AXES[hop]]}$"
-
-
-def cube_root(row):
-    """Return ∛(σ²ε)/A of a ``row``: the range A along its hop, the room ε left in the neck."""
-    scene, hop = Box(row["width"], row["height"]).scene(row["radius"]), row["event"]
-    return (scene.contact_distance**2 * scene.clearance(hop)) ** (1 / 3) / scene.reach(
-        EVENT_AXES[hop]
-    )
 
 
 def _rough(axes, ours, kept, where):

@@ -42,10 +42,10 @@ MOST_HOPS, FEWEST_HOPS = 2**17, 2**11
 #: neck of the relative length √distance, smooth discs fly and rough discs diffuse.
 MET = {False: (2, 0.5), True: (24, 1.0)}
 
-#: On a ring, correlations of hops are summed up for ``AROUND`` times the time that a disc takes
+#: On a ring, correlations of hops are summed up for ``ROUNDS`` times the time that a disc takes
 #: around it. Displacements take twice that time, or two mean times between hops if these are
-#: longer, in ``FEWEST`` replicas or more.
-AROUND, FEWEST = 16, 2**11
+#: longer.
+ROUNDS = 16
 
 #: The fewest blocks behind the error of a rate of hops of rough discs: in a neck their hops come in
 #: crowds. Counted over seeds, 466 blocks have the errors that they say; of 128 blocks the spread is
@@ -78,11 +78,16 @@ def radius_at(limit, halvings):
     return limit * (1 - 2.0**-halvings)
 
 
+def affordable_blocks(events, price, fewest=FEWEST_HOPS):
+    """Return how many blocks of hops, or of replicas, take about ``events`` at a ``price`` each."""
+    return int(min(max(events / price, fewest), MOST_HOPS)) // HOPS_PER_BLOCK
+
+
 def blocks_for(scene, distance, time, events):
     """Return how many blocks of hops take about ``events``, if hops are followed for ``time``."""
     factor, power = MET[scene.moment_of_inertia is not None]
     price = time * exact.event_rate(scene) + factor / distance**power
-    return int(min(max(events / price, FEWEST_HOPS), MOST_HOPS)) // HOPS_PER_BLOCK
+    return affordable_blocks(events, price)
 
 
 def scene_at(box, hop, halvings, **effects):
@@ -244,14 +249,14 @@ class NearThreshold:
 
     def diffusion(self, events):
         """Yield the rows of the rate of hops and of D/(ν ℓ²), on a ring."""
-        around = AROUND * box_time(self.scene, self.hop)
+        around = ROUNDS * box_time(self.scene, self.hop)
         rate = exact.event_rate(self.scene)
         blocks = blocks_for(self.scene, 2.0**-self.halvings, around, events)
         sums, simulated = hop_sums(self.scene, self.hop, [around], blocks, self._seed("times"))
         (correlated,) = coefficients_at_times(sums)
         yield self.row("diffusion", "hops", correlated, around, events=simulated)
         time = max(around, self.mean)
-        blocks = int(min(max(events / (rate * 2 * time), FEWEST), MOST_HOPS)) // HOPS_PER_BLOCK
+        blocks = affordable_blocks(events, rate * 2 * time)
         sums, simulated = hop_sums(
             self.scene, self.hop, [time, 2 * time], blocks, self._seed("states"), on_surface=False
         )

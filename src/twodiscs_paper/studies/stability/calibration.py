@@ -35,7 +35,7 @@ from twodiscs_paper.studies.tails import measure as tails
 from twodiscs_paper.studies.thresholds import measure as thresholds
 from twodiscs_paper.study import select
 
-BOX, HOP = Box(1.5, 1.0), "horizontal_hop"
+BOX, CALIBRATED_HOP = Box(1.5, 1.0), "horizontal_hop"
 PAPER = BOX.parameters()
 ROUGH = {"moment_of_inertia": 0.5}
 
@@ -175,8 +175,8 @@ def intervals(scene, **settings):
 
 def transmitted(scene, **settings):
     """Yield the values of ``transmission``, of the horizontal hop if it has them."""
-    along = scene.is_possible(HOP) or (scene.periodic and scene.discs > 2)
-    hop = HOP if along else "vertical_hop"
+    along = scene.is_possible(CALIBRATED_HOP) or (scene.periodic and scene.discs > 2)
+    hop = CALIBRATED_HOP if along else "vertical_hop"
     result = td.transmission(scene, hop, **settings)
     if result.coefficient:
         one = result.coefficient
@@ -261,8 +261,8 @@ CROSSINGS = {
 PASSAGES = {(program, 2): (2, 4) for program in ("reflected", "together", "confined", "singly")}
 
 #: {radius where events die out: relative distances below it}.
-NEAR = {0.25: (0.16, 0.08, 0.04, 0.02, 0.01), 0.375: (0.16, 0.08, 0.04, 0.02, 0.01)}
-NEAR[BOX.largest_radius] = (0.02, 0.01, 0.005)
+LAW_DISTANCES = {0.25: (0.16, 0.08, 0.04, 0.02, 0.01), 0.375: (0.16, 0.08, 0.04, 0.02, 0.01)}
+LAW_DISTANCES[BOX.largest_radius] = (0.02, 0.01, 0.005)
 
 
 def table_values(make, seed):
@@ -281,16 +281,16 @@ def table_values(make, seed):
 
 def interval_rows(seed):
     """Yield rows of distributions.csv: intervals with a cubic tail, and without one."""
-    for hop, radius in (("vertical_hop", 0.1), (HOP, 0.24), ("vertical_hop", 0.3)):
+    for hop, radius in (("vertical_hop", 0.1), (CALIBRATED_HOP, 0.24), ("vertical_hop", 0.3)):
         start = {"event": hop, "radius": radius}
         yield from distributions.measured(start, BOX.scene(radius), hop, seed, 2**20)
 
 
 def threshold_rows(seed):
     """Return the rows of thresholds.csv, without a form that has the same errors."""
-    radii = [radius * (1 - distance) for radius, some in NEAR.items() for distance in some]
+    radii = [limit * (1 - distance) for limit, some in LAW_DISTANCES.items() for distance in some]
     found = [td.simulate(BOX.scene(radius), error=1e-2, budget=1, seed=seed) for radius in radii]
-    scene = {"name": "paper", "box": PAPER, "event": HOP, "radii": []}
+    scene = {"name": "paper", "box": PAPER, "event": CALIBRATED_HOP, "radii": []}
     tables = {
         "paper/mean_times": [row for times in found for row in times.rows],
         "distributions": [{"last": None} | r for r in distributions.rows([scene], seed, 2**18)],
@@ -300,7 +300,7 @@ def threshold_rows(seed):
 
 def passage_rows(seed):
     """Return rows of passages.csv of smooth discs: κ, its exponents, and c."""
-    rows = [*near_threshold.one_hop("", BOX, HOP, range(3, 9), None, 2**16, seed)]
+    rows = [*near_threshold.one_hop("", BOX, CALIBRATED_HOP, range(3, 9), None, 2**16, seed)]
     rows = [dict.fromkeys(powers.HOP_COLUMNS) | row for row in rows]
     c = limit.amplitude(64, seed)
     amplitude = {"quantity": "amplitude", "estimate": c.value, "stderr": c.stderr}
@@ -309,7 +309,7 @@ def passage_rows(seed):
 
 def passage_rows_of_effects(seed):
     """Yield rows of passages.csv of rough discs, of discs with friction, and on a ring."""
-    yield from near_threshold.one_hop("", BOX, HOP, range(3, 7), 0.5, 2**16, seed)
+    yield from near_threshold.one_hop("", BOX, CALIBRATED_HOP, range(3, 7), 0.5, 2**16, seed)
     yield from with_friction.one_friction("", BOX, 40.0, (6, 8, 10), 2**16, seed)
     for inertia in (None, 0.5):
         yield from on_ring.one_ring("", BOX, inertia, 2**24, seed)

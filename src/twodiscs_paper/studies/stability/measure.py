@@ -77,7 +77,7 @@ ROUNDINGS = 2.0**5
 
 #: Size of the separation whose growth is measured: its square is a rounding. Events before its
 #: growth is measured, and events of a pilot measurement, which sets the length of the paths.
-SEPARATION, FORGOTTEN, PILOT = 1e-8, 100, 200
+SEPARATION, FORGOTTEN, PILOT_EVENTS = 1e-8, 100, 200
 
 
 def judged(start, quantity, value, low=None, high=None, z=None, **cells):
@@ -388,13 +388,10 @@ def audit(starts, windows, window, law, shortest):
                 put_state(rows, i, state, law)
                 x, y, z, w, p, q, r, s = state
                 square = (x - z) * (x - z) + (y - w) * (y - w)
-                nearest[i] = square if square < nearest[i] else nearest[i]
-                error = abs(p * p + q * q + r * r + s * s - 1.0)
-                energy[i] = error if error > energy[i] else energy[i]
-                far = abs(x) if abs(x) > abs(z) else abs(z)
-                far_x[i] = far if far > far_x[i] else far_x[i]
-                far = abs(y) if abs(y) > abs(w) else abs(w)
-                far_y[i] = far if far > far_y[i] else far_y[i]
+                nearest[i] = min(nearest[i], square)
+                energy[i] = max(energy[i], abs(p * p + q * q + r * r + s * s - 1.0))
+                far_x[i] = max(far_x[i], abs(x), abs(z))
+                far_y[i] = max(far_y[i], abs(y), abs(w))
         for i in range(lanes):
             total = elapsed[i]
             for component in state_at(rows, i, law):
@@ -620,7 +617,7 @@ def reversal_rows(box, seed):
             return sample_mean(np.log(factors[np.isfinite(factors)]) / measured)
 
         there, back = (radius_cells("reversal", case, radius) for case in ("separation", "return"))
-        expected = exponent(FORGOTTEN, PILOT).value
+        expected = exponent(FORGOTTEN, PILOT_EVENTS).value
         # The longest path to reverse; if a smaller exponent allows more, the row has no value.
         if expected < digits / 2000:
             yield judged(back, "events_retraced", None, status="long")

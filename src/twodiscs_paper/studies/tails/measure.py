@@ -309,18 +309,17 @@ def long_run(weighted, counted):
 
     Each run has its own random streams. The rates between two times follow from the probabilities.
     """
-    box = Box(weighted["width"], weighted["height"])
-    scene, event = box.scene(weighted["radius"]), weighted["event"]
-    start = event_cells(scene, event)
-    times = [time * start["exact_mean"] for time in weighted["times"]]
+
+    def given(run):
+        scene = Box(run["width"], run["height"]).scene(run["radius"])
+        start = event_cells(scene, run["event"])
+        return scene, run["event"], [time * start["exact_mean"] for time in run["times"]], start
+
+    scene, event, times, start = given(weighted)
     estimates = tail(scene, event, times, weighted["samples"], weighted["seed"])
     constant = tail_constant(scene, event)
     falling = survival_rows("weighted", start, times, estimates, constant)
-
-    box = Box(counted["width"], counted["height"])
-    scene, event = box.scene(counted["radius"]), counted["event"]
-    start = event_cells(scene, event)
-    times = [time * start["exact_mean"] for time in counted["times"]]
+    scene, event, times, start = given(counted)
     seeds = range(counted["seed"], counted["seed"] + counted["runs"])
     of_runs = [counted_survival(scene, event, times, counted["replicas"], s) for s in seeds]
     alone = survival_rows("counted", start, times, map(joined, zip(*of_runs, strict=True)), None)
@@ -414,15 +413,10 @@ def constant_hazard(rows):
 
     ``rows`` are rows of survival at ascending times. The variances are those of ``rate_between``.
     """
-    hazards, weights = [], []
-    for first, later in pairwise(rows):
-        time = later["time"] - first["time"]
-        late, early = ((one["stderr"] / one["estimate"]) ** 2 for one in (later, first))
-        hazards.append(math.log(first["estimate"] / later["estimate"]) / time)
-        weights.append(time**2 / (late - early))
-    mean = sum(w * h for w, h in zip(weights, hazards, strict=True)) / sum(weights)
-    chi2 = sum(w * (h - mean) ** 2 for w, h in zip(weights, hazards, strict=True))
-    return chi2, len(hazards) - 1
+    rates = [rate_between(*pair) for pair in pairwise(rows)]
+    hazards, errors = np.array([(one["estimate"], one["stderr"]) for one in rates]).T
+    mean = np.average(hazards, weights=errors**-2)
+    return float(np.sum(((hazards - mean) / errors) ** 2)), len(rates) - 1
 
 
 def constancy(rows):

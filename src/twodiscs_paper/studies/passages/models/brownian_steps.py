@@ -40,8 +40,8 @@ CROSSINGS = 2**6
 #: Clusters of more crossings than this are counted as the largest ones.
 LARGEST_CLUSTER = 2**14
 
-#: Rejected steps that cross have lengths up to ``LONGEST`` standard deviations: all but 2e-8.
-LONGEST = 6.0
+#: Rejected steps that cross have lengths up to ``LONGEST_MOVE`` standard deviations: all but 2e-8.
+LONGEST_MOVE = 6.0
 
 
 @inlined
@@ -203,7 +203,7 @@ def draw_crossing(state, other, kind, step, half, breadth, stream):
     """
     room, tried = breadth - 1.0, 0
     length = step if kind == SINGLY else math.sqrt(2.0) * step
-    farthest = min(LONGEST * length, 1.0)
+    farthest = min(LONGEST_MOVE * length, 1.0)
     if kind > KICKED:
         room = breadth - math.sqrt(1.0 - farthest * farthest)
     while True:

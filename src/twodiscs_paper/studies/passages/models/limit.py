@@ -29,10 +29,10 @@ from twodiscs_paper.studies.estimates import sample_mean
 #: The separation below which invariants are kept; for half as much c is the same within 5e-3.
 ADIABATIC = 0.3
 
-#: Separations U of the turn are drawn uniformly up to ``NEAR``, and with this probability from a
-#: density ∝ 1/U up to ``FARTHEST`` times that. A pair passes with a probability ∝ U⁻² there, so all
-#: that turn later would add less than 1e-4 to c.
-NEAR, FAR_SHARE, FARTHEST = 1.5, 0.4, 2.0**10
+#: Separations U of the turn are drawn uniformly up to ``UNIFORM_TURNS``, and with this probability
+#: from a density ∝ 1/U up to ``FARTHEST_TURN`` times that. A pair passes with a probability ∝ U⁻²
+#: there, so all that turn later would add less than 1e-4 to c.
+UNIFORM_TURNS, FAR_SHARE, FARTHEST_TURN = 1.5, 0.4, 2.0**10
 
 #: A pair on its way back is given up once an invariant is ``HOPELESS`` times the largest that
 #: passes, where one traversal of the room changes the room by less than the share ``SLOW``.
@@ -102,11 +102,11 @@ def returns(seed, first, stop, near):
             apart = math.sqrt(2 - total * total)
             r = uniform(stream)
             if r < FAR_SHARE:
-                turn = NEAR * FARTHEST ** (r / FAR_SHARE)
-                weight = turn * math.log(FARTHEST) / FAR_SHARE
+                turn = UNIFORM_TURNS * FARTHEST_TURN ** (r / FAR_SHARE)
+                weight = turn * math.log(FARTHEST_TURN) / FAR_SHARE
             else:
-                turn = NEAR * (r - FAR_SHARE) / (1 - FAR_SHARE)
-                weight = NEAR / (1 - FAR_SHARE)
+                turn = UNIFORM_TURNS * (r - FAR_SHARE) / (1 - FAR_SHARE)
+                weight = UNIFORM_TURNS / (1 - FAR_SHARE)
             if turn <= near:
                 passes = total > math.sqrt(2.0) * across
             else:

@@ -9,13 +9,13 @@ import math
 import numpy as np
 
 from twodiscs.dynamics.transmission import quiet_time
-from twodiscs.dynamics.two.hop_clusters import HOPS_PER_BLOCK, cluster_sizes
+from twodiscs.dynamics.two.hop_clusters import cluster_sizes
 from twodiscs.model.events import EVENT_AXES
 from twodiscs.model.scene import Box
 from twodiscs.points.estimates import Estimate
 from twodiscs.theory import exact
 from twodiscs_paper.studies.passages.models import plane
-from twodiscs_paper.studies.passages.near import MOST_HOPS, NearThreshold, scene_at
+from twodiscs_paper.studies.passages.near import NearThreshold, affordable_blocks, scene_at
 from twodiscs_paper.study import row
 
 #: {rate of kicks: halvings of the distance}.
@@ -49,8 +49,8 @@ def one_friction(name, box, friction, halvings, events, seed):
         near = NearThreshold(name, scene, "horizontal_hop", n, seed)
         gap = cluster_pause(scene, near.hop)
         price = 2 * gap * (exact.event_rate(scene) + KICK * friction)
-        hops = min(max(WORK * events / price, FEWEST_KICKED), MOST_HOPS)
-        found = cluster_sizes(scene, near.hop, gap, int(hops) // HOPS_PER_BLOCK, near.cluster_seed)
+        blocks = affordable_blocks(WORK * events, price, FEWEST_KICKED)
+        found = cluster_sizes(scene, near.hop, gap, blocks, near.cluster_seed)
         kappa, rows = near.cluster_rows(*found, gap)
         yield from rows
         if n == halvings[0]:
