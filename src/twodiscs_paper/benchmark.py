@@ -63,7 +63,7 @@ def scalar_engine(blocks=BLOCKS // 8):
     """Do the same as ``lockstep``, one trajectory after the other."""
     duration = find_engine(SCENE).replica_duration(SCENE)
     draw = conditioned_sampler(SCENE)
-    arguments = (REPLICAS, duration, SCENE.contact_distance, draw, (0, 0))
+    arguments = (REPLICAS, duration, SCENE.contact_distance, draw)
     counted, seconds = timed(lambda: scalar.count_blocks(np.uint64(1), 0, blocks, *arguments))
     return scalar.simulated_events(counted[0]), seconds
 

@@ -21,6 +21,7 @@ from twodiscs.model.scene import Scene
 from twodiscs.sampling.conditioned import conditioned_sampler
 from twodiscs.sampling.initial_states import draw_starts
 from twodiscs.sampling.streams import open_stream
+from twodiscs_paper import benchmark
 from twodiscs_paper.studies.accuracy_cost import figure, figure_by_radius, scalar, timestepping
 from twodiscs_paper.studies.accuracy_cost import measure as costs
 from twodiscs_paper.studies.accuracy_cost.study import AccuracyCostTable
@@ -129,6 +130,10 @@ def test_the_scalar_engine_counts_the_same(radius):
     at = [EVENTS.index(event) for event in scalar.COUNTED]
     np.testing.assert_array_equal(usual[0], sums[at])
     np.testing.assert_array_equal(usual[1], products[np.ix_(at, at)])
+
+
+def test_the_benchmark_gives_both_engines_the_same_work():
+    assert benchmark.scalar_engine(1)[0] == benchmark.lockstep(1)[0] > 2e5
 
 
 # Errors over time ---------------------------------------------------------------------------------

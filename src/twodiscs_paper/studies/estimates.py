@@ -1,4 +1,4 @@
-"""Estimates of the studies: means of independent values, straight lines, the law of χ²."""
+"""Estimates of the studies: columns of tables, means, straight lines, the law of χ²."""
 
 import math
 
@@ -7,6 +7,11 @@ import scipy  # which imports ``special`` when it is used
 
 from twodiscs.model.checks import InputError
 from twodiscs.points.estimates import Estimate
+
+
+def columns(rows, *names):
+    """Return the columns of ``rows`` with these ``names``, as arrays; empty cells are NaN."""
+    return np.array([[row[name] for row in rows] for name in names], float)
 
 
 def sample_mean(values):

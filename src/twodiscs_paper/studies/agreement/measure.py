@@ -10,7 +10,7 @@ from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import Estimate, density_of_chains_at_zero, sums_of_others
 from twodiscs.theory import exact
 from twodiscs.theory.three import integrals
-from twodiscs_paper.study import row
+from twodiscs_paper.study import row, select
 
 #: Bins with fewer intervals do not show how errors of chains differ from errors of counts.
 WELL_FILLED = 1000
@@ -19,11 +19,8 @@ WELL_FILLED = 1000
 def normal_tests(check):
     """Return the independent tests of mean times by dynamics with a normal distribution."""
     wanted = {"comparison": "mean_time", "method": "dynamics", "test": "normal"}
-    return [
-        row
-        for row in check
-        if row["passed"] is not None and row["independent"] and wanted.items() <= row.items()
-    ]
+    found = select(check, independent=True, **wanted)
+    return [one for one in found if one["passed"] is not None]
 
 
 def scores(tests):

@@ -7,6 +7,8 @@ from twodiscs.figures.style import BLACK, GREY, SERIES, SIZES, event_name
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Box
 from twodiscs.theory import laws
+from twodiscs_paper.studies.estimates import columns
+from twodiscs_paper.study import select
 
 #: The longest time shown, in mean times, and the largest relative error of a rate.
 LONGEST_INTERVAL, LARGEST_ERROR = 12, 0.15
@@ -49,17 +51,14 @@ def _rates(axes, rows):
     radii = [radius for radius in radii if radius < 0.83 * limit]
     kinds = set()
     for radius, (colour, marker) in zip(radii, SERIES, strict=False):
-        own = [row for row in rows if (row["event"], row["radius"]) == (event, radius)]
+        own = select(rows, event=event, radius=radius)
         mean = own[0]["exact_mean"]
-        points = [
-            (row["first"] / mean, row["last"] / mean, row["estimate"] * mean, row["stderr"] * mean)
-            for row in own
-            if row["quantity"] == "hazard" and row["stderr"] < LARGEST_ERROR * row["estimate"]
-        ]
-        if not points:
+        hazards = select(own, quantity="hazard")
+        hazards = [one for one in hazards if one["stderr"] < LARGEST_ERROR * one["estimate"]]
+        if not hazards:
             continue
-        first, last, value, error = np.array(points).T
-        middle = (first + last) / 2
+        first, last, value, error = columns(hazards, "first", "last", "estimate", "stderr")
+        middle, value, error = (first + last) / 2 / mean, value * mean, error * mean
         style = panels.open_symbol(colour, marker, 0.8) | {"lw": 0.4, "elinewidth": 0.6}
         name = f"$r={panels.mathtext(radius)}$"
         axes.errorbar(middle, value, error, ls="-", label=name, **style)
@@ -86,17 +85,11 @@ def _rates(axes, rows):
 def _passages(axes, rows):
     """Draw mean first passages, measured and from the intervals, over the mean interval."""
     for (colour, marker), hop in zip(SERIES, HOPS, strict=False):
-        own = [
-            row
-            for row in rows
-            if (row["quantity"], row["event"]) == ("first_passage", hop) and row["last"] is None
-        ]
+        own = select(rows, quantity="first_passage", event=hop, last=None)
         if not own:
             continue
         names = "radius", "exact_mean", "estimate", "stderr", "reference", "reference_stderr"
-        own.sort(key=lambda row: row["radius"])
-        columns = [[row[name] for row in own] for name in names]
-        radius, mean, value, error, other, spread = np.array(columns)
+        radius, mean, value, error, other, spread = columns(own, *names)
         style = panels.open_symbol(colour, marker)
         axes.errorbar(
             radius, value / mean, error / mean, ls="", label=event_name(hop), zorder=3, **style

@@ -7,6 +7,7 @@ from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import BLACK, BLUE, GREEN, PURPLE, SIZES, SKY, VERMILLION, event_name
 from twodiscs.model.scene import Box
 from twodiscs.theory import exact, laws
+from twodiscs_paper.studies.estimates import columns
 from twodiscs_paper.studies.passages.near import ONE_INERTIA, thresholds
 from twodiscs_paper.study import select
 
@@ -75,11 +76,6 @@ def first_scene(rows, box):
     first = next((row["scene"] for row in rows if row["scene"]), None)
     own = [row for row in rows if first and row["scene"] == first]
     return (Box(own[0]["width"], own[0]["height"]) if own else box), own
-
-
-def columns(rows, *names):
-    """Return the columns with these ``names``, as arrays."""
-    return np.array([[row[name] for row in rows] for name in names], float)
 
 
 def points(axes, x, y, error, look, label=None, filled=False):

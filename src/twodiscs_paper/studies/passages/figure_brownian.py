@@ -6,8 +6,9 @@ import numpy as np
 
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILLION
+from twodiscs_paper.studies.estimates import columns
 from twodiscs_paper.studies.passages.brownian import REJECTING
-from twodiscs_paper.studies.passages.figure import columns, points
+from twodiscs_paper.studies.passages.figure import points
 from twodiscs_paper.study import select
 
 #: {program: (colour, its name)}.
@@ -41,19 +42,12 @@ def draw(box, tables):
     figure, (upper, lower) = panels.stacked(kappa=2.7, exponent=2.0)
     for program, (colour, _) in PROGRAM_LOOKS.items():
         for step, marker in MARKERS.items():
-            for method in ("crossings", "passages"):
-                own = select(rows, program=program, step=step, method=method)
-                filled = method == "passages"
-                kappas = select(own, quantity="coefficient")
-                if kappas:
-                    points(upper, *columns(kappas, *POINT_COLUMNS), (colour, marker), filled=filled)
-                powers = select(own, quantity="local_exponent")
-                if powers:
-                    points(lower, *columns(powers, *POINT_COLUMNS), (colour, marker), filled=filled)
-            laws = select(rows, program=program, step=step, method="crossings")
-            laws = [row for row in laws if program in REJECTING and row["neck"] >= LONGEST_STEP]
             for panel, quantity in ((upper, "coefficient"), (lower, "local_exponent")):
-                law = select(laws, quantity=quantity)
+                own = select(rows, program=program, step=step, quantity=quantity)
+                crossings, passages = (select(own, method=m) for m in ("crossings", "passages"))
+                points(panel, *columns(crossings, *POINT_COLUMNS), (colour, marker))
+                points(panel, *columns(passages, *POINT_COLUMNS), (colour, marker), filled=True)
+                law = [r for r in crossings if program in REJECTING and r["neck"] >= LONGEST_STEP]
                 panel.plot(*columns(law, "neck", "diffusive"), color=colour, lw=0.8, zorder=4)
     dashed = {"color": BLACK, "lw": 0.8, "ls": (0, (4, 2)), "zorder": 5}
     upper.plot(NECKS, np.ones(2), **dashed)
@@ -82,8 +76,7 @@ def draw(box, tables):
     lower.set_xlabel(r"neck over step $\sqrt{\varepsilon\sigma}/s$")
     lower.set_ylabel(r"exponent of the time of passage")
     lower.xaxis.set_major_formatter("{x:g}")
-    handles, names = upper.get_legend_handles_labels()
-    figure.legend(handles, names, loc="outside upper center", ncols=2)
+    figure.legend(loc="outside upper center", ncols=2)
     return figure
 
 

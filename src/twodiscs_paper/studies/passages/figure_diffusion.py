@@ -2,9 +2,9 @@
 
 from twodiscs.figures import panels
 from twodiscs.figures.style import BLACK, BLUE, GREEN, PURPLE, SKY
+from twodiscs_paper.studies.estimates import columns
 from twodiscs_paper.studies.passages.figure import (
     INERTIA_LOOKS,
-    columns,
     first_scene,
     is_empty,
     points,

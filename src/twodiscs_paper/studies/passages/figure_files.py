@@ -7,7 +7,8 @@ import numpy as np
 from twodiscs.figures import panels
 from twodiscs.figures.style import BLACK, BLUE, PURPLE, VERMILLION
 from twodiscs.model.scene import Scene
-from twodiscs_paper.studies.passages.figure import columns, points
+from twodiscs_paper.studies.estimates import columns
+from twodiscs_paper.studies.passages.figure import points
 from twodiscs_paper.studies.passages.figure_diffusion import KICKED_FILE, SMOOTH_FILE
 from twodiscs_paper.studies.passages.models import file
 from twodiscs_paper.study import select

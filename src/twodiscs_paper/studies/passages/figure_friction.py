@@ -4,7 +4,8 @@ import numpy as np
 
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import BLACK, GREY, SERIES
-from twodiscs_paper.studies.passages.figure import at_places, columns, first_scene, is_empty, points
+from twodiscs_paper.studies.estimates import columns
+from twodiscs_paper.studies.passages.figure import at_places, first_scene, is_empty, points
 from twodiscs_paper.studies.passages.parts.with_friction import (
     KICKED,
     row_scene,

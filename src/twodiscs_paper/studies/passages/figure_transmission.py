@@ -7,10 +7,10 @@ from twodiscs.figures.curves import QUARTERS
 from twodiscs.figures.style import BLACK, BLUE, GREY, SKY, VERMILLION
 from twodiscs.model.events import EVENT_AXES
 from twodiscs.model.scene import Box
+from twodiscs_paper.studies.estimates import columns
 from twodiscs_paper.studies.passages.figure import (
     INERTIA_LOOKS,
     at_places,
-    columns,
     is_empty,
     measured,
     points,

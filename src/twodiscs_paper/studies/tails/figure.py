@@ -4,6 +4,8 @@ import numpy as np
 
 from twodiscs.figures import panels
 from twodiscs.figures.style import BLACK, BLUE, GREEN, VERMILLION, event_name
+from twodiscs_paper.studies.estimates import columns
+from twodiscs_paper.study import select
 
 #: Colour and marker of the cases, in the order of the table.
 CASE_LOOKS = ((BLUE, "o"), (VERMILLION, "s"), (GREEN, "^"))
@@ -16,12 +18,12 @@ def draw(box, tables):
     """Draw the rows of tails.csv, in the ``Box`` of the first scene; they have their own radii."""
     rows = tables["tails"]
     figure, (tails, ratio, exponential) = panels.stacked(tails=1.9, ratio=1.4, exponential=1.7)
-    cases = list(dict.fromkeys((row["event"], row["radius"]) for row in rows))
-    for case, look in zip(cases, CASE_LOOKS, strict=False):
-        own = [row for row in rows if (row["event"], row["radius"]) == case]
-        if any(row["quantity"] == "rate" for row in own):
+    cases = dict.fromkeys((row["event"], row["radius"]) for row in rows)
+    for (event, radius), look in zip(cases, CASE_LOOKS, strict=False):
+        own = select(rows, event=event, radius=radius)
+        if select(own, quantity="rate"):
             _decay(exponential, own, *look)
-        elif any(row["method"] == "weighted" for row in own):
+        elif select(own, method="weighted"):
             _tail(tails, ratio, own, *look)
     times = np.geomspace(0.9, 20)
     tails.plot(times, np.exp(-times), color=BLACK, ls=(0, (4, 2)), label=r"$e^{-t/\tau}$")
@@ -48,15 +50,15 @@ def _name(row):
 def _values(rows):
     """Return the rows with a small enough error, and arrays of their t/τ, estimate and error."""
     kept = [r for r in rows if r["stderr"] and r["stderr"] < LARGEST_ERROR * r["estimate"]]
-    values = [(r["time"] / r["exact_mean"], r["estimate"], r["stderr"]) for r in kept]
-    return kept, *np.array(values).T
+    time, mean, estimate, error = columns(kept, "time", "exact_mean", "estimate", "stderr")
+    return kept, time / mean, estimate, error
 
 
 def _tail(tails, ratio, rows, colour, marker):
     """Draw weighted estimates (open) and plain counts (full), and the law at long times."""
     for method in ("weighted", "counted"):
-        kept, times, values, errors = _values([r for r in rows if r["method"] == method])
-        laws = np.array([row["law"] for row in kept])
+        kept, times, values, errors = _values(select(rows, method=method))
+        (laws,) = columns(kept, "law")
         style = panels.open_symbol(colour, marker)
         if method == "counted":
             style = panels.open_symbol(colour, marker, 0.45) | {"markerfacecolor": colour}
@@ -70,8 +72,8 @@ def _tail(tails, ratio, rows, colour, marker):
 
 def _decay(axes, rows, colour, marker):
     """Draw plain counts, the exponential with the mean τ and the fitted exponential."""
-    fit = next(row for row in rows if row["quantity"] == "rate")
-    _, times, values, errors = _values([row for row in rows if row["quantity"] == "survival"])
+    fit = select(rows, quantity="rate")[0]
+    _, times, values, errors = _values(select(rows, quantity="survival"))
     style = panels.open_symbol(colour, marker)
     axes.errorbar(times, values, errors, ls="", label=_name(fit), zorder=3, **style)
     mean = fit["exact_mean"]

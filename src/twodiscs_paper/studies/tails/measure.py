@@ -46,7 +46,7 @@ from twodiscs.sampling.streams import next_bits, open_stream, uniform
 from twodiscs.theory import exact
 from twodiscs_paper.studies.estimates import LinearFit, chi2_p, sample_mean
 from twodiscs_paper.studies.single import advance_to, tail_constant
-from twodiscs_paper.study import row
+from twodiscs_paper.study import row, select
 
 #: Independent blocks behind an error bar, which then has a relative error of about 7 %.
 BLOCKS = 100
@@ -421,14 +421,13 @@ def constant_hazard(rows):
 
 def constancy(rows):
     """Yield the rows that test whether a rate of decay is constant over the times of its fit."""
-    for rate in [one for one in rows if one["quantity"] == "rate"]:
+    for rate in select(rows, quantity="rate"):
+        case = {name: rate[name] for name in ("event", "radius")}
+        first, last = rate["time"] * (1 - 1e-9), rate["until"] * (1 + 1e-9)
         within = [
             one
-            for one in rows
-            if (one["event"], one["radius"]) == (rate["event"], rate["radius"])
-            and (one["quantity"], one["method"]) == ("survival", "counted")
-            and rate["time"] * (1 - 1e-9) <= one["time"] <= rate["until"] * (1 + 1e-9)
-            and one["estimate"]
+            for one in select(rows, quantity="survival", method="counted", **case)
+            if first <= one["time"] <= last and one["estimate"]
         ]
         if len(within) < 3:
             continue

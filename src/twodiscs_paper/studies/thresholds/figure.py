@@ -6,7 +6,9 @@ from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import BLACK, GREY, LOOKS, event_name
 from twodiscs.model.events import HOPS, SHELL_EVENTS
 from twodiscs.theory.exact import mean_times
+from twodiscs_paper.studies.estimates import columns
 from twodiscs_paper.studies.thresholds.measure import leading_law, near, passages, start
+from twodiscs_paper.study import select
 
 #: The least distance below the limit, relative to it, and points on a curve.
 NEAREST, POINTS = 2e-5, 80
@@ -19,8 +21,7 @@ def draw(box, tables):
         law = leading_law(box, event) if event in SHELL_EVENTS else None
         if law is None:
             continue
-        rows = [row for row in _mean_times(tables) if row["event"] == event]
-        rows = near(box, law, rows)
+        rows = near(box, law, select(_mean_times(tables), event=event))
         end = 1 - start(box, law) / law.limit
         distances = np.geomspace(NEAREST, 0.999 * end, POINTS)
         radii = law.limit * (1 - distances)
@@ -68,8 +69,7 @@ def _mean_times(tables):
 def _points(axes, law, rows, name, style, unit=np.ones_like):
     """Draw measured times over ``unit`` of the radius; times from a strip have full symbols."""
     for group, look in panels.split_by_start(rows, style):
-        columns = [[row[c] for row in group] for c in ("radius", "estimate", "stderr")]
-        radius, value, error = np.array(columns, float)
+        radius, value, error = columns(group, "radius", "estimate", "stderr")
         scale = unit(radius)
         axes.errorbar(
             1 - radius / law.limit, value / scale, error / scale, ls="", elinewidth=0.6,

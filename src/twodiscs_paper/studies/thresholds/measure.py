@@ -19,8 +19,8 @@ from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Box
 from twodiscs.points.estimates import Estimate
 from twodiscs.theory.laws import threshold_time
-from twodiscs_paper.studies.estimates import LinearFit, chi2_p
-from twodiscs_paper.study import row
+from twodiscs_paper.studies.estimates import LinearFit, chi2_p, columns
+from twodiscs_paper.study import row, select
 
 #: Fits take radii within this relative distance of the limit, without another limit in between.
 WIDTH = 0.2
@@ -62,7 +62,6 @@ def fits(start, law, quantity, radii, times, errors, exact):
     # The fewest points for a fit.
     if len(radii) < 3:
         return
-    radii, times, errors, exact = (np.array(v, float) for v in (radii, times, errors, exact))
     x, relative = np.log(law.limit - radii), errors / times
     regular = np.log(exact / law(radii))
     start = start | {"quantity": quantity, "points": len(x)}
@@ -109,12 +108,7 @@ def near(box, law, rows):
 
 def passages(distributions, name, event):
     """Return the rows of distributions.csv on the mean first passages of a scene, without a cut."""
-    wanted = name, event, "first_passage", None
-    return [
-        one
-        for one in distributions
-        if (one["scene"], one["event"], one["quantity"], one["last"]) == wanted
-    ]
+    return select(distributions, scene=name, event=event, quantity="first_passage", last=None)
 
 
 def rows(tables, scenes):
@@ -131,13 +125,12 @@ def rows(tables, scenes):
             if law is None:
                 continue
             times = tables.get(f"{name}/mean_times", [])
-            measured = {"mean_time": [one for one in times if one["event"] == event]}
+            measured = {"mean_time": select(times, event=event)}
             if law.power < 0:
                 measured["first_passage"] = [
                     one | {"exact": one["exact_mean"]}
                     for one in passages(tables["distributions"], name, event)
                 ]
             for quantity, found in measured.items():
-                kept = near(box, law, found)
-                values = [[one[c] for one in kept] for c in COLUMNS]
+                values = columns(near(box, law, found), *COLUMNS)
                 yield from fits(start | {"event": event}, law, quantity, *values)
