@@ -278,7 +278,6 @@ def page(template, shown):
     environment = Environment(
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
-    environment.filters["short"] = short
-    environment.filters |= {"error": relative_error, "typeset": typeset}
+    environment.filters |= {"error": relative_error, "short": short, "typeset": typeset}
     environment.filters["three_digits"] = lambda x: f"{x:.3g}"  # as in check.passed
     return environment.from_string(template).render(shown)

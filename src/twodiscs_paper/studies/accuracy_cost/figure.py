@@ -20,6 +20,7 @@ from twodiscs.figures.style import (
     VERMILLION,
     new_figure,
 )
+from twodiscs_paper.study import select
 
 #: Inches: width of two columns, and the height.
 WIDTH, HEIGHT = 7.0, 4.3
@@ -103,13 +104,12 @@ def draw(box, tables):
     return figure
 
 
-def select(rows, one, radii):
+def by_setting(rows, one, radii):
     """Return {setting: rows} of a ``MethodCurve``, the largest setting first."""
+    wanted = {"radius": radii[one.is_hard], "method": one.method, "quantity": one.quantity}
     found = {}
-    for row in rows:
-        own = row["part"] == "error" and row["radius"] == radii[one.is_hard]
-        if own and (row["method"], row["quantity"]) == (one.method, one.quantity):
-            found.setdefault(row["setting"] or 0.0, []).append(row)
+    for row in select(rows, part="error", **wanted):
+        found.setdefault(row["setting"] or 0.0, []).append(row)
     return dict(sorted(found.items(), reverse=True))
 
 
@@ -118,11 +118,11 @@ def _draw_series(axes, kept, rows, one, radii):
     full = panels.open_symbol(one.colour, one.marker) | {"markerfacecolor": one.colour}
     name = f"{one.name}, near $h/4$" if one.is_hard else one.name
     axes.plot([], [], lw=0.8, ls=DASHES if one.is_hard else "-", label=name, **full)
-    found = select(kept, one, radii)
+    found = by_setting(kept, one, radii)
     for setting, own in found.items():
         _draw_law(axes, own[0]["c"], own[0]["floor"], one, setting, setting == min(found))
         _draw_errors(axes, own, full | {"zorder": 3})
-    for own in select(rows, one, radii).values():
+    for own in by_setting(rows, one, radii).values():
         _draw_errors(axes, own, panels.open_symbol(one.colour, one.marker, 0.8) | {"zorder": 4})
 
 
@@ -173,14 +173,13 @@ def _draw_law(axes, c, floor, one, setting, is_last):
 
 def _draw_exact(axes, rows, radius, quantity):
     """Draw the time of the exact value, which has no error to speak of, and Gauss quadrature."""
-    own = [row for row in rows if row["part"] == "exact" and row["radius"] == radius]
-    own = [row for row in own if row["quantity"] == quantity]
-    seconds = median(row["seconds"] for row in own if row["method"] == "exact")
+    own = select(rows, part="exact", radius=radius, quantity=quantity)
+    seconds = median(row["seconds"] for row in select(own, method="exact"))
     axes.axhline(seconds, color=BLACK, lw=1.0, zorder=2)
     text = f"exact: {1e3 * seconds:.2g} ms, error $10^{{-15}}$"
     drawing.label(axes, text, (ERROR_RANGE[1], seconds), (-3, -2), ha="right", va="top", bbox=WHITE)
     if quantity == COLLISION_AREA:
-        nodes = [row for row in own if row["method"] == "quadrature"]
+        nodes = select(own, method="quadrature")
         seconds = median(row["seconds"] for row in nodes)
         shown = [row for row in nodes if row["error"] > ERROR_RANGE[1]]
         error = [row["error"] for row in shown]

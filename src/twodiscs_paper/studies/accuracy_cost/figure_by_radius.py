@@ -4,6 +4,7 @@ from matplotlib.ticker import LogLocator, NullLocator
 
 from twodiscs.figures import panels
 from twodiscs.figures.style import BLACK, COLUMN, LOOKS, event_name, new_figure
+from twodiscs_paper.study import select
 
 #: The methods of each panel, and its name.
 PANELS = {
@@ -19,7 +20,7 @@ HEIGHT, PRICE_RANGE = 4.1, (1e-11, 1e5)
 
 def draw(box, tables):
     """Draw the rows of accuracy_cost.csv; ``box`` is not used, because the table has its own."""
-    rows = [row for row in tables["accuracy_cost"] if row["part"] == "radius"]
+    rows = select(tables["accuracy_cost"], part="radius")
     figure = new_figure(HEIGHT, COLUMN, layout="constrained")
     axes = figure.subplots(2, 2, sharex=True, sharey=True).flat
     for one, letter, (name, methods) in zip(axes, "abcd", PANELS.items(), strict=True):

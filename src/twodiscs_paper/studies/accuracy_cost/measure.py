@@ -147,18 +147,13 @@ def strip_method(scene, seed, blocks=8):
 # Volume and areas ---------------------------------------------------------------------------------
 
 
-def samples_method(scene, seed, quantity, fraction=None):
-    """Return the ``Method`` of samples of the prism; an area has a shell of this ``fraction``."""
-    return _sampled("rejection", montecarlo.prism_sampler, scene, seed, quantity, fraction)
+#: {method: function of a scene, quantities, the fraction of shells and a seed that samples}.
+SAMPLERS = {"rejection": montecarlo.prism_sampler, "conditioned": montecarlo.conditioned}
 
 
-def draws_method(scene, seed):
-    """Return the ``Method`` of the conditioned sampler, for the volume."""
-    return _sampled("conditioned", montecarlo.conditioned, scene, seed, "volume", None)
-
-
-def _sampled(name, maker, scene, seed, quantity, fraction):
-    sampler = maker(scene, [quantity], fraction or 0.5, seed)
+def samples_method(scene, seed, quantity, fraction=None, name="rejection"):
+    """Return the ``Method`` of samples of the prism, or ``name``; an area has a shell."""
+    sampler = SAMPLERS[name](scene, [quantity], fraction or 0.5, seed)
     event = quantity.removesuffix("_area")
     true, thickness, bias = exact.volume(scene), None, 0.0
     if quantity != "volume":
@@ -223,7 +218,7 @@ def methods(seed):
         strip_method(HARD, seed),
         lockstep_method(HARD, seed, blocks=4),
         samples_method(EASY, seed, "volume"),
-        draws_method(EASY, seed),
+        samples_method(EASY, seed, "volume", name="conditioned"),
         *(samples_method(EASY, seed, AREA, fraction) for fraction in SHELLS),
         surface_method(EASY, seed),
         samples_method(HARD, seed, "volume"),

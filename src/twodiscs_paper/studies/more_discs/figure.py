@@ -31,7 +31,7 @@ def draw(box, tables):
     heights = {f"radius {radius}": PANEL for radius in radii}
     figure, (*upper, lower) = panels.stacked(**heights, residuals=RESIDUALS)
     for axes, radius in zip(upper, radii, strict=True):
-        _times(axes, [row for row in rows if row["radius"] == radius])
+        _times(axes, select(rows, radius=radius))
         axes.set(yscale="log", ylabel=f"time (length/speed)\nat $r={panels.mathtext(radius)}$")
         low, high = axes.get_ylim()
         axes.set_ylim(low / 1.05, high * 1.05)

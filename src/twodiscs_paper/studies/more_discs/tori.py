@@ -58,22 +58,16 @@ def counted(seed, points):
             scene = torus(point["discs"], point["packing"], point["aspect"])
             replicas, rate = point["replicas"], many_rates.expected_rate(scene, "disc_collision")
             duration = point["events"] / replicas / rate
-            states = {"rows": from_rows, "compressed": from_liquid}[start](scene, replicas, seed)
+            states = STARTS[start](scene, replicas, seed)
             sums, products = cell_list.count_events(
                 states, np.uint64(seed), 0, duration, many_rates.usual_epoch(scene),
                 many_disc_law(scene), many_initial_states.large_grid(scene), None, None, None,
             )  # fmt: skip
-            counts = int(sums[COLLISIONS]), int(products[COLLISIONS, COLLISIONS])
             keys = {name: point[name] for name in ("discs", "packing", "aspect", "replicas")}
-            names = dict(zip(("sum", "squares"), counts, strict=True))
-            found.append(keys | {"start": start, "duration": duration} | names)
+            keys |= {"start": start, "duration": duration, "sum": int(sums[COLLISIONS])}
+            found.append(keys | {"squares": int(products[COLLISIONS, COLLISIONS])})
             print(found[-1], flush=True)
     return found
-
-
-def from_rows(scene, number, seed):
-    """Return initial states as all calls draw them, each from a new chain."""
-    return many_initial_states.states(scene, number, seed)
 
 
 def from_liquid(scene, number, seed):
@@ -89,6 +83,11 @@ def from_liquid(scene, number, seed):
         chains.run_chains(stream, initial, centres, *run)
         states[: 2 * scene.discs, k] = centres.ravel()
     return states
+
+
+#: {start: function of a scene, the number of its initial states and a seed}. From rows each state
+#: has a new chain, as in all calls.
+STARTS = {"rows": many_initial_states.states, "compressed": from_liquid}
 
 
 def compress(stream, initial, centres, sigma):

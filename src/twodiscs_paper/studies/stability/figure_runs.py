@@ -38,14 +38,9 @@ def draw(box, tables):
     rows = tables["stability"]
     figure = new_figure(2 * HEIGHT + LOWEST, WIDTH, layout="constrained")
     upper, middle, lower = figure.subfigures(3, height_ratios=(HEIGHT, HEIGHT, LOWEST))
-    axes = iter((*upper.subplots(1, 2), middle.subplots(), lower.subplots()))
-    for letter, part, draw_part in (
-        ("a", "dynamics", _runs),
-        ("b", "times", _times),
-        ("c", "reversal", _reversal),
-        ("d", "extremes", _extremes),
-    ):
-        one = next(axes)
+    axes = *upper.subplots(1, 2), middle.subplots(), lower.subplots()
+    parts = {"dynamics": _runs, "times": _times, "reversal": _reversal, "extremes": _extremes}
+    for one, letter, (part, draw_part) in zip(axes, "abcd", parts.items(), strict=True):
         one.set_label(letter)
         panels.title(one, letter, box if letter == "c" else None)
         draw_part(one, select(rows, part=part))
@@ -73,10 +68,8 @@ def name_radii(rows):
         if row["case"] in names:
             texts[key] = rf"${names[row['case']]}\,{_power(row['distance'])}$"
         else:
-            tiny = f"$r={rounded(row['radius'])}$"
-            texts[key] = (
-                f"$r={panels.mathtext(row['radius'])}$" if row["case"] == "ordinary" else tiny
-            )
+            text = panels.mathtext if row["case"] == "ordinary" else rounded
+            texts[key] = f"$r={text(row['radius'])}$"
     return texts
 
 
@@ -162,8 +155,8 @@ def _extremes(axes, rows):
     cases = [*dict.fromkeys(row["case"] for row in rows)]
     rule_lines(axes, cases)
     for event, look in (LOOKS | {"virial": VIRIAL}).items():
-        own = [row for row in rows if row["quantity"] in (event, f"{event}_time")]
-        own = [row for row in own if row["z"] is not None]
+        quantities = event, f"{event}_time"
+        own = [r for r in rows if r["quantity"] in quantities and r["z"] is not None]
         x, y = [row["z"] for row in own], [cases.index(row["case"]) for row in own]
         name = "virial theorem" if event == "virial" else event_name(event)
         axes.plot(x, y, ls="", label=name, **panels.open_symbol(*look))

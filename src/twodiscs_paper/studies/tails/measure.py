@@ -415,8 +415,9 @@ def constant_hazard(rows):
     """
     rates = [rate_between(*pair) for pair in pairwise(rows)]
     hazards, errors = np.array([(one["estimate"], one["stderr"]) for one in rates]).T
-    mean = np.average(hazards, weights=errors**-2)
-    return float(np.sum(((hazards - mean) / errors) ** 2)), len(rates) - 1
+    weights = (1 / errors) ** 2
+    mean = np.average(hazards, weights=weights)
+    return float(np.sum(weights * (hazards - mean) ** 2)), len(rates) - 1
 
 
 def constancy(rows):

@@ -18,7 +18,7 @@ from twodiscs.points.estimates import Estimate
 from twodiscs_paper.studies.estimates import sample_mean
 from twodiscs_paper.studies.passages.models import pore
 from twodiscs_paper.studies.passages.near import compared, radius_at
-from twodiscs_paper.studies.passages.parts.with_friction import LONG_NECK
+from twodiscs_paper.studies.passages.parts.with_friction import LONG_NECK, local_exponent
 from twodiscs_paper.study import row
 
 #: The radius of the pore, and its lengths for rates and for κ: ends have a share √(εσ)/length in κ.
@@ -70,10 +70,7 @@ def in_pore(seed):
                 scaled = Estimate(kappa.value * x, kappa.stderr * x, kappa.n)
                 limit = {"quantity": "scaled_coefficient", "reference": DIFFUSIVE}
                 yield row(cells | {"method": "clusters"} | hops | limit, scaled)
-            measured.append((x, kappa, cells))
-        for (x, one, _), (y, other, cells) in pairwise(measured):
-            # τ goes as ε^(−5/2) times a regular factor, and x as √ε.
-            slope = math.log(one.value / other.value) / math.log(x / y)
-            error = math.hypot(*(k.stderr / k.value for k in (one, other))) / math.log(x / y)
-            power = Estimate(-5 / 2 - slope / 2, error / 2, 2)
+            measured.append(((kappa, x), cells))
+        for (before, _), (after, cells) in pairwise(measured):
+            power = local_exponent(before, after, -5 / 2)
             yield row(cells, power, quantity="local_exponent", method="fit", replicas=2)

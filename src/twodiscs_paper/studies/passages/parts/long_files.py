@@ -17,15 +17,20 @@ from twodiscs_paper.studies.passages.parts.in_long_file import file_scene
 from twodiscs_paper.study import row
 
 
+def file_motion(one, run):
+    """Return (``Scene`` of a file ``one``, the unit of its times, its rate of kicks or None)."""
+    box = Box(run["width"], run["height"])
+    scene, unit = file_scene(box, one["discs"], radius_at(box.height / 4, one["halvings"]))
+    return scene, unit, one["friction"] / unit if "friction" in one else None
+
+
 def file_counts(one, run):
     """Return the counts of a file ``one`` of a long ``run``, a list for each replica, seed by seed.
 
     They are those of ``file.hop_correlations``; then the hops in all the time, and for both lags
     Σ n² over the discs and all pairs of times, n the places by which a disc has moved in the order.
     """
-    box, found = Box(run["width"], run["height"]), []
-    scene, unit = file_scene(box, one["discs"], radius_at(box.height / 4, one["halvings"]))
-    rate = one["friction"] / unit if "friction" in one else None
+    (scene, unit, rate), found = file_motion(one, run), []
     step, number, sums = run["step"] * unit, run["records"], [lag * unit for lag in run["sums"]]
     kind = f"long run {one['discs']} {one.get('friction')}"
     for seed in run["seeds"]:
@@ -44,10 +49,9 @@ def file_rows(one, run, counts):
 
     The sums over hops are compared with D by the order of the discs, of the same motion.
     """
-    box = Box(run["width"], run["height"])
-    scene, unit = file_scene(box, one["discs"], radius_at(box.height / 4, one["halvings"]))
+    scene, unit, friction = file_motion(one, run)
     start = hop_cells(run["name"], scene, "horizontal_hop", 2.0 ** -one["halvings"])
-    start["friction"] = one["friction"] / unit if "friction" in one else None
+    start["friction"] = friction
     hops, same, other, total, moved = (np.array([each[k] for each in counts]) for k in range(5))
     discs, duration = one["discs"], run["records"] * run["step"] * unit
     per_time = 2 * total / (discs * duration)

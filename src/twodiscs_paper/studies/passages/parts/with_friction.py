@@ -93,11 +93,20 @@ def local_exponents(measured):
             limit = diffusive_limit(near.scene, near.hop)
             yield near.row("scaled_coefficient", "clusters", product) | {"reference": limit}
         if before:
-            far, length = before[0], math.log(before[1] / x)
-            slope = math.log(kappa.value / far.value) / length
-            error = math.hypot(far.stderr / far.value, kappa.stderr / kappa.value) / length
-            yield near.row("local_exponent", "fit", Estimate(abs(slope) / 2 - 2, error / 2, 2))
+            yield near.row("local_exponent", "fit", local_exponent(before, (kappa, x), -2))
         before = kappa, x
+
+
+def local_exponent(before, after, power):
+    """Return the exponent of τ/κ as an ``Estimate``, from two pairs (κ, x), the larger x first.
+
+    τ goes as ε to the ``power``, and x as √ε.
+    """
+    (far, start), (kappa, x) = before, after
+    length = math.log(start / x)
+    slope = math.log(kappa.value / far.value) / length
+    error = math.hypot(far.stderr / far.value, kappa.stderr / kappa.value) / length
+    return Estimate(abs(slope) / 2 + power, error / 2, 2)
 
 
 def scaling_law(x, limit=3 / 4):
