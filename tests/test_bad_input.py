@@ -30,7 +30,6 @@ from twodiscs.sampling.initial_states import components
 from twodiscs.sampling.many import insertions  # noqa: F401 - for a line of CALLS
 from twodiscs_paper.configuration import schema
 from twodiscs_paper.configuration.model import Model
-from twodiscs_paper.configuration.radii import even_radii, radii
 from twodiscs_paper.configuration.yaml_files import ConfigError, load, read
 
 BOX = Box(1.5, 1.0)
@@ -388,8 +387,6 @@ RIGHT = [
     (PAPER.is_possible, {"event": "any_wall"}),
     (Box, {"width": 1.5, "height": 1.0, "field": 0.1, "periodic": "x", "radius_ratio": 0.5}),
     (BOX.threshold, {"event": "any_wall"}),
-    (radii, {"width": 1.5, "height": 1.0, "smallest": 0.01, "count": 8}),
-    (even_radii, {"smallest": 0.1, "largest": 0.2, "count": 8}),
     *((f, {"scene": PAPER}) for f in (td.volume, td.areas, td.mean_times, td.exact)),
     (td.rate, {"scene": PAPER, "event": "any_wall"}),
     (estimates.normal_quantile, {"confidence": 0.95}),
@@ -414,10 +411,9 @@ COUNT = [0, 1.5, 2**64, "1", True]
 PART = [0.0, 1.0, -0.1, "0.1", True]
 EVENT = ["", "hop", b"any_wall", PAPER]
 WRONG = (
-    {"width": LENGTH, "height": LENGTH, "radius": RADIUS, "smallest": RADIUS}
-    | {"shell": PART, "confidence": PART, "largest": [*LENGTH, 0.1]}
+    {"width": LENGTH, "height": LENGTH, "radius": RADIUS, "shell": PART, "confidence": PART}
     | {"field": [-1.0, "1"], "periodic": ["xx", "z", 1], "radius_ratio": [1e9, -1.0]}
-    | dict.fromkeys(("count", "samples", "budget", "replicas", "hops", "number"), COUNT)
+    | dict.fromkeys(("samples", "budget", "replicas", "hops", "number"), COUNT)
     | {"scene": [1.0, "scene", (1.5, 1.0, 0.2), Scene], "method": EVENT, "event": EVENT}
     | {"hop": [*EVENT, "any_wall"], "quantities": [[], ["mass"], [None], ["any_wall"]]}
     | {"seed": [-1, 1.5, "1", True], "duration": [INF, "1", 0.0, -1.0]}
@@ -434,7 +430,7 @@ JUNK = [NAN, 1j, b"", object()]
 
 #: The name of the wrong part of an argument with several parts.
 INSIDE = dict.fromkeys(("error", "events"), "event")
-INSIDE |= {"largest": "smallest", "quantities": "quantity", "radii": "radius"}
+INSIDE |= {"quantities": "quantity", "radii": "radius"}
 
 
 @pytest.mark.parametrize(("function", "good"), RIGHT)

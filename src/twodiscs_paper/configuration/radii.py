@@ -3,13 +3,9 @@
 import math
 from itertools import pairwise
 
-from twodiscs.model.checks import InputError, check_integer, check_length
+from twodiscs.model.checks import InputError
 from twodiscs.model.formats import shortest_decimal
 from twodiscs.model.scene import Box
-
-#: The largest number of radii of a grid.
-MOST_RADII = 1000
-
 
 #: A regime narrower than this fraction of the largest radius has no points.
 NARROWEST = 1e-6
@@ -24,10 +20,6 @@ def radii(width, height, smallest, count):
     """
     box = Box(width, height)
     largest, limits = box.largest_radius, box.thresholds
-    smallest, count = (
-        check_length("smallest", smallest),
-        check_integer("count", count, 1, MOST_RADII),
-    )
     if smallest >= largest * (1 - NARROWEST):
         raise InputError(
             f"smallest must be below the largest radius of the box, {largest!r}, not {smallest!r}"
@@ -66,8 +58,6 @@ def even_radii(smallest, largest, count):
 
     Each except the first is rounded to the fewest digits that leave it near its value.
     """
-    smallest, largest = check_length("smallest", smallest), check_length("largest", largest)
-    count = check_integer("count", count, 1, MOST_RADII)
     if smallest >= largest:
         raise InputError(f"smallest must be below {largest!r}, not {smallest!r}")
     step = (largest - smallest) / max(count - 1, 1)
