@@ -302,11 +302,11 @@ def test_symbols_are_errors_and_times_and_lines_are_c_over_the_square(
         look = one.marker, full
         own = [line for line in mine if (line.get_marker(), line.get_markerfacecolor()) == look]
         shown = {point for line in own for point in zip(*line.get_data(), strict=True)}
-        for some in figure.select(table, one, RADII).values():
+        for some in figure.by_setting(table, one, RADII).values():
             thinned = [*some[::-1][:: figure.THINNED], some[-1]]
             assert {(row["error"], row["seconds"]) for row in thinned} <= shown
     curves = [line.get_xydata() for line in mine if len(line.get_xdata()) > 100]
-    for first, *_ in figure.select(long, one, RADII).values():
+    for first, *_ in figure.by_setting(long, one, RADII).values():
         c, floor = first["c"], first["floor"]
         far = [xy[(xy[:, 0] > 2 * floor) & (xy[:, 0] < 0.5)].T for xy in curves]
         assert any(np.allclose(c / y, x**2 - floor**2, rtol=1e-9) for x, y in far)
