@@ -110,7 +110,7 @@ def test_it_is_the_same_bytes_again_until_a_number_of_a_table_is_another(paper):
     assert (content, numbers) == paper()
     assert content.startswith(b"%PDF")
     assert b"CreationDate" not in content
-    cell = "third_virial,,,,,,0.782004437"
+    cell = "third_virial,,,,,0.782004437"
     edited, others = paper(edit=("results/agreement.csv", cell, cell.replace("0.782", "0.882")))
     assert edited != content
     changed = {name: text for name, text in others.items() if text != numbers[name]}
