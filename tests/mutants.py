@@ -92,7 +92,7 @@ MUTANTS = [
     ("a bound that is hidden", 'else found["z"] or None', "else None"),
     ("the normal law of half as many", "law = number * np.diff", "law = number / 2 * np.diff"),
     ("discs as an effect that is compiled", 'for n, v in effects.items() if n != "discs"]', "for n, v in effects.items()]"),
-    ("sum of variances in place of their difference", "weights.append(time**2 / (late - early))", "weights.append(time**2 / (late + early))"),
+    ("sum of variances in place of their difference", "math.sqrt(late - early) / time}", "math.sqrt(late + early) / time}"),
     ("one of two tests of a plateau", 'min(rate["p"], of["trend"]["p"]) > LEVEL', 'max(rate["p"], of["trend"]["p"]) > LEVEL'),
     ("a point of another radius", 'scene.parameters() | settings))', 'content["scene"] | settings))'),
     ("kinks of a thick shell", "np.clip([0.0, *touches, float(thickness)], 0.0", "np.clip([0.0, float(thickness)], 0.0"),
