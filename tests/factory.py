@@ -97,10 +97,11 @@ def counts_point(radius=0.37, event="vertical_hop", total=0, squares=0, **fields
 
 def bins_point(radius=0.1, counts=(7, 5, 0), **fields):
     """Return a point of intervals of the vertical hop, a chain each, and other ``fields``."""
-    bins = Bins([*range(len(counts) + 1)], [*counts], [*counts])
+    bins = Bins([*range(len(counts) + 1)], *(list(counts) for _ in range(3)))
     given = {
         **{"scene": BOX.scene(radius), "event": "vertical_hop", "bin_width": 0.125, "overflow": 0},
-        **{"intervals": sum(counts), "chains": sum(counts), "mean": 0.5, "stderr": 0.1},
+        **dict.fromkeys(("intervals", "intervals_squared", "chains"), sum(counts)),
+        **{"mean": 0.5, "stderr": 0.1},
         **{"equal": bins, "wide": bins},
     }
     return IntervalsPoint(**given | fields)
@@ -108,7 +109,7 @@ def bins_point(radius=0.1, counts=(7, 5, 0), **fields):
 
 def all_reached(point):
     """Return whether the errors of all events of a dynamics ``point`` are those asked for."""
-    estimates = {event: point.estimate(event) for event in point.counted}
+    estimates = {event: point.count(event).estimate() for event in point.counted}
     return all(e and e.relative_stderr <= point.target[event] for event, e in estimates.items())
 
 
@@ -184,7 +185,7 @@ class Laws:
             if event in self.times:
                 mean = self.scene.copies(event) * duration / self.times[event]
             counts[event] = rng.poisson(mean, replicas)
-        if not self.scene.has_effects:  # as symmetry has it
+        if not self.scene.effects:  # as symmetry has it
             first = {}
             for wall in (event for event in events if event in WALLS):
                 counts[wall] = counts[first.setdefault(EVENT_AXES[wall], wall)]
@@ -203,20 +204,23 @@ class Laws:
         """Return an intervals point of the vertical hop, with exponential intervals."""
         mean = self.times["vertical_hop"]
         stderr = relative * mean
-        width, intervals = mean / 4, math.ceil(relative**-2)
+        each = math.ceil(relative**-2 / chains)
+        width, intervals = mean / 4, each * chains
         edges = np.exp(-0.25 * np.arange(13))
         counts = rng.multinomial(intervals, [*-np.diff(edges), edges[-1]])
 
         def of_chains(edges, counts):
             """Return the ``Bins`` of chains that hold these counts by Poisson's law."""
             whole = [int(n) for n in counts]
-            return Bins(edges, whole, [n + -(-n * n // chains) for n in whole])
+            squares = [n + -(-n * n // chains) for n in whole]
+            return Bins(edges, whole, squares, [n * each for n in whole])
 
         wide = [0, 1, 2, 4, 8, 12]
         fields = {
             **{"equal": of_chains([*range(13)], counts[:-1]), "overflow": int(counts[-1])},
             **{"wide": of_chains(wide, np.add.reduceat(counts[:-1], wide[:-1]))},
-            **{"intervals": intervals, "chains": chains, "bin_width": width},
+            **{"intervals": intervals, "intervals_squared": intervals * each, "chains": chains},
+            **{"bin_width": width},
             **{"mean": mean + stderr * rng.standard_normal(), "stderr": stderr},
         }
         return bins_point(scene=self.scene, **fields)

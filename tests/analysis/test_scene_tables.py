@@ -191,7 +191,7 @@ def test_rows_of_the_histogram():
         assert row["density"] == pytest.approx(density, abs=5 * row["stderr"])
         assert abs(row["z"]) < 5
         assert row["z"] == pytest.approx((row["mean"] - tau) / row["mean_stderr"], rel=0.02)
-    empty = replace(points[0], equal=Bins([0, 1, 2], [0, 5], [0, 5]))
+    empty = replace(points[0], equal=Bins([0, 1, 2], [0, 5], [0, 5], [0, 5]))
     first, second = [row for row in HopHistogramTable.rows([empty]) if row["bins"] == "equal"]
     assert (first["density"], first["stderr"]) == (0.0, None)
     assert second["stderr"] > 0

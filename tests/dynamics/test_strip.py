@@ -192,7 +192,7 @@ def test_the_target_is_reached_at_any_distance_from_a_threshold(hop, distance):
     point = runs.DynamicsRun(scene, {hop: 0.01}, 10**8, 1).run()
     assert all_reached(point)
     assert point.strips[hop].events < 100 * point.strips[hop].replicas
-    time = point.estimate(hop)
+    time = point.count(hop).estimate()
     assert abs(time.value / exact.mean_times(scene)[hop] - 1) < 5 * time.relative_stderr
 
 

@@ -20,7 +20,7 @@ from twodiscs.points.base import digest_line, file_content, read_json, require_l
 from twodiscs.points.dynamics_point import StripCount
 from twodiscs.points.intervals_point import Bins
 from twodiscs.points.monte_carlo_point import Hits, InsertionPoint, MonteCarloPoint, Weights
-from twodiscs.theory.exact import corner_variance
+from twodiscs.theory.clusters import corner_variance
 from twodiscs_paper.pipeline.points import read_point
 
 LAW = Laws(BOX.scene(0.1))
@@ -80,19 +80,19 @@ def inserted(samples, unit, weights, products):
 
 def test_a_point_gives_estimates_by_name():
     hits = hits_point(samples=1000, volume=250, top_wall_area=0)
-    assert hits.estimate("volume").value == 0.25
-    assert hits.estimate("top_wall_area") is None
+    assert hits.sampled("volume").estimate.value == 0.25
+    assert hits.sampled("top_wall_area").estimate is None
     weights = inserted(10**6, 2**20, {"volume": (10**12, 2 * 10**12, 3.0)}, {})
-    assert weights.estimate("volume").value == 3.0 * 10**6 / 2**20
+    assert weights.sampled("volume").estimate.value == 3.0 * 10**6 / 2**20
     counts = counts_point(total=400, squares=800)
-    assert counts.estimate("vertical_hop").value == 2048 * 10.0 / 400
-    assert counts.estimate("vertical_hop", copies=2).value == 2 * 2048 * 10.0 / 400
-    assert counts_point().estimate("vertical_hop") is None
-    assert COUNTED.estimate("vertical_hop") == STRIP.estimate()
+    assert counts.count("vertical_hop").estimate().value == 2048 * 10.0 / 400
+    assert counts.count("vertical_hop").estimate(copies=2).value == 2 * 2048 * 10.0 / 400
+    assert counts_point().count("vertical_hop").estimate() is None
+    assert COUNTED.count("vertical_hop").estimate() == STRIP.estimate()
     assert STRIP.estimate().value == pytest.approx(0.1 / 0.5 / (3 / 18))
     bins = bins_point(counts=(7, 5, 0))
-    assert bins.estimate("mean").stderr == 0.1
-    assert bins.estimate("density_at_zero").value == pytest.approx((7 * 7 - 5) / 6 / 12 / 0.125)
+    assert bins.stderr == 0.1
+    assert bins.density_at_zero.value == pytest.approx((7 * 7 - 5) / 6 / 12 / 0.125)
 
 
 def test_the_error_of_a_density_is_that_of_a_ratio_of_two_numbers_of_each_chain():
@@ -168,7 +168,9 @@ def test_the_area_of_all_walls_is_as_sure_as_that_of_the_rarer_wall():
     hits["right_wall_area"] = hits["top_wall_area"]
     point = replace(point, quantities=hits, right_and_top=50)
     area = point.all_walls().estimate
-    assert area.relative_stderr == pytest.approx(point.estimate("top_wall_area").relative_stderr)
+    assert area.relative_stderr == pytest.approx(
+        point.sampled("top_wall_area").estimate.relative_stderr
+    )
 
 
 PART = {"mean": 0.1 + 0.2, "sums": {(0, 1): [[2**62 + 1], [3]]}}

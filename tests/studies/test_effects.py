@@ -84,7 +84,7 @@ def rows(tmp_path_factory):
     """The rows of effects.csv of the six scenes, with fabricated counts."""
 
     def survivors(scene, times, blocks, seed):
-        return [2400, 2000, 1900] if scene.has_effects else [15, 1, 0]
+        return [2400, 2000, 1900] if scene.effects else [15, 1, 0]
 
     given = {"tables": tables_of(*NAMES), "scenes": BOXES, "seed": SEED}
     with pytest.MonkeyPatch.context() as patch:
@@ -199,8 +199,8 @@ def test_costs_are_of_every_scene_and_of_what_is_watched(monkeypatch):
     watched = {}
 
     def lockstep(blocks, scene=price.SCENE, events=EVENTS):
-        watched[scene.has_effects, tuple(events)] = scene
-        return 2.0 if scene.has_effects else 4.0, 1.0 if events == EVENTS else 0.5
+        watched[bool(scene.effects), tuple(events)] = scene
+        return 2.0 if scene.effects else 4.0, 1.0 if events == EVENTS else 0.5
 
     bare = {"instructions(lockstep)": 10, f"lockstep({price.QUICK['blocks']})": (8.0, 1.0)}
     monkeypatch.setattr(price, "lockstep", lockstep)

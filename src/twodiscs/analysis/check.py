@@ -32,7 +32,7 @@ from itertools import groupby
 
 from twodiscs.analysis import scores
 from twodiscs.model.events import WAYS
-from twodiscs.points.estimates import Estimate, why_no_error
+from twodiscs.points.estimates import Estimate, sums_of_others, why_no_error
 from twodiscs.points.monte_carlo_point import wall_weights
 from twodiscs.theory import virial
 from twodiscs.theory.exact import replicas_needed
@@ -149,7 +149,11 @@ def comparisons(volume, areas, times, histogram, points):
             values = {**row, "exact": row["expectation"]}
             joined = row["quantity"] == "any_wall_area" and row["epsilon"] is None  # two shells
             rows.append(_comparison(name, row["quantity"], row["method"], values, joined))
-    summed = {(point.radius, event) for point in dynamics for event in point.sums_of_others()}
+    summed = {
+        (point.radius, event)
+        for point in dynamics
+        for event in sums_of_others(point.counts, point.products, point.replicas)
+    }
     inserted = {p.radius: p for p in points if getattr(p, "method", None) == "insertion"}
     for row in times:
         method = "dynamics" if row["starts"] == "invariant" else row["starts"]

@@ -457,12 +457,12 @@ class HopHistogramTable(Table):
 def _mean_interval(point):
     """Return the columns about the mean of a point; its exact mean may be None."""
 
-    z, mean, exact = None, point.estimate("mean"), theory.mean_times(point.scene)[point.event]
-    stderr = None if why_no_error(chains=mean.n) else mean.stderr or None
+    z, exact = None, theory.mean_times(point.scene)[point.event]
+    stderr = None if why_no_error(chains=point.chains) else point.stderr or None
     if stderr and exact is not None:
-        z = scores.student_deviate((mean.value - exact) / stderr, mean.n - 1)
+        z = scores.student_deviate((point.mean - exact) / stderr, point.chains - 1)
     known = {"intervals": point.intervals, "exact_mean": exact}
-    return known | {"mean": mean.value, "mean_stderr": stderr, "z": z}
+    return known | {"mean": point.mean, "mean_stderr": stderr, "z": z}
 
 
 def trajectory_columns(discs):

@@ -8,7 +8,7 @@ from itertools import islice, repeat
 import numpy as np
 
 from twodiscs.dynamics.engine import find_engine
-from twodiscs.dynamics.ensemble import open_block_kicks
+from twodiscs.dynamics.ensemble import MOST_RUN_EVENTS, open_block_kicks
 from twodiscs.dynamics.paths import MOST_PATH_EVENTS, check_states, move_into_cell
 from twodiscs.model.checks import InputError, check_numbers, has_units
 from twodiscs.model.formats import format_number, quote
@@ -30,9 +30,6 @@ BLOCK = 4096
 
 #: The most numbers of the states of a block at several times that are in memory together.
 MOST_STATE_NUMBERS = 2**22
-
-#: The most events of all replicas together, as of intervals: hours to days.
-MOST_EVENTS = 1e11
 
 #: Values of a function are smaller, so that their squares can be added.
 LARGEST = 1e140
@@ -174,11 +171,11 @@ class ObserveRun(Run):
                 f"{format_number(MOST_PATH_EVENTS, 'g')} events are due, not "
                 f"{format_number(last, 'g')}"
             )
-        if self.replicas * last * self._rate > MOST_EVENTS:
+        most = int(MOST_RUN_EVENTS / last / self._rate)
+        if self.replicas > most:
             raise InputError(
-                f"replicas must be at most {int(MOST_EVENTS / last / self._rate)} for times up to "
-                f"{format_number(last, 'g')}, with {format_number(MOST_EVENTS, 'g')} events due in "
-                f"all, not {self.replicas}"
+                f"replicas must be at most {most} for times up to {format_number(last, 'g')}, with "
+                f"{format_number(MOST_RUN_EVENTS, 'g')} events due in all, not {self.replicas}"
             )
 
     @property

@@ -39,6 +39,9 @@ RETURNS = 256
 #: Hops with one random stream, of which each is followed.
 HOPS_PER_BLOCK = 64
 
+#: The most events of a run that has no error to reach: hours to days.
+MOST_RUN_EVENTS = 10**11
+
 #: The bit that makes the seed of kicks of the seed of a job.
 KICK_SEED_BIT = np.uint64(1 << 63)
 

@@ -85,22 +85,14 @@ def two_disc_law(scene):
     """Return the ``Law`` of a ``Scene``."""
     m1, m2 = scene.masses[:2]
     fractions = divided(1.0, m2, m1)
-    halves = [
-        {axis: (scene.side(axis) - 2 * radius) / 2 for axis in scene.walled}
-        for radius in scene.radii[:2]
-    ]
-    equal = scene.radius_ratio == 1
-    walls = {
-        f"half_{axis}{disc + 1}": halves[disc].get(axis)
-        for axis in scene.axes
-        for disc in range(1 if equal else 2)
+    halves = {
+        f"half_{axis}{disc}": (scene.side(axis) - 2 * radius) / 2
+        for axis in scene.walled
+        for disc, radius in enumerate(scene.radii[: 1 if scene.radius_ratio == 1 else 2], 1)
     }
     wraps = {
-        f"wrap_{axis}": (
-            scene.side(axis) / 2,
-            *(scene.side(axis) * fraction for fraction in fractions),
-        )
-        for axis in scene.periodic
+        f"wrap_{axis}": (side / 2, *(side * fraction for fraction in fractions))
+        for axis, side in ((axis, scene.side(axis)) for axis in scene.periodic)
     }
     inertia = scene.moment_of_inertia
     return Law(
@@ -109,8 +101,7 @@ def two_disc_law(scene):
         field=scene.field or None,
         weights=None if m1 == m2 else divided(2.0, m2, m1),
         rough=None if inertia is None else divided(1.0, inertia, 1.0),
-        **walls,
-        **wraps,
+        **{"half_x1": None, "half_y1": None} | halves | wraps,
     )
 
 

@@ -20,7 +20,7 @@ from functools import cached_property
 import numpy as np
 
 from twodiscs.dynamics.engine import find_engine
-from twodiscs.dynamics.ensemble import RETURNS, nearest_power_of_two
+from twodiscs.dynamics.ensemble import MOST_RUN_EVENTS, RETURNS, nearest_power_of_two
 from twodiscs.dynamics.two import strip
 from twodiscs.model.checks import InputError, check_choice
 from twodiscs.model.events import EVENTS
@@ -32,10 +32,11 @@ from twodiscs.points.estimates import relative_variance
 from twodiscs.points.intervals_point import N_BINS, TIME_GRAIN, IntervalsPoint, wide_edges
 from twodiscs.sampling.initial_states import require_initial_states
 from twodiscs.sampling.rounds import FinishedComponents, Run, SequentialRun, fixed, round_up_blocks
-from twodiscs.theory.exact import corner_variance, replicas_needed
+from twodiscs.theory.clusters import corner_variance
+from twodiscs.theory.exact import replicas_needed
 
-#: Chains of intervals that share a stream, and the usual budget of their wall and disc events.
-CHAINS_PER_BLOCK, INTERVALS_BUDGET = 256, 10**11
+#: Chains of intervals that share a stream.
+CHAINS_PER_BLOCK = 256
 
 #: The work of a day, the most without a budget, in events of the plain ensemble: 1e8 a second.
 DAY_OF_EVENTS = 86400 * 10**8
@@ -147,10 +148,8 @@ class DynamicsRun(Run):
 
         block_events = each * engine.expected_event_rate(scene) * duration
         # Errors of bursts that the budget cannot reach are ignored.
-        needed = np.array(
-            [replicas_needed(scene, e, self.target[e]) for e in self._ordinary_events]
-        )
-        needed = needed / each
+        needed = [replicas_needed(scene, e, self.target[e]) for e in self._ordinary_events]
+        needed = np.array(needed) / each
         needed = np.ceil(np.where(needed * block_events <= budget, needed, 0.0))
         planned = max([max(replicas, default=0.0) / each, *needed])
         if scene.discs > 2:  # rare hops of two discs have their own components
@@ -201,7 +200,7 @@ def relative_errors(sums, products, replicas, burst_variance=0.0):
     """Return the relative standard error of each mean count (n), inf without a count.
 
     Replicas are independent, so the error is √(var N / R) / ⟨N⟩. The variance has a part that is
-    ``burst_variance`` in samples (see ``exact.corner_variance``).
+    ``burst_variance`` in samples (see ``clusters.corner_variance``).
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         mean = sums / replicas
@@ -291,7 +290,7 @@ class IntervalsRun(Run):
     event: str
     intervals: int
     seed: int
-    budget: int = INTERVALS_BUDGET
+    budget: int = MOST_RUN_EVENTS
     edges: list | None = None
     error: float | None = None
 
@@ -363,11 +362,8 @@ class IntervalsRun(Run):
             found = self.point({"all": {(0, blocks): sums}})
             return np.array([found.stderr / found.mean / self.error])
 
-        ratio, events = (
-            find_engine(self.scene).chain_cost_ratio(self.scene),
-            self._each * self._events,
-        )
-        run = fixed(work, self._blocks, events, ratio)
+        ratio = find_engine(self.scene).chain_cost_ratio(self.scene)
+        run = fixed(work, self._blocks, self._each * self._events, ratio)
         if self.error is not None:
             run = replace(run, error_over_target=error_over_target, budget=self.budget)
         return {"all": run}

@@ -27,6 +27,7 @@ from twodiscs.model.many_geometry import has_volume
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.points.monte_carlo_point import WALL_AREAS
 from twodiscs.theory import exact
+from twodiscs.theory.clusters import corner_variance
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -112,9 +113,7 @@ def _pilot(run, name, seconds):
     sums, blocks, each = timed(one.work, seconds, -(-PILOT_REPLICAS // replicas))
     if name == "all":
         number, errors = blocks * replicas, {}
-        burst_variance = np.array(
-            [exact.corner_variance(scene, event, duration) for event in EVENTS]
-        )
+        burst_variance = np.array([corner_variance(scene, event, duration) for event in EVENTS])
         measured = relative_errors(*sums, number, burst_variance).tolist()
         for event, count, error in zip(EVENTS, sums[0].tolist(), measured, strict=True):
             if event in run.target and scene.is_possible(event):

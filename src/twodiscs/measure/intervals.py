@@ -127,7 +127,7 @@ class Intervals(Result):
         at_zero, error, status = None, None, "not-resolved"
         width = self.edges[1]
         if self.edges[:3] == [0, width, 2 * width] and width <= most:
-            density, status = point.estimate("density_at_zero"), "extrapolated"
+            density, status = point.density_at_zero, "extrapolated"
             at_zero, error = density.value, density.stderr
             if why_no_error(intervals=min(self.counts[:2])):
                 error, status = None, "too-few"
@@ -259,14 +259,15 @@ def make_intervals(
         )
     if number is not None and error is not None:
         raise InputError("number and error must not both be given: leave out one of them")
-    from twodiscs.dynamics.runs import INTERVALS_BUDGET, IntervalsRun
+    from twodiscs.dynamics.ensemble import MOST_RUN_EVENTS
+    from twodiscs.dynamics.runs import IntervalsRun
 
     settings = {"hop": hop, "seed": check_integer("seed", seed, 0), "name": name}
     if error is None:
         settings["number"] = check_count("number", 10**6 if number is None else number)
     else:
         settings["error"] = check_error("error", error)
-    settings["budget"] = check_count("budget", INTERVALS_BUDGET if budget is None else budget)
+    settings["budget"] = check_count("budget", MOST_RUN_EVENTS if budget is None else budget)
     run = IntervalsRun.of(scene, settings)
     if bins is not EQUAL_BINS:
         bins = resolving_edges(scene, hop) if bins is None else bins

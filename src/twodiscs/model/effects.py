@@ -5,9 +5,14 @@ of the figures follow from these declarations.
 """
 
 from dataclasses import dataclass
-from numbers import Real
 
-from twodiscs.model.checks import LONGEST_LENGTH, SHORTEST_LENGTH, InputError, check_number
+from twodiscs.model.checks import (
+    LONGEST_LENGTH,
+    SHORTEST_LENGTH,
+    InputError,
+    check_number,
+    is_real,
+)
 from twodiscs.model.formats import quote
 
 
@@ -46,8 +51,7 @@ class Effect:
             if not isinstance(value, str):
                 raise InputError(f"{self.name} must be some of the axes, not {quote(value)}")
             return value
-        real = isinstance(value, Real) and not isinstance(value, bool)
-        if value is None or (real and value == self.default):
+        if value is None or (is_real(value) and value == self.default):
             return self.default
         kind = "ratio" if self.name.endswith("_ratio") else "number"
         kind += f", or 0, {self.meaning}" if self.default == 0.0 else ""

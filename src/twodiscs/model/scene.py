@@ -19,6 +19,7 @@ from dataclasses import KW_ONLY, dataclass, fields, replace
 from fractions import Fraction
 from functools import cached_property
 
+from twodiscs.model import many_geometry, two_geometry
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import (
     LONGEST_LENGTH,
@@ -30,11 +31,9 @@ from twodiscs.model.checks import (
     check_length,
     check_number,
 )
-from twodiscs.model.effects import ABSENT_VALUES, EFFECTS
+from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import DECLARED_EVENTS, EVENT_AXES, EVENTS, HOPS, WALL_HITS, WALLS
 from twodiscs.model.formats import quote
-from twodiscs.model.geometry import MANY_DISCS, TWO_DISCS
-from twodiscs.model.many_geometry import check_box
 from twodiscs.model.two_geometry import ENERGY
 
 TYPE_CHECKING = False
@@ -103,7 +102,7 @@ class Box:
         self._check_effects()
         self._settle("discs", check_integer("discs", self.discs, 2, MOST_DISCS))
         if self.discs > 2:
-            check_box(self)
+            many_geometry.check_box(self)
 
     def _settle(self, name, value):
         object.__setattr__(self, name, value)
@@ -114,8 +113,7 @@ class Box:
             ends = SHORTEST_LENGTH**0.75, LONGEST_LENGTH**0.75
             for name in ("depth", *self.LENGTHS):
                 self._settle(name, check_number(name, getattr(self, name), *ends))
-        repeated = len(set(self.periodic)) != len(self.periodic)
-        if repeated or not set(self.periodic) <= {*self.axes}:
+        if len({*self.periodic} & {*self.axes}) < len(self.periodic):
             allowed = "x and y (z needs a depth)" if self.depth is None else "x, y and z"
             raise InputError(
                 f"periodic must be some of the axes {allowed}, each once and no other letter, not "
@@ -177,28 +175,23 @@ class Box:
     @property
     def effects(self) -> dict[str, object]:
         """The effects, {name: value} in the order of the fields."""
-        return {
-            name: getattr(self, name)
-            for name, default in ABSENT_VALUES.items()
-            if getattr(self, name) != default
-        }
-
-    @property
-    def has_effects(self) -> bool:
-        """Whether there is any effect."""
-        return bool(self.effects)
+        return {name: value for name, value in self.options.items() if name != "discs"}
 
     @property
     def family(self) -> str:
         """The family: "plain" (two equal, smooth discs between walls), "effects" or "many"."""
         if self.discs > 2:
             return "many"
-        return "effects" if self.has_effects else "plain"
+        return "effects" if self.effects else "plain"
 
     @property
     def _geometry(self):
-        """The ``Geometry`` of the discs."""
-        return MANY_DISCS if self.discs > 2 else TWO_DISCS
+        """The module with the functions of a ``Scene`` that differ between two discs and more.
+
+        Each of both has check, require_followable, largest_radius, open_axes, ergodic_components,
+        confined and copies.
+        """
+        return many_geometry if self.discs > 2 else two_geometry
 
     @property
     def options(self):

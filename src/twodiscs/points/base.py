@@ -104,8 +104,7 @@ class Point:
     """The arithmetic on the sums of one method in one ``scene``.
 
     ``components`` are those of its run, None if it was made without one. A class has a method
-    ``of(scene, components)``, which makes the point of the ``components`` of a run, and
-    ``estimate``, which returns an ``Estimate`` by name, or None without a count. ``work`` is the
+    ``of(scene, components)``, which makes the point of the ``components`` of a run. ``work`` is the
     number of events, samples or intervals.
     """
 

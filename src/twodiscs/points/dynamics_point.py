@@ -14,7 +14,7 @@ from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.base import Point, reached
 from twodiscs.points.estimates import stratified_mean
-from twodiscs.theory import exact
+from twodiscs.theory import clusters
 
 COLLISIONS, ANY_WALLS = EVENTS.index("disc_collision"), EVENTS.index("any_wall")
 
@@ -55,8 +55,6 @@ class Count:
 
     def estimate(self, copies=1):
         """Return the mean time between events as an ``Estimate``, None if none was counted."""
-        if not self.count:
-            return None
         return estimates.mean_time(*self.sums, self.time(copies), self.mean)
 
     def bound(self):
@@ -154,11 +152,11 @@ class DynamicsPoint(Point):
     def spread_products(self):
         """The ``products``, plus what errors need for bursts that no sample shows.
 
-        Rough discs stay in corners of walls (see ``exact.corner_variance``). The counts of several
-        walls have the same bursts.
+        Rough discs stay in corners of walls (see ``clusters.corner_variance``). The counts of
+        several walls have the same bursts.
         """
         burst_variance = {
-            e: exact.corner_variance(self.scene, e, self.duration) for e in self.counts
+            e: clusters.corner_variance(self.scene, e, self.duration) for e in self.counts
         }
         return {
             pair: total
@@ -181,14 +179,6 @@ class DynamicsPoint(Point):
     def count(self, event):
         """Return the best ``Count`` of an event, from its strip if there is one."""
         return self.strips.get(event) or self.everywhere(event)
-
-    def estimate(self, event, copies=1):
-        """Return the mean time of ``event`` as an ``Estimate`` (see ``Count.estimate``)."""
-        return self.count(event).estimate(copies)
-
-    def sums_of_others(self):
-        """Return the set of events whose number is the sum of other events' in every replica."""
-        return estimates.sums_of_others(self.counts, self.products, self.replicas)
 
     def combination(self, weights):
         """Return Σ weight × ⟨N⟩ as an ``Estimate``, given {event: weight} (see ``estimates``)."""

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, field
 from fractions import Fraction
-from itertools import pairwise, repeat
+from itertools import islice, pairwise
 from typing import ClassVar, NamedTuple
 
 from twodiscs.model.scene import Scene
@@ -35,14 +35,13 @@ def wide_edges(bins=N_BINS):
 class Bins(NamedTuple):
     """Sums over chains for bins between ``edges``, in units of the width of an equal bin.
 
-    They are Σ c and Σ c², with c the intervals of a chain in the bin. If the number n of intervals
-    differs from chain to chain, ``products`` are Σ c n.
+    They are Σ c, Σ c² and Σ c n, with c of the n intervals of a chain in the bin.
     """
 
     edges: list[int]
     counts: list[int]
     squares: list[int]
-    products: list[int] | None = None
+    products: list[int]
 
 
 class HistogramBin(NamedTuple):
@@ -61,8 +60,7 @@ class IntervalsPoint(Point):
 
     ``wide`` bins, which widen with time, have the same intervals again. Bins of your own have None,
     and ``overflow`` is the number of intervals outside. ``mean`` is the mean of all
-    ``intervals``, ``stderr`` its standard error over chains; ``intervals_squared`` is Σ n² if n
-    differs.
+    ``intervals``, ``stderr`` its standard error over chains; ``intervals_squared`` is Σ n².
     """
 
     stage: ClassVar[str] = "intervals"
@@ -74,10 +72,10 @@ class IntervalsPoint(Point):
     equal: Bins
     wide: Bins | None
     intervals: int
+    intervals_squared: int
     chains: int
     mean: float
     stderr: float
-    intervals_squared: int | None = None
     components: dict | None = field(default=None, compare=False, repr=False)
 
     @classmethod
@@ -93,6 +91,7 @@ class IntervalsPoint(Point):
         edges = wide_edges() if own is None else [edge / unit for edge in own]
         n = N_BINS if own is None else len(edges) - 1
         (sums, moments), blocks = reached(component["sums"])
+        rows = sums.tolist()
         chains, (total, squares, *more) = blocks * component["chains"], map(int, moments)
         if more:
             joint, intervals, intervals_squared = more
@@ -101,10 +100,11 @@ class IntervalsPoint(Point):
             error = math.sqrt(spread * chains / (chains - 1)) / intervals
             unit *= TIME_GRAIN
         else:
-            intervals, intervals_squared, mean = chains * component["returns"], None, total / chains
+            each, mean = component["returns"], total / chains
+            intervals, intervals_squared = chains * each, chains * each**2
+            rows.append([each * count for count in rows[0]])
             variance = (chains * squares - total * total) / (chains * chains * (chains - 1))
-            error, unit = math.sqrt(variance), unit * TIME_GRAIN / component["returns"]
-        rows = sums.tolist()
+            error, unit = math.sqrt(variance), unit * TIME_GRAIN / each
         equal = Bins([*range(n + 1)] if own is None else edges, *(row[:n] for row in rows))
         wide = None if own else Bins(edges, *(row[n + 1 : n + len(edges)] for row in rows))
         return cls(
@@ -127,39 +127,33 @@ class IntervalsPoint(Point):
         """The number of intervals drawn."""
         return self.intervals
 
-    def estimate(self, name="mean"):
-        """Return an ``Estimate`` by name: the "mean", or the "density_at_zero"."""
-        if name == "mean":
-            return Estimate(self.mean, self.stderr, self.chains)
-        first = [one.density for one in list(self.bins())[:2]]
+    @property
+    def density_at_zero(self):
+        """The density at 0⁺ as an ``Estimate``, from the first two bins."""
+        first = [one.density for one in islice(self.bins(), 2)]
+        values, errors = zip(*((one.value, one.stderr) for one in first), strict=True)
         # With more than two discs another pair may hop next, so the density has a linear term.
-        value, error = estimates.density_of_chains_at_zero(
-            [one.value for one in first],
-            [one.stderr for one in first],
-            linear=self.intervals_squared is not None,
-        )
+        linear = self.scene.discs > 2
+        value, error = estimates.density_of_chains_at_zero(values, errors, linear)
         return Estimate(value, error, self.chains)
 
     def bins(self):
         """Yield each ``HistogramBin``, the equal ones first; those of your own are one kind."""
         width = self.bin_width
         kinds = {"equal": self.equal, "wide": self.wide} if self.wide else {"own": self.equal}
-        for kind, (edges, counts, squares, products) in kinds.items():
-            columns = counts, squares, products or repeat(None)
-            for (left, right), count, *sums in zip(pairwise(edges), *columns, strict=False):
+        for kind, (edges, *columns) in kinds.items():
+            for (left, right), count, *sums in zip(pairwise(edges), *columns, strict=True):
                 density = self._density((right - left) * width, count, *sums)
                 yield HistogramBin(kind, left * width, right * width, count, density)
 
     def _density(self, width, count, squares, product):
-        """Return count/(intervals × width) as an ``Estimate``, from the spread between chains."""
+        """Return count/(intervals × width) as an ``Estimate``, from the spread between chains.
+
+        The number of intervals of a chain may vary, which adds to the error.
+        """
         per_chain = self.chains / (self.intervals * width)
-        weights, totals, products = {"n": per_chain}, {"n": count}, {"n*n": squares}
-        density = estimates.combination(weights, totals, products, self.chains)
-        if product is None:
-            return density
-        # The number of intervals of a chain varies.
-        weights |= {"all": -per_chain * count / self.intervals}
-        products |= {"n*all": product, "all*all": self.intervals_squared}
-        totals |= {"all": self.intervals}
+        weights = {"n": per_chain, "all": -per_chain * count / self.intervals}
+        totals = {"n": count, "all": self.intervals}
+        products = {"n*n": squares, "n*all": product, "all*all": self.intervals_squared}
         error = estimates.combination(weights, totals, products, self.chains).stderr
-        return Estimate(density.value, error, self.chains)
+        return Estimate(float(Fraction(per_chain) * count / self.chains), error, self.chains)

@@ -44,10 +44,6 @@ class SampledPoint(Point):
         """The number of samples drawn."""
         return self.samples
 
-    def estimate(self, quantity):
-        """Return the ``Estimate`` of a sampled quantity, None without a hit."""
-        return self.sampled(quantity).estimate
-
     def moments(self):
         """Return the names of quantities, the means of their weights and their covariances.
 

@@ -523,7 +523,7 @@ def samplers(scene):
         from twodiscs.sampling.many.insertions import insertion_sampler
 
         return {"insertions": insertion_sampler}
-    if scene.has_effects:
+    if scene.effects:
         return {"rejection": weighted}
     return {"rejection": prism_sampler, "conditioned": conditioned}
 

@@ -30,7 +30,7 @@ import numpy as np
 
 from twodiscs.model.checks import InputError
 from twodiscs.theory.flux import Derivatives
-from twodiscs.theory.quadrature import gauss_legendre
+from twodiscs.theory.quadrature import as_arrays, gauss_legendre
 
 #: Nodes of a panel, the phase that they resolve, and the most panels that double.
 NODES_PER_PANEL, PANEL_PHASE, MOST_PANELS = 20, 15.0, 60
@@ -76,8 +76,7 @@ def graded_nodes(height, finest, widest, farthest):
     The first one is about ``finest``, none is wider than ``widest``, and none begins beyond
     ``farthest``.
     """
-    rule = gauss_legendre(NODES_PER_PANEL)
-    x, w = np.array([t for t, _, _ in rule]), np.array([weight for _, _, weight in rule])
+    x, w = as_arrays(gauss_legendre(NODES_PER_PANEL))
     ends = [height / 2]
     while ends[-1] > finest and len(ends) < MOST_PANELS:
         ends.append(ends[-1] / 2)

@@ -183,23 +183,10 @@ def replicas_needed(scene, event, error):
     pairs. Any pair may begin in a neck, and the other discs only shorten its bursts. Each disc is
     in N − 1 pairs, whose bursts at the walls add up.
     """
-    if scene.moment_of_inertia is None:
-        return 0.0
     pairs, others = math.comb(scene.discs, 2), scene.discs - 1
     if event in WALL_HITS:
         error /= others
     return clusters.replicas_needed(replace(scene, discs=2), event, error) / pairs
-
-
-def corner_variance(scene, event, duration):
-    """Return the variance of a replica's count of an ``event`` to add for bursts in corners.
-
-    It is 0 for smooth discs; ``clusters`` has the bursts of rough ones. The count is that of a
-    ``duration``, of all events that are equal by symmetry.
-    """
-    if scene.moment_of_inertia is None:
-        return 0.0
-    return clusters.corner_variance(scene, event, duration)
 
 
 def free_fraction(scene):

@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 
 def gauss_legendre(order):
     """Return triples (t, 1 − t, weight) of the Gauss–Legendre rule of ``order`` nodes on [0, 1].
@@ -20,6 +22,12 @@ def gauss_legendre(order):
             x -= p / slope
         rule.append(((1 - x) / 2, (1 + x) / 2, 1 / ((1 - x * x) * slope**2)))
     return rule
+
+
+def as_arrays(rule):
+    """Return the nodes and the weights of the triples of a ``rule``."""
+    nodes, _, weights = np.array(rule).T.copy()
+    return nodes, weights
 
 
 def double_exponential(step):

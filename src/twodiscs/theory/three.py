@@ -42,15 +42,10 @@ from itertools import pairwise, product
 import numpy as np
 
 from twodiscs.theory.flux import Derivatives
-from twodiscs.theory.quadrature import gauss_legendre
+from twodiscs.theory.quadrature import as_arrays, gauss_legendre
 
 #: Nodes between two kinks, for the sum of the gaps and for the larger gap.
 OUTER_NODES, INNER_NODES = 48, 32
-
-
-def _nodes(order):
-    rule = gauss_legendre(order)
-    return np.array([t for t, _, _ in rule]), np.array([weight for _, _, weight in rule])
 
 
 def _root(square):
@@ -75,7 +70,7 @@ def _ends(a, b, sigma):
 
 def _sums(a, b, sigma):
     """Return (t, weight, c) of the nodes of the outer integral."""
-    x, w = _nodes(OUTER_NODES)
+    x, w = as_arrays(gauss_legendre(OUTER_NODES))
     # Powers of a half at the ends are smooth in the angle of a sine squared.
     fraction, slope = np.sin(math.pi / 2 * x) ** 2, math.pi / 2 * np.sin(math.pi * x)
     t, weight, c = [], [], []
@@ -126,7 +121,7 @@ def _kinks(a, sigma, t, c):
 
 def _gaps(a, sigma, t, c):
     """Return (p, q, weight, P < σ, Q < σ) at the inner nodes, arrays (panels, nodes, t)."""
-    x, w = (part[:, None] for part in _nodes(INNER_NODES))
+    x, w = (part[:, None] for part in as_arrays(gauss_legendre(INNER_NODES)))
     larger, smaller = _kinks(a, sigma, t, c)
     low, high = larger[:-1, None, :], larger[1:, None, :]
     most, least = smaller[:-1, None, :], smaller[1:, None, :]
@@ -168,7 +163,7 @@ def _triangles(winding, sigma):
         return plane * sigma**4, 4 * plane * sigma**3
     if winding >= 3 * sigma:
         return 0.0, 0.0
-    x, w = _nodes(OUTER_NODES)
+    x, w = as_arrays(gauss_legendre(OUTER_NODES))
 
     def lens(t):
         half = np.minimum(t / (2 * sigma), 1.0)
@@ -190,17 +185,10 @@ def _triangles(winding, sigma):
 
 def derivatives(scene):
     """Return the ``Derivatives`` of a ``Scene`` of three discs between walls, with both hops."""
-    volume, per_width, per_height, per_contact, horizontal_hops = integrals(
-        scene.range_x, scene.range_y, scene.contact_distance
-    )
-    vertical_hops = integrals(scene.range_y, scene.range_x, scene.contact_distance)[4]
-    return Derivatives(
-        math.log(volume),
-        *(
-            part / volume
-            for part in (per_width, per_height, per_contact, horizontal_hops, vertical_hops)
-        ),
-    )
+    volume, *parts = integrals(scene.range_x, scene.range_y, scene.contact_distance)
+    # The other hops are those of the box turned by a quarter.
+    parts.append(integrals(scene.range_y, scene.range_x, scene.contact_distance)[4])
+    return Derivatives(math.log(volume), *(part / volume for part in parts))
 
 
 def integrals(a, b, sigma):

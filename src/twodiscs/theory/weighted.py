@@ -36,7 +36,7 @@ import numpy as np
 from twodiscs.model.events import EVENT_AXES, WAYS, by_kind
 from twodiscs.model.two_geometry import ENERGY
 from twodiscs.theory.flux import flux_constant
-from twodiscs.theory.quadrature import double_exponential, gauss_legendre
+from twodiscs.theory.quadrature import as_arrays, double_exponential, gauss_legendre
 
 # Functions of arrays ------------------------------------------------------------------------------
 
@@ -52,19 +52,14 @@ def _power(x, n):
 # Quadrature ---------------------------------------------------------------------------------------
 
 
-def _rule(triples):
-    """Return nodes and weights of a rule on [0, 1] as arrays."""
-    return np.array([t for t, _, _ in triples]), np.array([weight for _, _, weight in triples])
-
-
 #: Exact for the densities of an axis without field, which are piecewise linear.
-LINEAR_RULE = _rule(gauss_legendre(2))
+LINEAR_RULE = as_arrays(gauss_legendre(2))
 
 #: Exact to rounding for a piece of the arc between two such axes, a trigonometric polynomial.
-SMOOTH_RULE = _rule(gauss_legendre(16))
+SMOOTH_RULE = as_arrays(gauss_legendre(16))
 
 #: For half-integer powers: of the energy left in a field, or where a sphere touches a plane.
-SINGULAR_RULE = _rule(double_exponential(1 / 16))
+SINGULAR_RULE = as_arrays(double_exponential(1 / 16))
 
 
 def _nodes(cuts, rule):
