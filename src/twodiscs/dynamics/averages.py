@@ -171,8 +171,8 @@ class ObserveRun(Run):
                 f"{format_number(MOST_PATH_EVENTS, 'g')} events are due, not "
                 f"{format_number(last, 'g')}"
             )
-        most = int(MOST_RUN_EVENTS / last / self._rate)
-        if self.replicas > most:
+        if self.replicas * last * self._rate > MOST_RUN_EVENTS:
+            most = int(MOST_RUN_EVENTS / last / self._rate)
             raise InputError(
                 f"replicas must be at most {most} for times up to {format_number(last, 'g')}, with "
                 f"{format_number(MOST_RUN_EVENTS, 'g')} events due in all, not {self.replicas}"

@@ -9,6 +9,7 @@ through both panels mark the radii at which a regime ends, with names above.
 import math
 import re
 from dataclasses import dataclass
+from functools import partial
 from itertools import cycle
 
 import numpy as np
@@ -339,9 +340,14 @@ def logarithmic(axes, radii, series):
 
 def _plain_numbers(digits, power):
     """Return labels of ticks as numbers over 10^``power``, at the ticks that begin with a digit."""
-    labels = FuncFormatter(lambda x, _: f"{x / 10.0**power:g}" if f"{x:e}"[0] in digits else "")
+    labels = FuncFormatter(partial(_plain_number, digits, power))
     labels.set_offset_string(rf"$\times10^{{{power}}}$" if power else "")
     return labels
+
+
+def _plain_number(digits, power, x, place):
+    """Return the text of a label at ``x``, whatever its ``place``: "" if no digit begins it."""
+    return f"{x / 10.0**power:g}" if f"{x:e}"[0] in digits else ""
 
 
 def label_decades(axis, ratio):
