@@ -400,7 +400,8 @@ def simulate(
     Trajectories are simulated in blocks of 1024, 2.4e5 events each for a radius of 0.2 in a box
     of 1.5 × 1. Without a ``duration`` the minimum is 32 blocks, 7.7e6 events there, or fewer within
     the ``budget``, but at least one block. If this is more than asked for, the ``note`` of the
-    result has the number. For quick results with many discs give ``budget=1e6``.
+    result has the number. For quick results with many discs give ``budget=1e6``, or what the
+    warning says if it is too small for an error.
 
     Parameters
     ----------

@@ -18,11 +18,15 @@ REPLICA_EVENTS, CHAIN_REPLICA_EVENTS = 256, 8192
 
 #: Events of each roomy disc in a replica of ``LARGE`` numbers of discs, and the most of all discs
 #: together. The motion then takes several times as long as the draw of the state.
-EVENTS_PER_DISC, MOST_REPLICA_EVENTS = 256, 2**19
+EVENTS_PER_DISC, MOST_REPLICA_EVENTS = 256, 2**21
 
 #: Replicas that a budget has room for, if they can be shorter: the 100 that an error needs, and
 #: some more. Those of crowded discs cannot, because each has a new chain.
 BUDGET_REPLICAS = 108
+
+#: Density relaxes in a time that goes as the number of discs. A chain of replicas has seen it relax
+#: if a disc has an event in each of them for this number of discs.
+DISCS_PER_EVENT = 128
 
 #: The events of a block of ``LARGE`` numbers of discs and its fewest replicas, and the events of
 #: each disc in an epoch.
@@ -101,15 +105,18 @@ def replica_duration(scene, budget=None):
     """Return the time T of one replica, a power of two, see ``expected_duration``.
 
     With friction it is shorter, so that kicks do not add to the work. For ``LARGE`` numbers of
-    discs, if they are not crowded, it is also so short that ``BUDGET_REPLICAS`` have no more events
-    than the ``budget``, but one event for each disc; it then has three binary digits.
+    discs, if they are not crowded, it is also so short that ``BUDGET_REPLICAS``, in whole blocks,
+    have no more events than the ``budget``; it then has three binary digits. Each disc has at least
+    one event, and N/``DISCS_PER_EVENT``.
     """
     work = work_per_event(scene)
     duration = ensemble.nearest_power_of_two(expected_duration(scene) / work)
     if budget is None or scene.discs < LARGE or crowding(scene) > CROWDED:
         return duration
-    events = budget / BUDGET_REPLICAS / work
-    mantissa, exponent = math.frexp(max(events, scene.discs) / expected_event_rate(scene))
+    whole = max(budget - BLOCK_EVENTS, min(budget, BLOCK_EVENTS))
+    least = scene.discs * max(1.0, scene.discs / DISCS_PER_EVENT)
+    events = max(whole / BUDGET_REPLICAS / work, least)
+    mantissa, exponent = math.frexp(events / expected_event_rate(scene))
     return min(duration, math.ldexp(int(8 * mantissa), exponent - 3))
 
 
