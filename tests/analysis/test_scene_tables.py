@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from factory import LAWS, RADII, as_theory, bins_point, counts_point, hits_point
+from factory import LAWS, RADII, Laws, as_theory, bins_point, counts_point, hits_point
 from scipy.special import ndtri, stdtr
 
 import twodiscs as td
@@ -26,13 +26,14 @@ from twodiscs.points import estimates
 from twodiscs.points.dynamics_point import StripCount
 from twodiscs.points.intervals_point import Bins
 from twodiscs.sampling.montecarlo import MonteCarloRun
-from twodiscs.theory.exact import rate, replicas_needed
+from twodiscs.theory.exact import event_rate, rate, replicas_needed
 
 # Monte Carlo ----------------------------------------------------------------------------------
 
 
 def test_the_whole_wall_area_is_four_times_right_and_top():
-    point = LAWS[1].monte_carlo(np.random.default_rng(2), 10**7)
+    """In thick shells, whose bias is many errors: z is against their expectation."""
+    point = Laws(LAWS[1].scene, shell=0.3).monte_carlo(np.random.default_rng(2), 10**9)
     found = {row["quantity"]: row for row in AreasTable.rows([point])}
     right, top, whole = (found[f"{e}_area"] for e in ("right_wall", "top_wall", "any_wall"))
     assert whole["estimate"] == pytest.approx(4 * (right["estimate"] + top["estimate"]), rel=1e-14)
@@ -40,6 +41,9 @@ def test_the_whole_wall_area_is_four_times_right_and_top():
     # In these points the two shells are hit independently, so variances add up.
     both = 4 * math.hypot(right["stderr"], top["stderr"])
     assert whole["stderr"] == pytest.approx(both, rel=1e-2)
+    deviate = (whole["estimate"] - whole["expectation"]) / whole["stderr"]
+    assert whole["z"] == pytest.approx(deviate, abs=0.05)
+    assert whole["bias"] < -10 * whole["stderr"]
     correlated = replace(point, right_and_top=min(right["hits"], top["hits"]))
     found = {row["quantity"]: row for row in AreasTable.rows([correlated])}
     assert found["any_wall_area"]["stderr"] > 1.1 * whole["stderr"]
@@ -199,13 +203,20 @@ def test_rows_of_the_histogram():
     assert few[0]["z"] is few[0]["mean_stderr"] is None
 
 
-@pytest.mark.parametrize("counts", [(100, 100, 9), (99, 100, 9), (100, 99, 9)])
-def test_a_density_at_zero_has_an_error_if_neither_of_its_bins_has_too_few(counts):
-    point = bins_point(0.1, counts, bin_width=2.0**-5)
-    found = Intervals(point.scene, point, {"number": sum(counts)}).at_zero
-    assert found.value
-    assert (found.status, found.stderr is None) in {("too-few", True), ("extrapolated", False)}
-    assert (found.stderr is None) == (min(counts[:2]) < 100)
+@pytest.mark.parametrize("discs", [2, 3])
+@pytest.mark.parametrize(
+    ("events", "counts", "status"),
+    [(0.39, (100, 100, 9), "extrapolated"), (0.39, (99, 100, 9), "too-few"),
+     (0.39, (100, 99, 9), "too-few"), (0.41, (100, 100, 9), "not-resolved")],
+)  # fmt: skip
+def test_a_density_at_zero_needs_few_events_and_many_intervals(discs, events, counts, status):
+    """Bins resolve up to 0.4 events of a pair, N/2 of which share the exact rate of all events."""
+    scene = replace(LAWS[1].scene, discs=discs)
+    point = bins_point(counts=counts, scene=scene, bin_width=events * discs / 2 / event_rate(scene))
+    found = Intervals(scene, point, {"number": sum(counts)}).at_zero
+    assert found.status == status
+    assert (found.value is None) == (status == "not-resolved")
+    assert (found.stderr is None) == (status != "extrapolated")
 
 
 # Units ------------------------------------------------------------------------------------------

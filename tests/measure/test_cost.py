@@ -261,5 +261,5 @@ def test_an_event_that_no_pilot_counted_has_no_price_and_no_forecast():
 def test_exact_values_have_the_precision_of_their_theory(scene, floor):
     assert [*cost._price_of_exact(td.Scene(1.5, 1.0, 0.12, discs=4))] == []
     (price,) = cost._price_of_exact(scene)
-    assert price.floor == price.least_error == pytest.approx(floor)
+    assert (price.floor, price.c) == (floor, floor**2 * price.least_seconds)
     assert price.seconds(floor * 1.01) == price.least_seconds
