@@ -287,6 +287,26 @@ def test_an_error_smaller_than_asked_needs_its_own_initial_states(replicas, targ
     assert (row["stderr"] is None) == (status == "too-few")
 
 
+@pytest.mark.parametrize(("replicas", "status"), [(2016, "too-few"), (2017, "reached")])
+def test_a_strip_of_rough_discs_needs_its_events_alone(replicas, status):
+    """All of its initial states are in the neck: 100 (2/⟨N⟩ + 1/6) have an error.
+
+    The same counts from ordinary initial states have none, because few of those are in the neck.
+    """
+    scene, hop = td.Scene(1.5, 1.0, 0.2475, moment_of_inertia=0.1), "horizontal_hop"
+    strip = StripCount(
+        duration=1.0, share=0.01, replicas=replicas, count=200, squares=200, events=1000,
+        strata=([[1.0]], [[replicas]], [[200]], [[200]]),
+    )  # fmt: skip
+    given = {"scene": scene, "replicas": replicas, "duration": 100.0, "target": {hop: 0.1}}
+    point = counts_point(scene.radius, hop, 200, 200, strips={hop: strip}, **given)
+    with as_theory({(scene.radius, f"{hop}_time"): 1000.0}):  # ⟨N⟩ is 0.1
+        (row,), (other,) = (MeanTimesTable.rows([point], part) for part in (False, True))
+    assert (row["starts"], row["status"]) == ("strip", status)
+    assert (row["stderr"] is None) == (status == "too-few")
+    assert (other["starts"], other["status"], other["z"]) == ("invariant", "too-few", None)
+
+
 @pytest.mark.parametrize("chains", [100, 150])
 def test_the_mean_of_a_histogram_is_tested_over_chains(chains):
     """Student's t with as many degrees of freedom as chains less one, whatever their intervals."""

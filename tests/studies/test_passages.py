@@ -127,6 +127,27 @@ def test_two_discs_in_a_file_move_as_their_hops_are_correlated():
     assert abs(moved.value - due["estimate"]) < 5 * math.hypot(moved.stderr, due["stderr"])
 
 
+@pytest.mark.parametrize(("inertia", "blocks"), [(None, 2), (0.5, 255), (0.5, 256)])
+def test_diffusion_on_a_ring_is_the_slope_of_squares_after_the_start(inertia, blocks, monkeypatch):
+    """⟨n²⟩ = 5 + t/2τ has D/(ν ℓ²) = 1/2; rates of rough discs have an error from 256 blocks on."""
+    scene = near.scene_at(BOX, HOP, 3, periodic="x", moment_of_inertia=inertia)
+    ring = near.NearThreshold("ring", scene, HOP, 3, 1)
+
+    def hop_sums(scene, hop, times, blocks, seed, on_surface=True):
+        hops = np.array(times) / ring.mean
+        means = np.array([-0.1 + 0 * hops, 5 + hops / 2, hops, hops**2]) * near.HOPS_PER_BLOCK
+        return np.linspace(0.9, 1.1, blocks)[:, None, None] * means, 1
+
+    monkeypatch.setattr(near, "hop_sums", hop_sums)
+    monkeypatch.setattr(near, "affordable_blocks", lambda *_: blocks)
+    correlated, rate, moved = ring.diffusion(1)
+    assert correlated["estimate"] == moved["reference"] == pytest.approx(0.8)
+    assert rate["estimate"] == pytest.approx(1 / ring.mean)
+    assert (rate["stderr"] is None) == (blocks == 255)
+    assert moved["estimate"] == pytest.approx(0.5)
+    assert moved["stderr"] > 0
+
+
 @pytest.mark.parametrize("inertia", [None, slow(0.5)])
 def test_hops_in_a_file_are_those_of_monte_carlo(inertia):
     scene = Scene(2.25, 1.0, 0.2, discs=3, periodic="x", moment_of_inertia=inertia)
@@ -271,9 +292,6 @@ def test_the_table_is_written(rough, tmp_path, small, monkeypatch):
         "last_exponent", "rate", "diffusion", "single_file", "displacement",
         "file", "amplitude", "local_exponent", "scaled_coefficient",
     }  # fmt: skip
-    # Hops of rough discs come in crowds: fewer than 256 blocks have no error.
-    rates = of(rows, quantity="rate")
-    assert all((row["stderr"] is None) == (row["moment_of_inertia"] is not None) for row in rates)
     # Nothing but the passages tells time between passages from time between hops.
     times, kappa = of(rows, quantity="passage_time"), of(rows, quantity="coefficient")
     for time, fraction in zip(times, kappa, strict=True):
