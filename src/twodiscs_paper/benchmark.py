@@ -18,7 +18,7 @@ from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import class_counts, many_rates
 from twodiscs.model.events import EVENTS, SHELL_EVENTS
-from twodiscs.model.many_geometry import LARGE
+from twodiscs.model.many_geometry import CELL_DISCS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.conditioned import conditioned_sampler
@@ -41,7 +41,7 @@ def count_in_square(discs, packing, periodic, with_states):
     side = math.sqrt(discs * math.pi / packing) * SCENE.radius
     scene = Scene(side, side, SCENE.radius, discs=discs, periodic=periodic)
     duration, replicas = many_rates.replica_duration(scene), many_rates.block_replicas(scene)
-    if discs >= LARGE and not with_states:  # one state, whose time does not depend on ``time``
+    if discs >= CELL_DISCS and not with_states:  # one state, whose time does not depend on ``time``
         duration, replicas = duration * replicas, 1
 
     def counted(time):
@@ -105,7 +105,7 @@ def numpy_sampler(chunks=1000, chunk=16384):
             square = uu + vv
             free = square >= sigma**2
             sample_in = (uu, vv), square, (x1, y1), ends
-            shells = [free & montecarlo.IN_SHELL[event](*sample_in) for event in SHELL_EVENTS]
+            shells = [free & montecarlo.SHELL_TESTS[event](*sample_in) for event in SHELL_EVENTS]
             hits[:] += [np.count_nonzero(members) for members in (free, *shells)]
 
     _, seconds = timed(sample)

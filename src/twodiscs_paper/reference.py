@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from mpmath import mp, mpf
 
-from twodiscs.model.events import EVENT_AXES, EVENTS, WALLS, WAYS, by_kind
+from twodiscs.model.events import EVENT_AXES, EVENT_WAYS, EVENTS, WALLS, by_kind
 
 #: Working digits.
 DIGITS = 60
@@ -259,7 +259,7 @@ def mean_time(event, q):
     """
     blocked = horizontal_hop_area if EVENT_AXES.get(event) == "x" else vertical_hop_area
     parts = 2 if event in WALLS and blocked(q) == 0 else 1
-    return volume(q) / (parts * WAYS[event] * AREAS[event](q) * normal_speed())
+    return volume(q) / (parts * EVENT_WAYS[event] * AREAS[event](q) * normal_speed())
 
 
 #: The quantities of tables, as functions of a ``MpScene``.

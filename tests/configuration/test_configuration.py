@@ -291,7 +291,7 @@ def test_what_is_about_a_plain_scene_needs_one():
 
 
 def test_the_fewest_intervals_are_a_block():
-    assert scene_block.LEAST_INTERVALS == runs.CHAINS_PER_BLOCK * runs.RETURNS
+    assert scene_block.LEAST_INTERVALS == runs.CHAINS_PER_BLOCK * runs.CHAIN_HOPS
 
 
 def test_radii_too_close_to_the_largest_are_refused_for_dynamics_alone():

@@ -18,6 +18,7 @@ from twodiscs.dynamics.many import all_pairs as many
 from twodiscs.dynamics.many import class_counts, many_rates
 from twodiscs.dynamics.runs import relative_errors
 from twodiscs.model.events import EVENT_AXES, EVENTS, SHELL_EVENTS, WALLS
+from twodiscs.model.many_geometry import CELL_DISCS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import insertions, many_initial_states
 from twodiscs.theory.flux import rates
@@ -44,9 +45,9 @@ ROUGH, UPRIGHT = replace(THREE, moment_of_inertia=0.5), CHANNEL.turned()
 EXACT = [THREE, replace(THREE, radius=0.26), ROUGH, CHANNEL, UPRIGHT]
 #: In a low channel no hops in x are counted, by a kernel of its own. All such kernels are slow.
 EXACT += [
-    Scene(0.6, 7.0, 0.18, discs=many_initial_states.LARGE),
-    slow(Scene(7.0, 0.6, 0.18, discs=many_initial_states.LARGE)),
-    slow(Scene(7.0, 0.6, 0.18, discs=many_initial_states.LARGE, moment_of_inertia=0.5)),
+    Scene(0.6, 7.0, 0.18, discs=CELL_DISCS),
+    slow(Scene(7.0, 0.6, 0.18, discs=CELL_DISCS)),
+    slow(Scene(7.0, 0.6, 0.18, discs=CELL_DISCS, moment_of_inertia=0.5)),
     slow(replace(THREE, friction=4.0)),
 ]
 

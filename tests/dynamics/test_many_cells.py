@@ -17,30 +17,31 @@ from twodiscs.dynamics import paths
 from twodiscs.dynamics.many import all_pairs as many
 from twodiscs.dynamics.many import cell_list as many_cells
 from twodiscs.dynamics.many import class_counts, many_paths, many_rates
+from twodiscs.model.many_geometry import CELL_DISCS
 from twodiscs.sampling.many import chains, many_initial_states
 from twodiscs.sampling.many.cell_grid import make_grid
 
 #: At the border: where one kernel ends and the other one begins, and on rings.
 BORDER = [
-    td.Scene(15.0, 1.0, 0.1, discs=many_initial_states.LARGE),
-    td.Scene(4.0, 2.0, 0.2, discs=many_initial_states.LARGE),
-    td.Scene(8.0, 0.9, 0.2, discs=many_initial_states.LARGE),
-    td.Scene(4.0, 2.0, 0.15, discs=many_initial_states.LARGE, periodic="x"),
-    td.Scene(4.0, 2.0, 0.15, discs=many_initial_states.LARGE, periodic="x", moment_of_inertia=0.4),
+    td.Scene(15.0, 1.0, 0.1, discs=CELL_DISCS),
+    td.Scene(4.0, 2.0, 0.2, discs=CELL_DISCS),
+    td.Scene(8.0, 0.9, 0.2, discs=CELL_DISCS),
+    td.Scene(4.0, 2.0, 0.15, discs=CELL_DISCS, periodic="x"),
+    td.Scene(4.0, 2.0, 0.15, discs=CELL_DISCS, periodic="x", moment_of_inertia=0.4),
 ]
 
 
 #: A torus of three columns and two rows of cells, and one with both images in reach along x alone.
 TORI = [
     td.Scene(0.8, 0.6, 0.13, discs=4, periodic="xy"),
-    td.Scene(0.6, 4.0, 0.13, discs=many_initial_states.LARGE, periodic="xy"),
+    td.Scene(0.6, 4.0, 0.13, discs=CELL_DISCS, periodic="xy"),
 ]
 
 
 #: Rings of three columns of cells, and of two, where both images of a disc are in reach.
 SHORT = [
     td.Scene(0.7, 4.0, 0.1, discs=24, periodic="x"),
-    td.Scene(0.6, 4.0, 0.13, discs=many_initial_states.LARGE, periodic="x"),
+    td.Scene(0.6, 4.0, 0.13, discs=CELL_DISCS, periodic="x"),
 ]
 
 
@@ -71,7 +72,7 @@ def test_a_few_events_are_the_same_ones(scene):
         states.copy(), *seeds, duration, duration / 3, law, grid, hops_y, hops_x, None
     )
     other = many.count_events(states, *seeds, 64, duration, law, hops_x, None)
-    assert one[0].sum() > (2 if scene.discs < many_initial_states.LARGE else 10) * replicas
+    assert one[0].sum() > (2 if scene.discs < CELL_DISCS else 10) * replicas
     for some, same in zip(one, other, strict=True):
         assert np.array_equal(some, same)
 
@@ -91,10 +92,7 @@ def test_a_log_has_room_for_pairs_of_a_row_or_a_column():
 
 def test_which_kernel_runs():
     """By the number of discs."""
-    small, large = (
-        td.Scene(15.0, 1.0, 0.1, discs=n)
-        for n in (many_initial_states.LARGE - 1, many_initial_states.LARGE)
-    )
+    small, large = (td.Scene(15.0, 1.0, 0.1, discs=n) for n in (CELL_DISCS - 1, CELL_DISCS))
     assert many_initial_states.large_grid(small) is None
     assert many_initial_states.large_grid(large) is not None
     assert [make_grid(scene).x.size for scene in [*SHORT, *TORI]] == [4, 3, 4, 3]
@@ -156,7 +154,7 @@ def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
 @pytest.mark.parametrize("share", [0.5, 0.999])
 def test_events_are_as_many_as_expected_within_a_factor_of_two(share):
     """Those of a replica, too: 256 of each disc, and more if discs are crowded."""
-    box = td.Box(5.0, 4.0, discs=many_initial_states.LARGE)
+    box = td.Box(5.0, 4.0, discs=CELL_DISCS)
     scene = box.scene(share * box.largest_radius)
     time, replicas = many_rates.expected_duration(scene), 8
     sums, _ = class_counts.run_classes(scene, 1, 0, 1, time, replicas=replicas)

@@ -17,8 +17,9 @@ from marks import slow
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.two import strip
 from twodiscs.model.events import EVENTS
+from twodiscs.model.many_geometry import CELL_DISCS
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.many import insertions, many_initial_states
+from twodiscs.sampling.many import insertions
 
 SCENES_BY_NAME = {
     "plain": PAPER,
@@ -27,14 +28,14 @@ SCENES_BY_NAME = {
     "many, rough": Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.5),
     "many, channel": Scene(1.6, 0.6, 0.18, discs=4),
     "many, dense": Scene(1.5, 1.0, 0.19, discs=5),
-    "many, cells": Scene(15.0, 1.0, 0.1, discs=many_initial_states.LARGE),
+    "many, cells": Scene(15.0, 1.0, 0.1, discs=CELL_DISCS),
     "all": ALL,
     "all, friction": replace(ALL, friction=2.0),
 }
 
 
 def counts(scene):
-    how = {"replicas": 100 if scene.discs < many_initial_states.LARGE else 20}
+    how = {"replicas": 100 if scene.discs < CELL_DISCS else 20}
     return lambda first, stop, **lanes: find_engine(scene).run_blocks(
         scene, EVENTS, 3, first, stop, 8.0, **how, **lanes
     )

@@ -76,13 +76,13 @@ def test_the_work_of_a_replica_is_bounded(width, height, effects, share):
 
 
 def test_kicks_between_two_hops_are_work():
-    """An interval has the kicks of its length, each with the work of ``KICK`` events."""
+    """An interval has the kicks of its length, each with the work of ``KICK_WORK`` events."""
     without, kicked = (
         exact.events_per_interval(Box(1.5, 1.0, friction=g).scene(0.2), "vertical_hop")
         for g in (0.0, 3.0)
     )
     kicks = 3.0 * exact.mean_times(Box(1.5, 1.0).scene(0.2))["vertical_hop"]
-    assert kicked - without == pytest.approx(exact.KICK * kicks)
+    assert kicked - without == pytest.approx(exact.KICK_WORK * kicks)
 
 
 @pytest.mark.parametrize("effects", [{"field": 1e4}, {"field": 1.0, "depth": 1.0}])

@@ -175,7 +175,7 @@ def test_frequent_hops_have_a_curve_only():
     assert found.passage_time is None
     assert found.clusters == {}  # none are looked for: they would hardly end
     assert "too frequent" in str(found)
-    assert len(found.frame()) == len(transmission.TIMES)
+    assert len(found.frame()) == len(transmission.KAPPA_TIMES)
     # Up to a quarter of a hop in the pause.
     scene, pause = td.Scene(1.5, 1.0, 0.2), 48 * 1.1
     assert transmission.are_rare(scene, "horizontal_hop", 4.001 * pause)

@@ -68,7 +68,7 @@ def test_shards_are_those_of_an_absolute_grid(blocks, k):
 def test_the_grid_has_sixteen_steps_while_a_number_doubles(blocks):
     found = rounds.round_up_blocks(blocks)
     assert found >= blocks
-    assert found <= max(math.ceil(blocks), blocks * (1 + 1 / rounds.STEPS) + 1)
+    assert found <= max(math.ceil(blocks), blocks * (1 + 1 / rounds.PLAN_STEPS) + 1)
     assert rounds.round_up_blocks(found) == found
     assert rounds.round_up_blocks(2 * found) in (2 * found, max(2 * found, 2))
 

@@ -31,7 +31,7 @@ import math
 from itertools import groupby
 
 from twodiscs.analysis import scores
-from twodiscs.model.events import WAYS
+from twodiscs.model.events import EVENT_WAYS
 from twodiscs.points.estimates import Estimate, sums_of_others, why_no_error
 from twodiscs.points.monte_carlo_point import wall_weights
 from twodiscs.theory import virial
@@ -114,7 +114,7 @@ def flux_time(event, point):
     ratio = point.ratio(weights)
     if ratio is None:
         return None
-    rate = WAYS[event] / 2 * flux_constant(scene.velocity_components) * ratio.value
+    rate = EVENT_WAYS[event] / 2 * flux_constant(scene.velocity_components) * ratio.value
     return Estimate(1 / rate, ratio.relative_stderr / rate, ratio.n)
 
 

@@ -12,7 +12,7 @@ from twodiscs.dynamics.ensemble import MOST_RUN_EVENTS, open_block_kicks
 from twodiscs.dynamics.paths import MOST_PATH_EVENTS, check_states, move_into_cell
 from twodiscs.model.checks import InputError, check_numbers, has_units
 from twodiscs.model.formats import format_number, quote
-from twodiscs.model.many_geometry import LARGE
+from twodiscs.model.many_geometry import CELL_DISCS
 from twodiscs.model.scene import Scene
 from twodiscs.points.base import reached
 from twodiscs.sampling.initial_states import (
@@ -25,14 +25,14 @@ from twodiscs.sampling.initial_states import (
 from twodiscs.sampling.rounds import Run, fixed
 from twodiscs.sampling.threads import draw_in_calls, map_in_threads
 
-#: Replicas with one random stream. ``LARGE`` numbers of discs have the blocks of ``simulate``.
-BLOCK = 4096
+#: Replicas with one random stream. ``CELL_DISCS`` discs or more have the blocks of ``simulate``.
+BLOCK_STATES = 4096
 
 #: The most numbers of the states of a block at several times that are in memory together.
 MOST_STATE_NUMBERS = 2**22
 
 #: Values of a function are smaller, so that their squares can be added.
-LARGEST = 1e140
+LARGEST_VALUE = 1e140
 
 #: A smaller sum of squares of deviations that are not all 0 has lost digits, and this bound takes
 #: its place: the error of values below 1e-145 is an upper bound, which is not 0.
@@ -118,13 +118,13 @@ def check_names(names):
 
 def _check_finite(values, times, first):
     """Raise ``InputError`` for NaN and large ``values``, from the replica ``first`` on."""
-    if not (wrong := ~(np.abs(values) < LARGEST)).any():
+    if not (wrong := ~(np.abs(values) < LARGEST_VALUE)).any():
         return
     replica, time, *_ = np.argwhere(wrong)[0]
     value = values[replica, time][wrong[replica, time]].flat[0]
     raise InputError(
-        f"function must return finite numbers, below {format_number(LARGEST, 'g')}, not {value} at "
-        f"the time {times[time]:g} of the replica {first + replica}"
+        f"function must return finite numbers, below {format_number(LARGEST_VALUE, 'g')}, not "
+        f"{value} at the time {times[time]:g} of the replica {first + replica}"
     )
 
 
@@ -185,8 +185,8 @@ class ObserveRun(Run):
     @property
     def _each(self):
         """The number of replicas of a block."""
-        engine = find_engine(self.scene)
-        return BLOCK if self.scene.discs < LARGE else engine.block_replicas(self.scene)
+        few, engine = self.scene.discs < CELL_DISCS, find_engine(self.scene)
+        return BLOCK_STATES if few else engine.block_replicas(self.scene)
 
     @cached_property
     def _forms(self):

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import REPLICAS, RETURNS
+from twodiscs.dynamics.ensemble import CHAIN_HOPS, REPLICAS
 from twodiscs.dynamics.two import event_counts, follow, hop_clusters, path, returns, two_rates
 from twodiscs.theory import exact
 
@@ -63,7 +63,7 @@ TWO_DISC_ENGINE = Engine(
     chain_cost_ratio=lambda scene: 1.0,
     interval_sums=returns.INTERVAL_SUMS,
     mean_interval=lambda scene, hop: exact.mean_times(scene)[hop],
-    intervals_of_chain=lambda scene, hop: RETURNS,
+    intervals_of_chain=lambda scene, hop: CHAIN_HOPS,
     events_per_interval=exact.events_per_interval,
     record_intervals=returns.record_intervals,
     path_rows=path.path_rows,
@@ -100,7 +100,7 @@ def _many_discs():
         cost_ratio=many_rates.cost_ratio,
         work_per_event=many_rates.work_per_event,
         chain_cost_ratio=many_rates.cost_ratio,
-        interval_sums=many_intervals.INTERVAL_SUMS,
+        interval_sums=many_intervals.SUMS_WITH_COUNTS,
         mean_interval=many_intervals.mean_interval,
         intervals_of_chain=many_intervals.intervals_of_chain,
         events_per_interval=many_intervals.events_per_interval,

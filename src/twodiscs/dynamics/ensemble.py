@@ -34,7 +34,7 @@ SWEEPS, SHORT_SWEEPS = 8, 2
 REPLICAS = 1024
 
 #: Successive intervals between hops that a chain records.
-RETURNS = 256
+CHAIN_HOPS = 256
 
 #: Hops with one random stream, of which each is followed.
 HOPS_PER_BLOCK = 64

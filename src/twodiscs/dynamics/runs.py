@@ -20,7 +20,7 @@ from functools import cached_property
 import numpy as np
 
 from twodiscs.dynamics.engine import find_engine
-from twodiscs.dynamics.ensemble import MOST_RUN_EVENTS, RETURNS, nearest_power_of_two
+from twodiscs.dynamics.ensemble import CHAIN_HOPS, MOST_RUN_EVENTS, nearest_power_of_two
 from twodiscs.dynamics.two import strip
 from twodiscs.model.checks import InputError, check_choice
 from twodiscs.model.events import EVENTS
@@ -253,8 +253,9 @@ class TimedRun(DynamicsRun):
 def record_blocks(scene, event, seed, first, stop, going, edges=None):
     """Return (times of the chains, sums in bins) of the blocks ``first`` … ``stop`` − 1.
 
-    Each block has ``CHAINS_PER_BLOCK`` chains of ``RETURNS`` intervals, see ``record_intervals``.
-    ``going`` is an array to stop it with. Bins are between ``edges``, or equal and wide ones.
+    Each block has ``CHAINS_PER_BLOCK`` chains of ``CHAIN_HOPS`` intervals, see
+    ``record_intervals``. ``going`` is an array to stop it with. Bins are between ``edges``, or
+    equal and wide ones.
     """
     n, unions = (N_BINS, wide_edges()) if edges is None else (len(edges) - 1, [0])
     # Intervals beyond all bins, or in the last ones that fill no wide bin, have no wide bin.
@@ -275,10 +276,10 @@ class IntervalsRun(Run):
     """Intervals between hops of one kind, each one exact, counted in bins.
 
     ``event`` is a hop that the ``Scene`` allows; ``intervals`` is the least number of intervals,
-    within the ``budget`` of wall and disc events. Chains of ``RETURNS`` successive intervals start
-    on the hop's surface with the flux-weighted measure. The map from hop to hop preserves it, so
-    every interval of a chain has the law of the interval between hops. Intervals within a chain are
-    correlated, chains are independent.
+    within the ``budget`` of wall and disc events. Chains of ``CHAIN_HOPS`` successive
+    intervals start on the hop's surface with the flux-weighted measure. The map from hop to hop
+    preserves it, so every interval of a chain has the law of the interval between hops. Intervals
+    within a chain are correlated, chains are independent.
 
     Bins have a power of two near τ/16 as width. Chains of more than two discs differ in their
     number of intervals. Bins of your own have their ``edges``. With an ``error``, the relative
@@ -374,7 +375,7 @@ class IntervalsRun(Run):
             "event": self.event,
             "bin_width": _width(self.scene, self.event),
             "chains": CHAINS_PER_BLOCK,
-            "returns": RETURNS,
+            "returns": CHAIN_HOPS,
             "sums": ranges["all"],
         }
         if self.edges is not None:

@@ -20,14 +20,14 @@ from twodiscs.theory import exact
 #: A cluster ends if no hop comes for this number of ``box_time``. Hops that follow each other after
 #: a tenth of that are still correlated. Hops that come later make κ too large, by about 1e-3 at a
 #: distance of 2⁻⁶ from the threshold, where hops are most frequent, and by less elsewhere.
-QUIET = 48
+CLUSTER_PAUSE = 48
 
 #: The most passages that may come, on average, within the time that ends a cluster, and the most
 #: hops, if they come at random. Below both, κ(t) has a plateau at that time.
 MOST_MERGED, MOST_IN_GAP = 0.1, 0.25
 
 #: The times at which κ(t) is recorded, in units of ``box_time``.
-TIMES = tuple(float(f"{time:.3g}") for time in np.geomspace(0.1, 10, 21))
+KAPPA_TIMES = tuple(float(f"{time:.3g}") for time in np.geomspace(0.1, 10, 21))
 
 
 def box_time(scene, hop):
@@ -40,7 +40,7 @@ def box_time(scene, hop):
     return length * math.sqrt(2 / scene.discs)
 
 
-def quiet_time(scene, hop, times=QUIET):
+def quiet_time(scene, hop, times=CLUSTER_PAUSE):
     """Return the time without a ``hop`` that ends a cluster of them.
 
     It is a number of ``times`` the ``box_time`` t. With friction γ a separation diffuses, and is
@@ -168,7 +168,7 @@ class TransmissionRun(Run):
 
     @property
     def _times(self):
-        return tuple(box_time(self.scene, self.hop) * time for time in TIMES)
+        return tuple(box_time(self.scene, self.hop) * time for time in KAPPA_TIMES)
 
     @cached_property
     def components(self):
@@ -210,6 +210,6 @@ class TransmissionRun(Run):
             "exact_mean": exact.mean_times(self.scene)[self.hop],
             "neighbour_mean": mean,
             "times": self._times,
-            "curve": time_estimates(sums.reshape(N_HOP_SUMS, len(TIMES)), blocks * HOPS_PER_BLOCK),
+            "curve": time_estimates(sums.reshape(N_HOP_SUMS, -1), blocks * HOPS_PER_BLOCK),
             "components": {name: {"sums": sums} for name, sums in ranges.items()},
         }

@@ -69,7 +69,7 @@ def _select(**kinds):
 
 
 #: {event: the number of ways in which the surface is crossed}; a hop happens in both.
-WAYS = facts("model/events.py", hop=2, collision=1, wall=1, walls=1)
+EVENT_WAYS = facts("model/events.py", hop=2, collision=1, wall=1, walls=1)
 
 #: The events at which the discs exchange sides, those of disc 1 at one wall, and all at walls.
 HOPS = _select(hop=True, collision=False, wall=False, walls=False)

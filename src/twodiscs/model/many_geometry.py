@@ -12,10 +12,10 @@ MANY_DISC_EFFECTS = ("periodic", "moment_of_inertia", "friction")
 
 #: From this number of discs on, cells list the discs that may touch. The least side of a cell over
 #: σ: it must be longer. Along a periodic axis there are two cells, or more.
-LARGE, LEAST_CELL_SIDE = 20, 1 + 2.0**-20
+CELL_DISCS, LEAST_CELL_SIDE = 20, 1 + 2.0**-20
 
 #: The most discs for which all numbers of rows are tried.
-MOST_TRIED = 1024
+EXHAUSTIVE_DISCS = 1024
 
 #: The most decimal digits before or after the point of the volume of the prism: a double then holds
 #: the volume, and its square.
@@ -57,8 +57,8 @@ def largest_radius(scene):
 
 
 def require_followable(scene):
-    """Raise ``InputError`` for ``LARGE`` numbers of discs if two just fit along a periodic axis."""
-    for axis in scene.periodic if scene.discs >= LARGE else "":
+    """Raise ``InputError`` for ``CELL_DISCS`` discs or more that just fit on a periodic axis."""
+    for axis in scene.periodic if scene.discs >= CELL_DISCS else "":
         longest = scene.side(axis) / (4 * LEAST_CELL_SIDE)
         if scene.radius > longest:
             raise InputError(
@@ -175,7 +175,7 @@ def _patterns(n, along, across, ring, torus):
     even, and else by a little less, so that the last row and the first one are shifted as well.
     """
     tried = range(1, n + 1)
-    if n > MOST_TRIED and min(along, across) > 0:
+    if n > EXHAUSTIVE_DISCS and min(along, across) > 0:
         # The best rows are about as far apart as the discs of a row.
         about = math.sqrt(n * across / along)
         tried = tried[int(about / 3) : int(3 * about) + 3]

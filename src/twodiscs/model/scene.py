@@ -48,9 +48,6 @@ REGIMES = ("all-hops", "vertical-hops", "horizontal-hops", "no-hops")
 #: The most kicks by friction in the time that a disc of speed 1 takes along the shortest side.
 MOST_KICKS = 1e6
 
-#: Relative distance below the last radius at which a disc nearly fills the box.
-NEARLY = 1e-6
-
 
 @checked_call
 @dataclass(frozen=True)
@@ -433,7 +430,7 @@ class Box:
         """
         if check_choice("event", event, EVENTS) not in HOPS:
             # In a field maybe only a large disc can touch the top.
-            nearly = self.scene(self.last_radius * (1 - NEARLY))
+            nearly = self.scene(self.last_radius * (1 - 1e-6))
             return self.last_radius if nearly.is_possible(event) else None
         if not self.is_plain:
             has_place = event in self.events

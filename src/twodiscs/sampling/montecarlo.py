@@ -96,7 +96,7 @@ def _wall_shell(event):
     return lambda squares, square, centre, ends: centre[k] <= ends[row]
 
 
-IN_SHELL = by_kind(
+SHELL_TESTS = by_kind(
     "sampling/montecarlo.py",
     {"hop": _hop_shell, "collision": _collision_shell, "wall": _wall_shell},
     SHELL_EVENTS,
@@ -116,15 +116,15 @@ def _and(add, unit, in_shell):
 
 in_shells = inlined(lambda count, squares, square, centre, ends: count)
 for field, event in enumerate(SHELL_EVENTS, 1):
-    in_shells = _and(in_shells, 256**field, inlined(IN_SHELL[event]))
-BOTH = 8 * (1 + SHELL_EVENTS.index("right_wall")), 8 * (1 + SHELL_EVENTS.index("top_wall"))
+    in_shells = _and(in_shells, 256**field, inlined(SHELL_TESTS[event]))
+WALL_BITS = 8 * (1 + SHELL_EVENTS.index("right_wall")), 8 * (1 + SHELL_EVENTS.index("top_wall"))
 
 
 @inlined
 def pack_sets(squares, square, centre, ends):
     """Return the sets of a sample: an integer with a field of eight bits, 0 or 1, for each set."""
     sets = in_shells(1, squares, square, centre, ends)
-    return sets + (((sets >> BOTH[0]) & (sets >> BOTH[1]) & 1) << (8 * (N_FIELDS - 1)))
+    return sets + (((sets >> WALL_BITS[0]) & (sets >> WALL_BITS[1]) & 1) << (8 * (N_FIELDS - 1)))
 
 
 def shell_ends(epsilon, collision, wall):
@@ -205,7 +205,7 @@ def shell_thickness(scene, event, fraction):
     and stays inside the box. The room is the distance to the largest radius or, for a hop, the
     largest gap between the discs when they pass each other.
     """
-    room, smallest = ROOM[event](scene), min(scene.radii)
+    room, smallest = SHELL_ROOMS[event](scene), min(scene.radii)
     lightest = scene.masses[0] if event in WALLS else min(scene.masses)
     length = min(smallest, room) if room > 0 else smallest
     return fraction * (math.sqrt(lightest) * length)
@@ -230,7 +230,7 @@ def _room_along(scene, side):
 
 
 #: {event: room of ``shell_thickness``}, functions of a ``Scene``
-ROOM = by_kind(
+SHELL_ROOMS = by_kind(
     "sampling/montecarlo.py",
     {
         "hop": _hop_room,
@@ -242,7 +242,7 @@ ROOM = by_kind(
 
 #: {event: measure of the prism over that of a sample}, functions of a ``Scene``: a hop's shell has
 #: two sides, and for all walls a sample looks at one disc and one of its walls.
-FACTOR = facts(
+SAMPLE_MEASURES = facts(
     "sampling/montecarlo.py",
     hop=lambda scene: 1 / 2,
     collision=lambda scene: 1,
@@ -300,7 +300,7 @@ def _sampler(
         sampled["volume"] = {"place": 0, "measure": measure, "epsilon": None}
     for place, (event, thickness) in enumerate(zip(_shelled(scene), epsilon, strict=True), 1):
         if event in wanted:
-            factor = FACTOR[event](scene)
+            factor = SAMPLE_MEASURES[event](scene)
             sampled[f"{event}_area"] = {
                 "place": place, "measure": factor * measure / thickness, "epsilon": thickness,
             }  # fmt: skip
@@ -400,7 +400,7 @@ def _hits_random_wall(state, prism, centre, separation, end):
     return distance <= (thickness[0] if first else thickness[1])
 
 
-IN_WEIGHTED_SHELL = by_kind(
+WEIGHTED_SHELL_TESTS = by_kind(
     "sampling/montecarlo.py",
     {
         "hop": _weighted_hop,
@@ -459,7 +459,7 @@ def _and_weighted(count_some, k, in_shell):
 
 _count_each = inlined(lambda totals, state, prism, centre, separation, ends: None)
 for k, event in enumerate(EVENTS):
-    _count_each = _and_weighted(_count_each, k, inlined(IN_WEIGHTED_SHELL[event]))
+    _count_each = _and_weighted(_count_each, k, inlined(WEIGHTED_SHELL_TESTS[event]))
 
 
 @optional(lambda totals, state, prism, centre, separation, fraction, ends: None)

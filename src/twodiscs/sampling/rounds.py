@@ -34,7 +34,7 @@ ROUND_MARGIN = 1.05
 EVENTS_PER_CALL = 2**24
 
 #: Steps of the grid of planned blocks while their number doubles.
-STEPS = 16
+PLAN_STEPS = 16
 
 
 @dataclass(frozen=True)
@@ -213,10 +213,10 @@ class Run:
 
 
 def round_up_blocks(blocks):
-    """Return the next number of blocks on a grid of ``STEPS`` while it doubles, at least 1.
+    """Return the next number of blocks on a grid of ``PLAN_STEPS`` while it doubles, at least 1.
 
     A slightly smaller error then needs the same shards, or a few more.
     """
     blocks = max(1, math.ceil(blocks))
-    step = max(1, (1 << (blocks - 1).bit_length()) // (2 * STEPS))
+    step = max(1, (1 << (blocks - 1).bit_length()) // (2 * PLAN_STEPS))
     return -(-blocks // step) * step

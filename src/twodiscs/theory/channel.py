@@ -35,9 +35,6 @@ from twodiscs.theory.quadrature import as_arrays, gauss_legendre
 #: Nodes of a panel, the phase that they resolve, and the most panels that double.
 NODES_PER_PANEL, PANEL_PHASE, MOST_PANELS = 20, 15.0, 60
 
-#: An exponent x with a negligible exp(−x).
-NEGLIGIBLE = 40.0
-
 #: Relative sizes of neglected parts: periodic images of the function, which come from the step of
 #: the trapezoidal rule, and the terms after the last.
 ALIAS_ERROR, TAIL_ERROR = 1e-14, 1e-11
@@ -131,7 +128,7 @@ def panel_sizes(height, sigma, force, reach):
     least = math.sqrt((sigma - height) * (sigma + height))
     # At a distance ℓ from a corner d − d₀ is at most ℓ B/d₀. A disc ``far`` from both walls has no
     # neighbour this close.
-    steepest, far = height / least, least + NEGLIGIBLE / force
+    steepest, far = height / least, least + 40 / force  # exp(−40) is negligible
     return (
         height,
         1 / (2 * force * steepest),

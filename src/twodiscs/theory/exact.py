@@ -42,7 +42,7 @@ MIN_FRACTION = 1e-4
 CROSSINGS_PER_EVENT = 64
 
 #: The time of a kick over the time of an event.
-KICK = 15
+KICK_WORK = 15
 
 
 #: The modules with the theory of each family of scenes.
@@ -138,11 +138,11 @@ def work_per_event(scene):
 
     On a periodic axis discs leave their cell between two events, very often if they are small. The
     usual cost includes ``CROSSINGS_PER_EVENT`` such crossings. A kick by friction costs about as
-    much as ``KICK`` events.
+    much as ``KICK_WORK`` events.
     """
     crossings = sum(scene.fastest / scene.side(axis) for axis in scene.periodic)
     usual = max(1.0, crossings / CROSSINGS_PER_EVENT / event_rate(scene))
-    return usual + KICK * scene.friction / event_rate(scene)
+    return usual + KICK_WORK * scene.friction / event_rate(scene)
 
 
 def events_per_interval(scene, hop):

@@ -8,13 +8,13 @@ from twodiscs.theory.exact import volume
 from twodiscs.theory.plain import Arc
 
 #: The mean time between hits of a wall by a point, per length of the side along its axis.
-ONE_SIDED = 1.5 * math.pi
+WALL_TIME = 1.5 * math.pi
 
 
 def _hops(event):
     def time(sides, r):
         along, across = sides[event.axis], sides["xy".replace(event.axis, "")]
-        return ONE_SIDED / math.sqrt(8) * (along + (4 * along / across - 2) * r)
+        return WALL_TIME / math.sqrt(8) * (along + (4 * along / across - 2) * r)
 
     return time
 
@@ -28,16 +28,16 @@ def _collisions(sides, r):
 
 def _all_walls(sides, r):
     w, h = sides.values()
-    return ONE_SIDED / 4 * (w * h - 2 * r * (w * w + h * h) / (w + h)) / (w + h)
+    return WALL_TIME / 4 * (w * h - 2 * r * (w * w + h * h) / (w + h)) / (w + h)
 
 
 #: {event: mean time to first order in the radius}, functions of {axis: side} and of the radius
-SMALL_RADIUS = by_kind(
+SMALL_RADIUS_LAWS = by_kind(
     "theory/laws.py",
     {
         "hop": _hops,
         "collision": lambda event: _collisions,
-        "wall": lambda event: lambda sides, r: ONE_SIDED * (sides[event.axis] - 2 * r),
+        "wall": lambda event: lambda sides, r: WALL_TIME * (sides[event.axis] - 2 * r),
         "walls": lambda event: _all_walls,
     },
 )
@@ -49,7 +49,7 @@ def small_radius_time(box, event, radius=0.0):
     With the default radius it is the limit r → 0: 3πh/(4√2) for vertical hops, 3πw/2 for the right
     wall, and infinite for disc collisions, which go like 3wh/(8√2 r).
     """
-    return SMALL_RADIUS[event]({"x": box.width, "y": box.height}, radius)
+    return SMALL_RADIUS_LAWS[event]({"x": box.width, "y": box.height}, radius)
 
 
 def threshold_time(scene, event):
@@ -60,7 +60,7 @@ def threshold_time(scene, event):
     distance from the largest radius r_max: they vanish like r_max − r. If one side is more than
     twice the other, the times of disc collisions and of the walls at the far ends stay finite.
     """
-    return THRESHOLD[event](scene) if scene.is_possible(event) else None
+    return THRESHOLD_LAWS[event](scene) if scene.is_possible(event) else None
 
 
 def _last_hops(event):
@@ -69,9 +69,9 @@ def _last_hops(event):
         along, across = (w, h) if event.axis == "y" else (h, w)
         arc = Arc.of(Scene(along, across, scene.radius))
         if along >= 2 * across:  # open to the end
-            return ONE_SIDED / math.sqrt(8) * arc.range_y
+            return WALL_TIME / math.sqrt(8) * arc.range_y
         critical = volume(Scene(along, across, along / 4))
-        return ONE_SIDED / math.sqrt(8) * critical / ((across - along / 2) * arc.beyond_x**2)
+        return WALL_TIME / math.sqrt(8) * critical / ((across - along / 2) * arc.beyond_x**2)
 
     return time
 
@@ -99,11 +99,11 @@ def _times_at_jam(scene):
         walls = {long: root * left / (2 * last_x), short: root * left / (2 * last_y)}
         any_wall = root * left / (4 * (last_x + last_y))
     times = {"collision": collision, "walls": any_wall, **walls}
-    return {name: ONE_SIDED * time for name, time in times.items()}
+    return {name: WALL_TIME * time for name, time in times.items()}
 
 
 #: {event: leading law of its time}, functions of a ``Scene``
-THRESHOLD = by_kind(
+THRESHOLD_LAWS = by_kind(
     "theory/laws.py",
     {
         "hop": _last_hops,

@@ -9,7 +9,7 @@ import math
 from dataclasses import replace
 from functools import lru_cache
 
-from twodiscs.model.events import EVENTS, WAYS, by_kind
+from twodiscs.model.events import EVENT_WAYS, EVENTS, by_kind
 from twodiscs.model.many_geometry import has_volume, is_ordered
 from twodiscs.theory import channel, three
 from twodiscs.theory.flux import Derivatives, flux_constant
@@ -111,7 +111,7 @@ def event_rates(scene):
         return {event: None if scene.is_possible(event) else 0.0 for event in EVENTS}
     c = flux_constant(scene.velocity_components)
     return {
-        event: WAYS[event] / 2 * c * part if scene.is_possible(event) else 0.0
+        event: EVENT_WAYS[event] / 2 * c * part if scene.is_possible(event) else 0.0
         for event, part in surfaces(scene, known).items()
     }
 

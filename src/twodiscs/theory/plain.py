@@ -19,7 +19,7 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple
 
-from twodiscs.model.events import SHELL_EVENTS, WAYS, by_kind
+from twodiscs.model.events import EVENT_WAYS, SHELL_EVENTS, by_kind
 from twodiscs.theory.quadrature import gauss_legendre
 
 #: The integrands are trigonometric polynomials of degree 4 at most over a quarter turn, or equally
@@ -188,7 +188,7 @@ def _along(axis, shell):
 
 
 #: {event: expectation of its shell}, functions of an ``Arc`` and of a thickness
-SHELL_OF = by_kind(
+SHELL_EXPECTATIONS = by_kind(
     "theory/plain.py",
     {
         "hop": _along("y", _hop_shell),
@@ -201,7 +201,7 @@ SHELL_OF = by_kind(
 
 def shell_expectation(scene, event, epsilon):
     """Return the exact expectation of a shell in a plain ``Scene``, see ``exact``."""
-    return SHELL_OF[event](Arc.of(scene), epsilon)
+    return SHELL_EXPECTATIONS[event](Arc.of(scene), epsilon)
 
 
 def volume_near(scene, hop, distance):
@@ -223,4 +223,4 @@ def areas(scene):
 def rate(scene, event):
     """Return the rate of ``event``."""
     volume, areas = volume_and_areas(scene)
-    return WAYS[event] * areas[event] / (1.5 * math.pi * volume)
+    return EVENT_WAYS[event] * areas[event] / (1.5 * math.pi * volume)

@@ -33,7 +33,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.events import EVENT_AXES, WAYS, by_kind
+from twodiscs.model.events import EVENT_AXES, EVENT_WAYS, by_kind
 from twodiscs.model.two_geometry import ENERGY
 from twodiscs.theory.flux import flux_constant
 from twodiscs.theory.quadrature import as_arrays, double_exponential, gauss_legendre
@@ -496,7 +496,7 @@ def shell_expectation(scene, event, epsilon):
 
 def rate(scene, event):
     """Return the rate of ``event``."""
-    flux = WAYS[event] / 2 * flux_constant(scene.velocity_components) * areas(scene)[event]
+    flux = EVENT_WAYS[event] / 2 * flux_constant(scene.velocity_components) * areas(scene)[event]
     return flux / volume(scene)
 
 

@@ -41,7 +41,7 @@ from twodiscs.sampling.many.insertions import ring_separation
 from twodiscs.sampling.many.many_initial_states import spins_in
 
 #: The class of the entries of a log that a kick makes, one for each disc.
-KICKS = N_CLASSES
+KICK_CLASS = N_CLASSES
 
 #: The days of an epoch for each disc, which has about as many first times. The last of all days,
 #: for infinite times.
@@ -515,7 +515,7 @@ def kick_discs(motion, laps, grid, law, log, hops, hops_x, lane, kicks):
     look_for_all(motion, grid, law)
     for i in range(discs):
         set_speeds(i, motion, hops, hops_x)
-        note_event(0.0, KICKS, i, i, motion, laps, law, log)
+        note_event(0.0, KICK_CLASS, i, i, motion, laps, law, log)
 
 
 @compiled

@@ -1,6 +1,6 @@
 """More than two discs: counts of their events, by the classes of events that the kernels know.
 
-The kernels are ``all_pairs`` for few discs and ``cell_list`` for ``LARGE`` numbers of them.
+The kernels are ``all_pairs`` for few discs and ``cell_list`` for ``CELL_DISCS`` or more.
 """
 
 import math
@@ -32,9 +32,9 @@ def run_classes(scene, seed, first, stop, duration, *, replicas=None, lanes=None
 
     A block is ``replicas`` states of the invariant measure from the stream ``seed``, successive
     ones of a chain if a chain draws them, each followed for ``duration``. Returns (sums, products)
-    as ``count_events`` does: integers, which depend on neither lanes nor shards. ``LARGE`` numbers
-    of discs have the kernel ``cell_list``, which leaves out hops if ``hops`` is not True. Their
-    chain goes on from the end of each trajectory, which has moved the discs as well, and the
+    as ``count_events`` does: integers, which depend on neither lanes nor shards. ``CELL_DISCS``
+    discs or more have the kernel ``cell_list``, which leaves out hops if ``hops`` is not True.
+    Their chain goes on from the end of each trajectory, which has moved the discs as well, and the
     products of short replicas are those of ``spread_of_batches``.
     """
     n, replicas = len(CLASSES), replicas or block_replicas(scene, duration)

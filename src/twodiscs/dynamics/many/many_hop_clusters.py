@@ -23,7 +23,7 @@ from twodiscs.dynamics.many.all_pairs import COLLISIONS, ManyLaw, many_disc_law
 from twodiscs.dynamics.two.hop_clusters import LARGEST_CLUSTER, N_HOP_SUMS
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import EVENT_AXES
-from twodiscs.model.many_geometry import LARGE
+from twodiscs.model.many_geometry import CELL_DISCS
 from twodiscs.model.scene import hopping_along
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.many import insertions, many_initial_states
@@ -197,8 +197,8 @@ def cluster_sizes(scene, hop, gap, blocks, seed, first=0):
 
 def require_coefficient(scene, hop):
     """Raise ``InputError`` unless hops of a ``Scene`` can be followed for their coefficient."""
-    if scene.discs >= LARGE:
-        raise InputError(f"discs must be at most {LARGE - 1} for passages, not {scene.discs}")
+    if scene.discs >= CELL_DISCS:
+        raise InputError(f"discs must be at most {CELL_DISCS - 1} for passages, not {scene.discs}")
     if scene.periodic not in ("", EVENT_AXES[hop]):
         raise InputError(
             f"hop must be along the only periodic axis for passages of {scene.discs} discs, not "

@@ -9,13 +9,13 @@ from twodiscs.dynamics.many import all_pairs, many_rates
 from twodiscs.dynamics.many.all_pairs import COLLISIONS, many_disc_law, new_kicks
 from twodiscs.dynamics.many.many_paths import Followed
 from twodiscs.model.checks import InputError
-from twodiscs.model.many_geometry import LARGE
+from twodiscs.model.many_geometry import CELL_DISCS
 from twodiscs.sampling.many import many_initial_states
 from twodiscs.sampling.many.many_initial_states import block_states, large_grid, make_initial
 from twodiscs.sampling.streams import open_stream
 
 #: Numbers that are summed in each bin of intervals: Σ c, Σ c² and Σ c n.
-INTERVAL_SUMS = 3
+SUMS_WITH_COUNTS = 3
 
 
 def mean_interval(scene, hop):
@@ -29,20 +29,20 @@ def mean_interval(scene, hop):
 
 
 def _window(scene, hop):
-    """Return a time in which ``RETURNS`` intervals begin, or up to twice as many.
+    """Return a time in which ``CHAIN_HOPS`` intervals begin, or up to twice as many.
 
-    ``LARGE`` numbers of discs have a longer window, the duration of a replica, but at most
+    ``CELL_DISCS`` discs or more have a longer window, the duration of a replica, but at most
     64 times the usual one. Their initial states take as much time to draw.
     """
-    window = 2.0 ** math.ceil(math.log2(ensemble.RETURNS * mean_interval(scene, hop)))
-    if scene.discs < LARGE:
+    window = 2.0 ** math.ceil(math.log2(ensemble.CHAIN_HOPS * mean_interval(scene, hop)))
+    if scene.discs < CELL_DISCS:
         return window
     return min(max(window, many_rates.replica_duration(scene)), 64 * window)
 
 
 def intervals_of_chain(scene, hop):
     """Return the least number of intervals of a chain; its window has up to twice as many."""
-    return max(ensemble.RETURNS, int(_window(scene, hop) / mean_interval(scene, hop) / 2))
+    return max(ensemble.CHAIN_HOPS, int(_window(scene, hop) / mean_interval(scene, hop) / 2))
 
 
 def events_per_interval(scene, hop):
@@ -84,7 +84,7 @@ def record_within(window, scene, hop, seed, first, stop, chains, bins, sums, goi
                     return totals
                 hops = order[log.classes[order] < COLLISIONS]
                 times = np.append(times, log.times[hops])
-            step = window / ensemble.RETURNS
+            step = window / ensemble.CHAIN_HOPS
         intervals = np.diff(times)[times[:-1] < window]
         edges = width * np.arange(wide.size) if edges is None else edges
         index = (np.searchsorted(edges, intervals, side="right") - 1) % edges.size

@@ -18,7 +18,7 @@ from twodiscs.sampling.many.many_initial_states import large_grid
 LOG_ENTRIES = 2**14
 
 #: The wall and disc events of a trajectory, and the most rows, with hops, because rows are long.
-LONGEST_TRAJECTORY, MOST_ROWS = 1500, 2**13
+MANY_DISC_PATH_EVENTS, MOST_ROWS = 1500, 2**13
 
 
 def advance_all(scene, states, laps, time, kicks, hops=None):
@@ -100,8 +100,8 @@ def trajectory_rate(scene, hops=True):
 
 
 def usual_duration(scene):
-    """Return the time of some ``LONGEST_TRAJECTORY`` events, a power of two."""
-    times = (LONGEST_TRAJECTORY / expected_event_rate(scene), MOST_ROWS / trajectory_rate(scene))
+    """Return the time of some ``MANY_DISC_PATH_EVENTS`` events, a power of two."""
+    times = (MANY_DISC_PATH_EVENTS / expected_event_rate(scene), MOST_ROWS / trajectory_rate(scene))
     return ensemble.nearest_power_of_two(min(times))
 
 
@@ -261,7 +261,7 @@ def read_log(log, order, entry, at, since, rows):
             kind = kinds.VERTICAL_HOP if event == all_pairs.VERTICAL_HOPS else kinds.HORIZONTAL_HOP
         elif event == all_pairs.COLLISIONS:
             kind = kinds.COLLISION
-        elif event == cell_list.KICKS:
+        elif event == cell_list.KICK_CLASS:
             if i < discs - 1:
                 continue
             kind, first, second = kinds.KICK, 0, 0

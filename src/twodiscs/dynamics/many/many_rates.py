@@ -5,10 +5,10 @@ from functools import lru_cache
 
 from twodiscs.dynamics import ensemble
 from twodiscs.dynamics.many.all_pairs import EVENT_CLASSES
-from twodiscs.model.many_geometry import LARGE
+from twodiscs.model.many_geometry import CELL_DISCS
 from twodiscs.sampling.many import insertions
 from twodiscs.sampling.many.chains import MOST_CROWDING, crowding
-from twodiscs.sampling.many.many_initial_states import CROWDED, method
+from twodiscs.sampling.many.many_initial_states import CROWDING, method
 from twodiscs.theory import n_discs
 from twodiscs.theory.equation_of_state import bulk_derivatives
 from twodiscs.theory.flux import rates
@@ -16,7 +16,7 @@ from twodiscs.theory.flux import rates
 #: Events of a replica, and of a replica whose initial state takes as long as ten thousand events.
 REPLICA_EVENTS, CHAIN_REPLICA_EVENTS = 256, 8192
 
-#: Events of each roomy disc in a replica of ``LARGE`` numbers of discs, and the most of all discs
+#: Events of each roomy disc in a replica of ``CELL_DISCS`` discs or more, and the most of all discs
 #: together. The motion then takes several times as long as the draw of the state.
 EVENTS_PER_DISC, MOST_REPLICA_EVENTS = 256, 2**21
 
@@ -28,7 +28,7 @@ BUDGET_REPLICAS = 108
 #: if a disc has an event in each of them for this number of discs.
 DISCS_PER_EVENT = 128
 
-#: The events of a block of ``LARGE`` numbers of discs and its fewest replicas, and the events of
+#: The events of a block of ``CELL_DISCS`` discs or more and its fewest replicas, and the events of
 #: each disc in an epoch.
 BLOCK_EVENTS, FEWEST_REPLICAS, EPOCH_EVENTS = 2**20, 4, 64
 
@@ -36,11 +36,12 @@ BLOCK_EVENTS, FEWEST_REPLICAS, EPOCH_EVENTS = 2**20, 4, 64
 #: Events of 3, 4 and 8 discs take 3.7, 5.9 and 22 times as long. Pairs of rough discs take longer.
 PAIR_COST, ROUGH_PAIR_COST = 0.8, 1.3
 
-#: The same for ``LARGE`` numbers of discs: the time of an event, and the time that each disc adds.
+#: The same for ``CELL_DISCS`` discs or more: the time of an event, and the time that each disc
+#: adds.
 EVENT_COST, DISC_COST = 50.0, 0.04
 
-#: The time of a kick for each of ``LARGE`` numbers of discs, over the time of an event. The time to
-#: draw the velocity of a disc, over the time of an event of the plain ensemble.
+#: The time of a kick for each of ``CELL_DISCS`` or more discs, over the time of an event. The time
+#: to draw the velocity of a disc, over the time of an event of the plain ensemble.
 KICK_COST, VELOCITY_COST = 0.45, 8.0
 
 
@@ -51,12 +52,12 @@ def expected_rates(scene):
     Rates are exact if that is known, and otherwise from some insertions (``insertions.expected``),
     within a few per cent. If insertions find no room, the rates of wall hits and collisions are
     guessed (``expected_duration``), and so is one of them for which insertions give 0. For
-    ``LARGE`` numbers of discs rates follow from an equation of state, within some ten per cent. It
-    ends where discs are ``MOST_CROWDING``; there the guess, if it is more, takes its place.
+    ``CELL_DISCS`` discs or more rates follow from an equation of state, within some ten per cent.
+    It ends where discs are ``MOST_CROWDING``; there the guess, if it is more, takes its place.
     """
     known = n_discs.known_derivatives(scene)
     if known is None:
-        known = insertions.expected(scene) if scene.discs < LARGE else bulk_derivatives(scene)
+        known = insertions.expected(scene) if scene.discs < CELL_DISCS else bulk_derivatives(scene)
     half = _guessed_rate(scene) / 2
     guess = {"disc_collision": half, "any_wall": half if scene.walled else 0.0}
     if known is None:
@@ -68,7 +69,7 @@ def expected_rates(scene):
     }
     by_event = guess | {e: rate for e, rate in summed.items() if rate and e in scene.events}
     if (
-        scene.discs >= LARGE
+        scene.discs >= CELL_DISCS
         and crowding(scene) == MOST_CROWDING
         and not n_discs.exact_method(scene)
     ):
@@ -87,10 +88,10 @@ def expected_duration(scene, events=None):
 
     The rate is guessed from the wall hits of an ideal gas and from the distance to the largest
     radius. By default ``events`` is 256, or ``CHAIN_REPLICA_EVENTS`` if an initial state takes a
-    chain of moves. ``LARGE`` numbers of discs have ``EVENTS_PER_DISC`` each, crowded ones more, and
-    at most ``MOST_REPLICA_EVENTS``.
+    chain of moves. ``CELL_DISCS`` discs or more have ``EVENTS_PER_DISC`` each, crowded ones more,
+    and at most ``MOST_REPLICA_EVENTS``.
     """
-    if events is None and scene.discs >= LARGE:
+    if events is None and scene.discs >= CELL_DISCS:
         events = min(EVENTS_PER_DISC * crowding(scene) * scene.discs, MOST_REPLICA_EVENTS)
     events = events or (CHAIN_REPLICA_EVENTS if method(scene) == "chain" else REPLICA_EVENTS)
     return ensemble.nearest_power_of_two(events / _guessed_rate(scene))
@@ -104,14 +105,14 @@ def _guessed_rate(scene):
 def replica_duration(scene, budget=None):
     """Return the time T of one replica, a power of two, see ``expected_duration``.
 
-    With friction it is shorter, so that kicks do not add to the work. For ``LARGE`` numbers of
-    discs, if they are not crowded, it is also so short that ``BUDGET_REPLICAS``, in whole blocks,
+    With friction it is shorter, so that kicks do not add to the work. For ``CELL_DISCS`` discs
+    or more, if they are not crowded, it is also so short that ``BUDGET_REPLICAS``, in whole blocks,
     have no more events than the ``budget``; it then has three binary digits. Each disc has at least
     one event, and N/``DISCS_PER_EVENT``.
     """
     work = work_per_event(scene)
     duration = ensemble.nearest_power_of_two(expected_duration(scene) / work)
-    if budget is None or scene.discs < LARGE or crowding(scene) > CROWDED:
+    if budget is None or scene.discs < CELL_DISCS or crowding(scene) > CROWDING:
         return duration
     whole = max(budget - BLOCK_EVENTS, min(budget, BLOCK_EVENTS))
     least = scene.discs * max(1.0, scene.discs / DISCS_PER_EVENT)
@@ -123,10 +124,10 @@ def replica_duration(scene, budget=None):
 def block_replicas(scene, duration=None):
     """Return the number of replicas of a block, each of a ``duration``, None for the usual one.
 
-    For ``LARGE`` numbers of discs a block has about ``BLOCK_EVENTS``, and ``FEWEST_REPLICAS`` or
+    For ``CELL_DISCS`` discs or more a block has about ``BLOCK_EVENTS``, and ``FEWEST_REPLICAS`` or
     more: 128 in a first round.
     """
-    if scene.discs < LARGE:
+    if scene.discs < CELL_DISCS:
         return ensemble.REPLICAS
     events = events_per_disc(scene, duration or replica_duration(scene)) * scene.discs
     return min(max(FEWEST_REPLICAS, round(BLOCK_EVENTS / events)), BUDGET_REPLICAS)
@@ -153,17 +154,17 @@ def expected_rate(scene, event):
 def work_per_event(scene):
     """Return the cost of an event over the usual cost, with kicks.
 
-    For few discs a kick costs an event and the draw of all velocities. For ``LARGE`` numbers of
-    discs it costs ``KICK_COST`` events for each disc.
+    For few discs a kick costs an event and the draw of all velocities. For ``CELL_DISCS`` discs
+    or more it costs ``KICK_COST`` events for each disc.
     """
-    few = scene.discs < LARGE
+    few = scene.discs < CELL_DISCS
     kick = 1.0 + VELOCITY_COST * scene.discs / cost_ratio(scene) if few else KICK_COST * scene.discs
     return 1.0 + kick * scene.friction / expected_event_rate(scene)
 
 
 def cost_ratio(scene):
     """Return the time of an event over the time of an event of the plain ensemble."""
-    if scene.discs >= LARGE:
+    if scene.discs >= CELL_DISCS:
         return EVENT_COST + DISC_COST * scene.discs
     pair = PAIR_COST if scene.moment_of_inertia is None else ROUGH_PAIR_COST
     return 1 + pair * scene.discs * (scene.discs - 1) / 2

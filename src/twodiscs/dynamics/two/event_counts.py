@@ -70,7 +70,7 @@ DETECTORS = by_kind(
 
 #: The entry of ``tracked`` for each kind: hops, walls, the hits of all walls, and collisions, which
 #: are always tracked. An entry that is None is not compiled.
-TRACKED = {"hop": 0, "wall": 1, "walls": 2, "collision": 3}
+KIND_FLAGS = {"hop": 0, "wall": 1, "walls": 2, "collision": 3}
 
 N_EVENTS = len(EVENTS)
 DISC_COLLISION, ANY_WALL = EVENTS.index("disc_collision"), EVENTS.index("any_wall")
@@ -89,7 +89,7 @@ if N_EVENTS > 2 * COUNTS_PER_DOUBLE:
 
 def _and(add, event, unit):
     """Return ``add`` extended by an ``event``: a flight with it adds a ``unit`` to the count."""
-    seen, k = inlined(DETECTORS[event]), TRACKED[DECLARED_EVENTS[event].kind]
+    seen, k = inlined(DETECTORS[event]), KIND_FLAGS[DECLARED_EVENTS[event].kind]
 
     @optional(lambda count, code, before, after, identical, field, tracked: count)
     def add_one(count, code, before, after, identical, field, tracked):
@@ -126,7 +126,7 @@ def all_walls(counts, rest):
 class Counts(NamedTuple):
     """The experiment: how often each event happens in a ``duration``.
 
-    ``tracked`` says which events are detected (see ``TRACKED``). ``identical`` discs and
+    ``tracked`` says which events are detected (see ``KIND_FLAGS``). ``identical`` discs and
     ``field`` are as in ``_wall_seen``. ``sums`` are Σ N_e over all replicas (n, int64), in the
     order of EVENTS, and ``products`` Σ N_e N_f for e ≤ f (n, n).
     """

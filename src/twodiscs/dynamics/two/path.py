@@ -17,11 +17,11 @@ from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.theory import exact
 
 #: Wall and disc events that a trajectory lasts at most, on average.
-LONGEST_TRAJECTORY = 6000
+TRAJECTORY_EVENTS = 6000
 
 #: The kind of a row, by the code of the end of a flight from 0 on, and the discs of its event.
-ROW_KINDS = np.array([0, 0, 1, 3, 4, 0, 2, 5]) + kinds.WALL
-ROW_KINDS[int(codes.END_OF_TIME)], ROW_KINDS[int(codes.DISC)] = kinds.END, kinds.COLLISION
+KIND_OF_CODE = np.array([0, 0, 1, 3, 4, 0, 2, 5]) + kinds.WALL
+KIND_OF_CODE[int(codes.END_OF_TIME)], KIND_OF_CODE[int(codes.DISC)] = kinds.END, kinds.COLLISION
 FIRST_DISCS, SECOND_DISCS = np.array([0, 1, 1, 2, 2, 1, 1, 2]), np.array([0, 0, 0, 0, 0, 2, 0, 0])
 
 
@@ -135,7 +135,7 @@ def record_rows(now, clock, duration, law, kicks, hops, wraps, jumps, rows):
         count_jump(wraps, 0, state, code, law)
         if code >= codes.END_OF_TIME:
             k = np.int64(code)
-            kind = ROW_KINDS[k] if k > 0 or limit >= left else kinds.KICK
+            kind = KIND_OF_CODE[k] if k > 0 or limit >= left else kinds.KICK
             put_row(
                 rows, jumps, n, time, kind, (FIRST_DISCS[k], SECOND_DISCS[k]), state, wraps, law
             )
@@ -178,8 +178,8 @@ def trajectory_rate(scene, hops=True):
 def usual_duration(scene):
     """Return eight mean times of the rarest hop that is open, as a power of two.
 
-    It is no longer than ``LONGEST_TRAJECTORY`` wall and disc events on average.
+    It is no longer than ``TRAJECTORY_EVENTS`` wall and disc events on average.
     """
     hops = [exact.mean_times(scene)[hop] for hop in HOPS if scene.is_possible(hop)]
-    duration = min(8 * max(hops, default=math.inf), LONGEST_TRAJECTORY / trajectory_rate(scene))
+    duration = min(8 * max(hops, default=math.inf), TRAJECTORY_EVENTS / trajectory_rate(scene))
     return nearest_power_of_two(duration)

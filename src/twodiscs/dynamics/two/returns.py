@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import LANES, RETURNS, SWEEPS, find_bin
+from twodiscs.dynamics.ensemble import CHAIN_HOPS, LANES, SWEEPS, find_bin
 from twodiscs.dynamics.law import crosses, crossing_time
 from twodiscs.dynamics.two.follow import follow, relative_motion
 from twodiscs.model.scene import hopping_along
@@ -85,7 +85,7 @@ class Returns(NamedTuple):
 
 
 def record_intervals(
-    scene, hop, seed, first, stop, chains, bins, sums, going, *, returns=RETURNS, lanes=LANES
+    scene, hop, seed, first, stop, chains, bins, sums, going, *, returns=CHAIN_HOPS, lanes=LANES
 ):
     """Add the intervals of the blocks ``first`` … ``stop`` − 1 to ``sums``, as in ``Returns``.
 

@@ -52,7 +52,7 @@ NO_NECK_FILL = 0.97
 EVENTS_PER_PATH = 32
 
 #: The duration of paths over 2T, about: 1 for few events, 0.55 for many.
-LASTING = 0.75
+PATH_DURATION = 0.75
 
 #: An upper bound of the squared relative error times the count, from which the number of starts
 #: follows. The product is 0.07 to 0.18 at all radii of the repository's configuration, and 0.51 for
@@ -260,7 +260,7 @@ def strip_run(scene, hop, target, budget, seed):
     wanders = scene.moment_of_inertia or scene.friction
     margin = MARGIN_OF_ROUGH if wanders else MARGIN_OF_COUNTS
     margin *= max(1.0, (scene.friction * strip.time) ** GROWTH_BY_KICKS)
-    events = max(1.0, LASTING * expected_events(scene, hop, strip))
+    events = max(1.0, PATH_DURATION * expected_events(scene, hop, strip))
     proposals = 1 / acceptance(scene, hop, strip) / events
 
     def work(first, stop):

@@ -9,10 +9,10 @@ discs also their spins s, as the speeds rω of their surfaces.
   proposes them cell by cell, with weights that are not below exp(−c d). They are accepted with the
   rest of the ratio. Positions along the channel are then order statistics. Exact at every density.
 * ``chain``: otherwise ``CHAIN_SWEEPS`` sweeps of trial moves of one disc at a time, which begin at
-  the widest known arrangement; each state has a new chain. From ``LARGE`` discs on, event chains
-  (``chains``) take their place. Not exact: tests compare its states with rejection and channels, if
-  these can be used, and with chains of other lengths. If discs cannot go from one arrangement to
-  another, it stays near the known one.
+  the widest known arrangement; each state has a new chain. From ``CELL_DISCS`` discs on, event
+  chains (``chains``) take their place. Not exact: tests compare its states with rejection and
+  channels, if these can be used, and with chains of other lengths. If discs cannot go from one
+  arrangement to another, it stays near the known one.
 
 Counts of events may take successive states of one chain, which cost a part of a new chain. Those
 states have the same law, and all that follow are closer to it. A chain of event chains goes on from
@@ -29,7 +29,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.many_geometry import LARGE, arrangement, is_ordered
+from twodiscs.model.many_geometry import CELL_DISCS, arrangement, is_ordered
 from twodiscs.sampling.conditioned import draw_in_disc
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import chains, insertions
@@ -47,8 +47,9 @@ CHAIN_SWEEPS, LEAST_SCALES = 4000, 8
 
 #: The sweeps to a new state over those to the next state of a chain of roomy discs. More crowded
 #: discs forget slowly where they were, so each state has a new chain; few discs have longer moves,
-#: and a limit of their own. Density relaxes slowly along a box of more discs than ``LONG``.
-APART, CROWDED, CROWDED_FEW, LONG = 8, 3, 5, 32
+#: and a limit of their own. Density relaxes slowly along a box of more discs than
+#: ``LONG_BOX_DISCS``.
+STATE_SWEEPS, CROWDING, FEW_CROWDING, LONG_BOX_DISCS = 8, 3, 5, 32
 
 #: Gaps between numbers that are sorted (M. Ciura, Lect. Notes Comput. Sci. 2138, 106 (2001)).
 SHELL_GAPS = 1750, 701, 301, 132, 57, 23, 10, 4, 1
@@ -108,7 +109,7 @@ def method(scene):
     """
     if is_ordered(scene) or (not scene.periodic and is_ordered(scene.turned())):
         return "channel"
-    if scene.discs >= LARGE:
+    if scene.discs >= CELL_DISCS:
         return "chain"
     return "rejection" if insertions.free_fraction(scene) >= LEAST_FREE_FRACTION else "chain"
 
@@ -117,7 +118,7 @@ def make_initial(scene, by=None, *, contacts=0):
     """Return the ``Initial`` of a ``Scene``, by its ``method`` unless another one is named.
 
     Each state has a new chain, unless a number of ``contacts`` is given, the most of each disc on
-    the way to the next state of ``LARGE`` numbers of discs in a square.
+    the way to the next state of ``CELL_DISCS`` discs or more in a square.
     """
     by = by or method(scene)
     return Initial(
@@ -151,16 +152,17 @@ def _chain(scene, contacts=0):
 
 def _between(scene, sweeps, most=math.inf):
     """Return the part of the ``sweeps`` to the next state of a chain; 0 if discs are crowded."""
-    crowding, limit = chains.crowding(scene), CROWDED if scene.discs >= LARGE else CROWDED_FEW
+    limit = CROWDING if scene.discs >= CELL_DISCS else FEW_CROWDING
     along = max(scene.width, scene.height) * math.sqrt(scene.discs / (scene.width * scene.height))
-    share = crowding / APART * max(1.0, along / LONG) ** 2
+    crowding = chains.crowding(scene)
+    share = crowding / STATE_SWEEPS * max(1.0, along / LONG_BOX_DISCS) ** 2
     between = math.ceil(min(share * sweeps, most))
     return between if crowding <= limit and between < sweeps else 0
 
 
 def large_grid(scene):
-    """Return the ``CellGrid`` of a ``Scene`` of at least ``LARGE`` discs; None for fewer."""
-    return make_grid(scene) if scene.discs >= LARGE else None
+    """Return the ``CellGrid`` of a ``Scene`` of at least ``CELL_DISCS`` discs; None for fewer."""
+    return make_grid(scene) if scene.discs >= CELL_DISCS else None
 
 
 def _rounded(value):

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from twodiscs.analysis.tables import AreasTable, MeanTimesTable, VolumeTable
 from twodiscs.figures.style import LOOKS
-from twodiscs.model.events import WAYS
+from twodiscs.model.events import EVENT_WAYS
 from twodiscs.theory.flux import flux_constant
 
 #: The scripts of the page in their order.
@@ -49,7 +49,7 @@ def monte_carlo_times(volumes, areas, components):
         event, radius = row["quantity"].removesuffix("_area"), row["radius"]
         if event in times and radius in volume and row["stderr"] is not None and row["exact"]:
             free, area = volume[radius], row["estimate"] - row["bias"]
-            time = 2 / (WAYS[event] * flux_constant(components)) * free["estimate"] / area
+            time = 2 / (EVENT_WAYS[event] * flux_constant(components)) * free["estimate"] / area
             error = math.hypot(free["stderr"] / free["estimate"], row["stderr"] / area)
             times[event].append([radius, time, time * error])
     return times

@@ -5,8 +5,8 @@ import os
 from pathlib import Path
 
 from twodiscs.analysis.columns import NUMBER, TEXT, Table
-from twodiscs.dynamics.runs import RETURNS
-from twodiscs.dynamics.transmission import QUIET
+from twodiscs.dynamics.runs import CHAIN_HOPS
+from twodiscs.dynamics.transmission import CLUSTER_PAUSE
 from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.model.scene import Box
 from twodiscs.sampling.montecarlo import PROPOSAL_TIME
@@ -14,7 +14,7 @@ from twodiscs_paper.catalogue import STUDY_FIGURES
 from twodiscs_paper.pipeline.results.provenance import commit, versions
 
 #: Numbers of the methods; they are in no table.
-CONSTANTS = {"dearer": PROPOSAL_TIME, "intervals": RETURNS, "passages_pause": QUIET}
+CONSTANTS = {"dearer": PROPOSAL_TIME, "intervals": CHAIN_HOPS, "passages_pause": CLUSTER_PAUSE}
 
 
 class PaperNumbersTable(Table):

@@ -12,7 +12,7 @@ import numpy as np
 from twodiscs.analysis.scores import student_deviate
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.transmission import (
-    TIMES,
+    KAPPA_TIMES,
     are_rare,
     box_time,
     cluster_coefficient,
@@ -217,7 +217,7 @@ class NearThreshold:
         """Yield the rows of κ(t), and of its plateau against ``kappa`` if ``kappa`` is known."""
         gap = quiet_time(self.scene, self.hop)
         box, own = box_time(self.scene, self.hop), []
-        times = sorted({*([gap] if kappa else []), *(box * time for time in TIMES)})
+        times = sorted({*([gap] if kappa else []), *(box * time for time in KAPPA_TIMES)})
         sums, events = hop_sums(self.scene, self.hop, times, blocks, self._seed("times"))
         for time, estimate in zip(times, coefficients_at_times(sums), strict=True):
             if time == gap:
