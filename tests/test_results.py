@@ -303,7 +303,7 @@ def test_a_window_opens_at_a_plain_prompt_alone(monkeypatch):
 @pytest.mark.parametrize("progress", [None, True, False])
 def test_progress_is_shown_where_someone_looks(progress, monkeypatch, capsys):
     pytest.importorskip("tqdm", reason="tqdm shows progress")
-    monkeypatch.setattr(progress_module, "PATIENCE", 0.0)
+    monkeypatch.setattr(progress_module, "BAR_DELAY", 0.0)
     td.simulate(SCENE, 0.02, progress=progress)
     td.starts(SCENE, 10, progress=progress)
     td.trajectory(SCENE, duration=1, progress=progress)
@@ -316,7 +316,7 @@ def test_progress_is_shown_where_someone_looks(progress, monkeypatch, capsys):
 def test_a_bar_is_where_the_work_is(monkeypatch):
     """It says when that is a compilation. A logger in the place of the terminal has none."""
     tqdm = pytest.importorskip("tqdm", reason="tqdm shows progress").tqdm
-    monkeypatch.setattr(progress_module, "PATIENCE", 0.0)
+    monkeypatch.setattr(progress_module, "BAR_DELAY", 0.0)
     with progress_module.progress_bar(True, "work") as watch:
         for done in (2, 5, None, 9):
             watch(done, 10)

@@ -64,7 +64,7 @@ def keep_panel(figure, number, abscissa):
     kept = figure.axes[number]
     for axes in figure.axes:
         axes.set_visible(axes is kept)
-    figure.set_size_inches(style.COLUMN, HEIGHT)
+    figure.set_size_inches(style.COLUMN_WIDTH, HEIGHT)
     kept.set_position(PLACE)
     for text in (*kept.texts, kept.title, kept._left_title):
         text.set_text(re.sub(r"\([a-z]\) ?", "", text.get_text()))

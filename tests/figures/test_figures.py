@@ -67,7 +67,7 @@ def test_texts_stand_clear(name, box):
     if (name, box) == ("all_areas", "ten"):  # no place for a legend is free of h/4 and the curve
         faults = [one for one in faults if one[1] not in ("exact", "Monte Carlo")]
     assert faults == []
-    assert figure.get_size_inches()[0] == (7.0 if name == "all_areas" else style.COLUMN)
+    assert figure.get_size_inches()[0] == (7.0 if name == "all_areas" else style.COLUMN_WIDTH)
 
 
 def select_numbers(rows, quantity, factor=None, rooted=False):

@@ -68,7 +68,7 @@ def test_lines_of_many_discs_are_those_of_the_trajectory(discs, radius):
     times = [row["time"] for row in rows if row["time"] <= whole.get_xlim()[1]]
     for axes in figure.axes:
         for disc, line in enumerate(axes.lines, 1):
-            assert len(line.get_xdata()) <= motion.BENDS * discs + 1 <= len(times)
+            assert len(line.get_xdata()) <= motion.DISC_BENDS * discs + 1 <= len(times)
             places = [row[f"x{disc}"] for row in rows[: len(times)]]
             assert np.interp(times, *line.get_data()) == pytest.approx(places, abs=1e-12)
         assert len(axes.lines) == disc == discs
@@ -86,7 +86,7 @@ def test_of_very_many_discs_some_lines_are_drawn():
         whole, close = motion.draw_trajectory(box, rows).axes
     assert close.get_xlim()[1] < whole.get_xlim()[1] / 2
     drawn = np.sort([line.get_ydata()[0] for line in whole.lines])
-    assert len(drawn) == len(close.lines) == motion.MOST_LINES
+    assert len(drawn) == len(close.lines) == motion.LINES_PER_PANEL
     assert (drawn[0], drawn[-1]) == (starts[0], starts[-1])
     assert np.diff(np.searchsorted(starts, drawn)).max() <= 3
 

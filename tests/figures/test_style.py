@@ -54,10 +54,10 @@ def test_same_bytes_whatever_the_settings_are(name, kind, tmp_path, monkeypatch)
         assert b"/FontFile2" in found[0]
         assert b"/Type3" not in found[0]
         width = float(re.search(rb"/MediaBox \[ ?0 0 ([0-9.]+)", found[0])[1])
-        assert width == pytest.approx(72 * style.COLUMN)
+        assert width == pytest.approx(72 * style.COLUMN_WIDTH)
     elif (name, kind) == ("integration_regimes", "png"):
         width = int.from_bytes(found[0][16:20], "big")
-        assert width == round(style.SETTINGS["savefig.dpi"] * style.COLUMN)
+        assert width == round(style.RC_PARAMS["savefig.dpi"] * style.COLUMN_WIDTH)
 
 
 # Looks of events ----------------------------------------------------------------------------------

@@ -17,7 +17,7 @@ from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.dynamics.transmission import box_time
 from twodiscs.figures import style
 from twodiscs.figures.scene_figures import FIGURES
-from twodiscs.figures.style import LOOKS
+from twodiscs.figures.style import EVENT_LOOKS
 from twodiscs.model.events import HOPS, SHELL_EVENTS
 from twodiscs.theory import exact
 from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES, read_table
@@ -85,7 +85,7 @@ def cases():
         yield "tails", "ratio" if law else "exponential", look, due
     rows = [row for row in select(table("more_discs"), periodic=None) if row["dynamics"]]
     for radius in {row["radius"] for row in rows}:
-        for event, look in LOOKS.items():
+        for event, look in EVENT_LOOKS.items():
             due = []
             for row in select(rows, radius=radius, event=event):
                 n = row["discs"]
@@ -218,7 +218,7 @@ def unit(row):
 
 def threshold_cases():
     for event in SHELL_EVENTS:
-        law, look = leading_law(PAPER, event), LOOKS[event]
+        law, look = leading_law(PAPER, event), EVENT_LOOKS[event]
         rows = near(PAPER, law, select(table("mean_times"), event=event)) if law else []
         places = [1 - row["radius"] / law.limit for row in rows]
         if event in HOPS:
@@ -416,7 +416,7 @@ def test_the_panels_of_stability_of_runs_are_those_of_the_table():
         assert {x for x, _ in points(axes["b"], *look)} == due != set()
     extremes = select(rows, part="extremes")
     places = [*dict.fromkeys(row["case"] for row in extremes)]
-    for event, look in LOOKS.items():
+    for event, look in EVENT_LOOKS.items():
         own = [row for row in select(extremes, quantity=f"{event}_time") if row["z"] is not None]
         due = {(row["z"], places.index(row["case"])) for row in own}
         assert points(axes["d"], *look) == due != set()
@@ -449,7 +449,7 @@ def test_tails_are_those_of_the_table_with_their_laws():
 
 def test_curves_of_thresholds_are_exact_and_crosses_are_first_passages():
     hops, ratios = drawn("thresholds").values()
-    for event, (colour, _) in LOOKS.items():
+    for event, (colour, _) in EVENT_LOOKS.items():
         law = leading_law(PAPER, event) if event in SHELL_EVENTS else None
         if law is None:
             continue

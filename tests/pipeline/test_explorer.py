@@ -94,7 +94,7 @@ def test_formulas_and_limits_in_javascript_are_those_of_the_package():
             assert ours["volume"] == pytest.approx(exact.volume(scene), rel=1e-12, abs=0)
             right["areas"] = exact.areas(scene)
         for kind, known in right.items():
-            assert [*ours[kind]] == [*explorer.COUNTED]
+            assert [*ours[kind]] == [*explorer.PAGE_EVENTS]
             for event, value in ours[kind].items():
                 good, worst = known[event], 1e-11 if effects else 1e-12
                 same = value is None if good is None else math.isclose(value, good, rel_tol=worst)
@@ -190,7 +190,7 @@ def test_motion_is_that_of_theory():
     compared = 0
     for (sides, effects), seen in zip(MOVING, found, strict=True):
         times = exact.mean_times(Box(*sides[:2], **effects).scene(sides[2]))
-        for event, measured in zip(explorer.COUNTED, seen["measured"], strict=True):
+        for event, measured in zip(explorer.PAGE_EVENTS, seen["measured"], strict=True):
             if times[event] is None:
                 assert measured["count"] == 0, (effects, event)
             elif measured["error"]:
@@ -310,7 +310,7 @@ def assert_right(page, asked, box, radius):
     page.until(f"runs.done === {asked}")
     cells = "[...at('events').rows].map(row => [...row.cells].map(cell => cell.innerText))"
     rows, measured = page.look(f"renew(), [{cells}, COUNTED.map((_, i) => runs.measured(i))]")
-    for event, row, seen in zip(explorer.COUNTED, rows, measured, strict=True):
+    for event, row, seen in zip(explorer.PAGE_EVENTS, rows, measured, strict=True):
         if times[event] is None:
             assert row[1:] == ["0", "–", "–", "–" if box.effects else "never", "–"]
             continue
@@ -372,7 +372,7 @@ def test_lengths_are_in_any_unit_and_fit_the_window(driven, sides, radius, next_
     low, high = page.look("SHOWN_TIMES.map(time => unit * time)")
     for fraction in (0.05, 0.9):
         found = exact.mean_times(box.scene(fraction * box.largest_radius))
-        assert all(low < found[event] < high for event in explorer.COUNTED if found[event])
+        assert all(low < found[event] < high for event in explorer.PAGE_EVENTS if found[event])
     page.look("at('radius').stepUp(), at('radius').dispatchEvent(new Event('input'))")
     assert page.look(f"{shown}[2]") == page.look("at('radius').ariaValueText") == next_radius
 

@@ -30,7 +30,7 @@ from twodiscs.model.checks import InputError, check_length, writing_to
 from twodiscs.model.events import HOPS
 
 #: Inches: width of the whole, its margin on the left, and the largest width and height of the box.
-WIDTH, MARGIN, BOX_SIZE = 3.8, 0.5, (3.8 - 0.5 - 0.12, 2.6)
+FRAME_WIDTH, LEFT_MARGIN, BOX_SIZE = 3.8, 0.5, (3.8 - 0.5 - 0.12, 2.6)
 
 #: Frames before and after the hop, frames of a trace, and frames in which the hop stays marked.
 FRAMES_BEFORE, FRAMES_AFTER, TRACE_FRAMES, MARKED_FRAMES = 110, 60, 20, 20
@@ -149,14 +149,14 @@ def draw_panels(motion):
     digits = sum(len(panels.mathtext(value)) for value in (box.width, box.height, radius))
     up = 17 if box.discs == 2 and not (box.is_plain and digits <= 11) else 0
     heading = 0.156 * (len(lines) - 1) + up / 72
-    figure = new_figure(beneath + inches * box.height + 0.28 + heading, WIDTH)
+    figure = new_figure(beneath + inches * box.height + 0.28 + heading, FRAME_WIDTH)
     figure.set_dpi(100)
     x, y = box.width / 2, box.height / 2
-    axes = drawing.add_axes(figure, MARGIN + margin, beneath, inches, (-x, x, -y, y))
+    axes = drawing.add_axes(figure, LEFT_MARGIN + margin, beneath, inches, (-x, x, -y, y))
     draw_walls(axes, motion.scene)
     above = {"xycoords": "axes fraction", "ha": "left", "va": "bottom", "fontsize": 9}
     drawing.label(axes, ",\n".join(lines), (0, 1), (-72 * margin, 5 + up), **above)
-    strip = panels.add_panel(figure, bottom, tall, MARGIN, BOX_SIZE[0])
+    strip = panels.add_panel(figure, bottom, tall, LEFT_MARGIN, BOX_SIZE[0])
     strip.set(xlim=(motion.frames[0], motion.frames[-1]), xlabel="time $t$ (length/speed)")
     return axes, strip
 
@@ -328,7 +328,7 @@ def draw(motion):
         looks = [(tuple(0.45 * part + 0.55 for part in colour), colour) for colour in colours]
         draw_positions(strip, motion, colours)
     else:
-        looks = drawing.DISCS
+        looks = drawing.DISC_COLOURS
         draw_separation(strip, motion)
     circles, others = {}, {}
     for disc, look in enumerate(looks, 1):
@@ -431,7 +431,7 @@ def _palette(image, kept):
 
 
 #: The page: the frames are pictures in it, so it needs no network and no other file.
-PAGE = Path(__file__).with_name("animation.html")
+PAGE_TEMPLATE = Path(__file__).with_name("animation.html")
 
 
 def write_page(path, images, durations, title):
@@ -441,7 +441,7 @@ def write_page(path, images, durations, title):
         stream = io.BytesIO()
         image.save(stream, format="png", optimize=True)
         pictures.append(b64encode(stream.getvalue()).decode())
-    text = Template(PAGE.read_text(encoding="utf-8")).substitute(
+    text = Template(PAGE_TEMPLATE.read_text(encoding="utf-8")).substitute(
         title=title, last=len(pictures) - 1, pictures=json.dumps(pictures),
         milliseconds=json.dumps(durations),
     )  # fmt: skip

@@ -10,14 +10,14 @@ from matplotlib.ticker import MultipleLocator
 
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.curves import limits
-from twodiscs.figures.style import BLACK, BLUE, COLUMN, GREY, VERMILLION, new_figure
+from twodiscs.figures.style import BLACK, BLUE, COLUMN_WIDTH, GREY, VERMILLION, new_figure
 from twodiscs.model.scene import Box
 
 #: The white rim of a label that may stand on a line.
-RIM = {"path_effects": [withStroke(linewidth=2, foreground="w")]}
+LABEL_RIM = {"path_effects": [withStroke(linewidth=2, foreground="w")]}
 
 #: The look of a sector of discs that overlap.
-OVERLAPS = {"facecolor": "white", "edgecolor": GREY, "hatch": "/////", "linewidth": 0}
+OVERLAP_LOOK = {"facecolor": "white", "edgecolor": GREY, "hatch": "/////", "linewidth": 0}
 
 # The billiard -------------------------------------------------------------------------------------
 
@@ -29,7 +29,7 @@ def draw_model(box):
     a, b = width / 2 - radius, height / 2 - radius
     right, top = width / 2, height / 2
     # Inches: margins of 0.3, and 0.34 on the right.
-    inches, spare = drawing.scale(width, height, COLUMN - 0.3 - 0.34, 3.6 - 0.3 - 0.3)
+    inches, spare = drawing.scale(width, height, COLUMN_WIDTH - 0.3 - 0.34, 3.6 - 0.3 - 0.3)
     figure = new_figure(0.3 + 0.3 + inches * height)
     axes = drawing.add_axes(figure, 0.3 + spare, 0.3, inches, (-right, right, -top, top))
 
@@ -52,26 +52,26 @@ def draw_model(box):
         (lambda x, away: (x, top + away), (0, a), "a=w/2-r", (0, 6), 0),
         (lambda y, away: (right + away, y), (0, b), "b=h/2-r" if tall else "b", (7, 0), 90 * tall),
     ):
-        drawing.dimensions(axes, at, stops, [text], offset, beyond=4, rotation=turn, **RIM)
+        drawing.dimensions(axes, at, stops, [text], offset, beyond=4, rotation=turn, **LABEL_RIM)
     return figure
 
 
 def _disc(axes, number, centre, radius, velocity):
     """Draw a disc with its radius and its velocity, their names beside it."""
     x, y = centre
-    colour = drawing.DISCS[number - 1][1]
+    colour = drawing.DISC_COLOURS[number - 1][1]
     drawing.disc(axes, number, centre, radius)
     drawing.arrow(axes, centre, (x - radius, y), width=0.5, size=5)
-    drawing.label(axes, "$r$", (x - radius, y), (-5, 0), **RIM)
+    drawing.label(axes, "$r$", (x - radius, y), (-5, 0), **LABEL_RIM)
     head = (x + velocity[0], y + velocity[1])
     size = hypot(*velocity) / 6
     drawing.arrow(axes, centre, head, colour=colour, width=1)
     beyond = (velocity[0] / size, velocity[1] / size)
-    drawing.label(axes, rf"$\mathbf{{v}}_{number}$", head, beyond, **RIM)
+    drawing.label(axes, rf"$\mathbf{{v}}_{number}$", head, beyond, **LABEL_RIM)
     # On the side towards the middle of the box, which is empty.
     rim = (x - 0.6 * radius, y + copysign(0.8 * radius, velocity[1]))
     offset = (-4, copysign(5, velocity[1]))
-    drawing.label(axes, rf"$\mathbf{{x}}_{number}$", rim, offset, **RIM)
+    drawing.label(axes, rf"$\mathbf{{x}}_{number}$", rim, offset, **LABEL_RIM)
 
 
 # The largest radius -------------------------------------------------------------------------------
@@ -85,13 +85,13 @@ def draw_largest_radius(box):
     """Draw the ``Box`` with discs that just fit, and the map."""
     width, height = drawing.outline(box)
     # Inches: the largest drawing of the box, and its floor above the map.
-    inches, spare = drawing.scale(width, height, COLUMN - 0.34 - 0.58, 1.75)
+    inches, spare = drawing.scale(width, height, COLUMN_WIDTH - 0.34 - 0.58, 1.75)
     floor = 0.36 + 1.5 + 0.42
     figure = new_figure(floor + inches * height + 0.08)
     extent = (-width / 2, width / 2, -height / 2, height / 2)
     axes = drawing.add_axes(figure, 0.34 + spare, floor, inches, extent)
     _jammed(axes, width, height)
-    _map(panels.add_panel(figure, 0.36, 1.5, MAP_MARGIN, COLUMN - MAP_MARGIN - 0.1), box)
+    _map(panels.add_panel(figure, 0.36, 1.5, MAP_MARGIN, COLUMN_WIDTH - MAP_MARGIN - 0.1), box)
     return figure
 
 
@@ -191,8 +191,8 @@ def draw_regimes(box):
     ratios = [here.range_y / here.range_x for here, _ in regimes]
     # Inches: labels on the left of a panel, below and above, the heading beside it, all panels.
     margin, below, beside = 0.3, 0.22, 1.3
-    side = min(COLUMN - margin - beside, 4.5 / sum(ratios))
-    left = (COLUMN - margin - beside - side) / 2 + margin
+    side = min(COLUMN_WIDTH - margin - beside, 4.5 / sum(ratios))
+    left = (COLUMN_WIDTH - margin - beside - side) / 2 + margin
     heights = [below + side * ratio + 0.14 for ratio in ratios]
     figure = new_figure(sum(heights))
     bottom = sum(heights)
@@ -219,7 +219,7 @@ def _panel(axes, scene, points):
 
     drawing.rectangle(axes, 0, wide, 0, high, face="#DCEBF5", edge="none")
     sector = {"theta1": degrees(beta), "theta2": degrees(alpha), "clip_on": False}
-    axes.add_patch(Wedge((0, 0), sigma, **sector, **OVERLAPS))
+    axes.add_patch(Wedge((0, 0), sigma, **sector, **OVERLAP_LOOK))
     dotted = {"facecolor": "#F3E3B5", "edgecolor": "#8C6A00", "hatch": ".....", "linewidth": 0}
     for is_cut, corner, tip in ((high < sigma, (0, high), rise), (wide < sigma, (wide, 0), run)):
         if is_cut:
@@ -248,7 +248,7 @@ def _angle(axes, name, angle, radius, above=0.0):
     size, middle = 2 * radius, (angle + above) / 2
     axes.add_patch(Arc((0, 0), size, size, theta2=degrees(angle), lw=0.7, clip_on=False))
     at = (radius * cos(middle), radius * sin(middle))
-    drawing.label(axes, name, at, (6, 0), **RIM)
+    drawing.label(axes, name, at, (6, 0), **LABEL_RIM)
 
 
 def _ends(axes, name, end, sigma, points, at, offset):
@@ -270,7 +270,7 @@ def draw_shells(box):
     radius, epsilon = 0.2 * short, 0.06 * short
     a, b = width / 2 - radius, height / 2 - radius
     margin, gap, below = 0.3, 0.42, 0.3  # inches
-    across = COLUMN - margin - gap - 0.08
+    across = COLUMN_WIDTH - margin - gap - 0.08
     side = min(across / (1 + a / b), 1.5)
     left = margin + (across - side * (1 + a / b)) / 2
     figure = new_figure(below + side + 0.26)
@@ -315,7 +315,7 @@ def _name(axes, name, colour):
 def _collision(axes, a, b, radius, epsilon):
     """Draw the quarter plane of x, y with the circle of contact and its shell, on one side."""
     wide, high, rim = sqrt(2) * a, sqrt(2) * b, sqrt(2) * radius
-    axes.add_patch(Wedge((0, 0), rim, 0, 90, **OVERLAPS))
+    axes.add_patch(Wedge((0, 0), rim, 0, 90, **OVERLAP_LOOK))
     shell = {"width": epsilon, "facecolor": "#F8DDC8", "edgecolor": "none"}
     axes.add_patch(Wedge((0, 0), rim + epsilon, 0, 90, **shell))
     dashed = {"linewidth": 0.5, "linestyle": (0, (3, 2)), "edgecolor": GREY}

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.patches import Polygon
 
 from twodiscs.figures import drawing
-from twodiscs.figures.style import BLACK, BLUE, COLUMN, GREY, VERMILLION, new_figure
+from twodiscs.figures.style import BLACK, BLUE, COLUMN_WIDTH, GREY, VERMILLION, new_figure
 
 #: The direction of view of the prism, in degrees around the vertical and above the horizon.
 AZIMUTH, ELEVATION = -112.0, 24.0
@@ -22,13 +22,13 @@ def draw(box):
     radius = 0.16 * min(width, height)
     # Inches: around and between the squares, and between them and the prism.
     margin, gap, bottom, top, between = 0.27, 0.42, 0.3, 0.28, 0.42
-    side = (COLUMN - margin - 0.1 - gap) / 2
+    side = (COLUMN_WIDTH - margin - 0.1 - gap) / 2
     halves = (width / 2 - radius, height / 2 - radius)
     corners = [_seen(corner) for corner in product(*((-n, n) for n in _sizes(halves)))]
     x, y = zip(*corners, strict=True)
     extent = (min(x), max(x), min(y), max(y))
     wide, high = max(x) - min(x), max(y) - min(y)
-    inches, spare = drawing.scale(wide, high, COLUMN - 2 * margin, 1.7)
+    inches, spare = drawing.scale(wide, high, COLUMN_WIDTH - 2 * margin, 1.7)
     squares = bottom + side + top
     figure = new_figure(squares + between + inches * high)
     floor = squares + between - top / 2
@@ -47,7 +47,7 @@ def draw(box):
         depth = point[i] * sqrt(2) * radius
         # X and Y of the point, its positions along the diagonals, over their largest values.
         _point(axes, depth, (0.28, 0.45)[i] * (sqrt(2) * half - depth), colour)
-    cross = (margin + side + 0.13) / COLUMN
+    cross = (margin + side + 0.13) / COLUMN_WIDTH
     middle = (bottom + side / 2) / figure.get_figheight()
     figure.text(cross, middle, r"$\times$", fontsize=12, ha="center", va="center")
     return figure

@@ -12,14 +12,14 @@ from twodiscs.model.events import EVENT_AXES, EVENTS, HOPS
 #: The name of the largest radius that fits, that of a smaller one beyond which a field allows no
 #: scene, and the names of the radii at which hops become blocked.
 R_MAX, R_F = r"r_{\mathrm{max}}", r"r_{\mathrm{f}}"
-QUARTERS = {"x": "h/4", "y": "w/4"}
+QUARTER_LABELS = {"x": "h/4", "y": "w/4"}
 
 #: The names of radii of a box with effects: hops become blocked, disc 1 can no longer change sides,
 #: in a field it can reach the top wall, on a periodic axis discs can no longer pass each other. If
 #: two radii are the same, the name is that of a hop, or else the first.
 R_V, R_H = r"r_{\mathrm{v}}", r"r_{\mathrm{h}}"
 R_T, R_X, R_Y = r"r_{\mathrm{t}}", r"r_{\mathrm{x}}", r"r_{\mathrm{y}}"
-CHANGES = {
+RADIUS_STATES = {
     R_V: lambda scene: scene.vertical_hops,
     R_H: lambda scene: scene.horizontal_hops,
     R_T: lambda scene: scene.is_possible("top_wall"),
@@ -44,12 +44,12 @@ def limits(box):
     names = {}
     if box.is_plain:
         for hop in sorted(HOPS, key=EVENT_AXES.get):
-            radius, name = box.threshold(hop), QUARTERS[EVENT_AXES[hop]]
+            radius, name = box.threshold(hop), QUARTER_LABELS[EVENT_AXES[hop]]
             names[radius] = f"{names[radius]}={name}" if radius in names else name
         names = {radius: name for radius, name in names.items() if radius in box.thresholds}
         return *sorted(names.items()), (box.largest_radius, R_MAX)
     largest = box.last_radius
-    for name, state in CHANGES.items():
+    for name, state in RADIUS_STATES.items():
         first = state(box.scene(1e-6 * largest))
         radius = box.end(lambda here, s=state, f=first: s(here) == f)
         if radius in names and name == R_H:
@@ -67,7 +67,7 @@ def _fills(scene, axis):
 def hop_ends(box):
     """Return {hop: (radius at which it ends, its name)} of a ``Box``."""
     ends = limits(box)
-    names = (QUARTERS["y"], QUARTERS["x"]) if box.is_plain else (R_V, R_H)
+    names = (QUARTER_LABELS["y"], QUARTER_LABELS["x"]) if box.is_plain else (R_V, R_H)
     return {
         hop: next((limit for limit in ends if name in limit[1].split("=")), ends[-1])
         for hop, name in zip(HOPS, names, strict=True)

@@ -12,7 +12,7 @@ from matplotlib.patches import Circle, Polygon, Rectangle
 from twodiscs.figures.style import BLACK, BLUE, GREY, VERMILLION
 
 #: Fill and outline of disc 1 and disc 2.
-DISCS = (("#CFE3F1", BLUE), ("#F8DDC8", VERMILLION))
+DISC_COLOURS = (("#CFE3F1", BLUE), ("#F8DDC8", VERMILLION))
 
 
 def outline(box, longest=4):
@@ -106,7 +106,7 @@ def dimensions(axes, at, stops, texts, offset, marked=True, beyond=0, **options)
 
 def disc(axes, number, centre, radius):
     """Draw disc 1 or 2 with a dot at its centre."""
-    face, edge = DISCS[number - 1]
+    face, edge = DISC_COLOURS[number - 1]
     settings = {"edgecolor": edge, "linewidth": 0.8, "clip_on": False}
     axes.add_patch(Circle(centre, radius, facecolor=face, **settings))
     axes.plot(*centre, ".", color=edge, markersize=3, clip_on=False)

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from twodiscs.figures import panels, style
-from twodiscs.figures.style import BLACK, BLUE, GREY, LOOKS, SERIES, VERMILLION, new_figure
+from twodiscs.figures.style import BLACK, BLUE, EVENT_LOOKS, GREY, SERIES, VERMILLION, new_figure
 from twodiscs.model.events import EVENT_AXES, HOPS
 from twodiscs.theory import laws
 
@@ -117,7 +117,7 @@ def _densest_stretch(hops, length, start, end):
 
 
 #: Bends for each disc that either panel shows, and the most lines in a panel.
-BENDS, CLOSE_BENDS, MOST_LINES = 75, 15, 24
+DISC_BENDS, CLOSE_BENDS, LINES_PER_PANEL = 75, 15, 24
 
 
 def longer_axis(box):
@@ -129,8 +129,8 @@ def disc_colours(box, first):
     """Return a colour for each disc, by its rank along the longer side in the row ``first``."""
     places = [first[f"{longer_axis(box)}{disc}"] for disc in range(1, box.discs + 1)]
     ranks = np.argsort(np.argsort(places))
-    if box.discs <= len(LOOKS):
-        colours = [colour for colour, _ in LOOKS.values()]
+    if box.discs <= len(EVENT_LOOKS):
+        colours = [colour for colour, _ in EVENT_LOOKS.values()]
         return [to_rgb(colours[rank]) for rank in ranks]
     # The ends of the map are too dark and too light.
     shades = 0.05 + (0.95 - 0.05) * ranks / (box.discs - 1)
@@ -141,21 +141,22 @@ def draw_world_lines(box, rows, radius=None):
     """Draw the positions of the discs of a ``Box`` along its longer side, against time.
 
     ``rows`` are the rows of trajectory.csv; the first ones are shown, and discs move freely between
-    them. If there are more than ``MOST_LINES`` discs, this number is drawn, at equal distances in
-    their order at the start. The ``radius``, if given, is written above.
+    them. If there are more than ``LINES_PER_PANEL`` discs, this number is drawn, at equal distances
+    in their order at the start. The ``radius``, if given, is written above.
     """
     axis, side = longer_axis(box), max(box.width, box.height)
-    rows = [row for row in rows if row["event"] not in HOPS][: BENDS * box.discs + 1]
+    rows = [row for row in rows if row["event"] not in HOPS][: DISC_BENDS * box.discs + 1]
     times = np.array([row["time"] for row in rows])
     figure, (whole, close) = panels.stacked(whole=2.0, close=2.0)
     shades = disc_colours(box, rows[0])
     whole.set_xlim(times[0], times[-1])
     # A short trajectory has fewer rows than either panel could show.
-    close.set_xlim(times[0], times[min(CLOSE_BENDS * box.discs, len(times) * CLOSE_BENDS // BENDS)])
+    close_rows = min(CLOSE_BENDS * box.discs, len(times) * CLOSE_BENDS // DISC_BENDS)
+    close.set_xlim(times[0], times[close_rows])
     places = np.array([[row[f"{axis}{disc}"] for row in rows] for disc in range(1, box.discs + 1)])
     shown_discs = np.arange(box.discs)
-    if box.discs > MOST_LINES:
-        ranks = np.linspace(0, box.discs - 1, MOST_LINES).round().astype(int)
+    if box.discs > LINES_PER_PANEL:
+        ranks = np.linspace(0, box.discs - 1, LINES_PER_PANEL).round().astype(int)
         shown_discs = np.argsort(places[:, 0], kind="stable")[ranks]
     for axes, width in ((whole, 0.5), (close, 0.9)):
         shown = places[:, times <= axes.get_xlim()[1]]
@@ -169,8 +170,8 @@ def draw_world_lines(box, rows, radius=None):
         place = {"loc": "outside lower center", "ncols": box.discs}
         figure.legend(close.get_lines(), names, handlelength=1, **place)
     panels.title(whole, "a", box, panels.radius_text(radius))
-    if box.discs > MOST_LINES:
-        close.set_title(f"{MOST_LINES} of the discs", loc="right", pad=3)
+    if box.discs > LINES_PER_PANEL:
+        close.set_title(f"{LINES_PER_PANEL} of the discs", loc="right", pad=3)
     return figure
 
 

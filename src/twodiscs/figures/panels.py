@@ -19,7 +19,7 @@ from matplotlib.ticker import FuncFormatter
 
 from twodiscs.figures import drawing
 from twodiscs.figures.curves import limits
-from twodiscs.figures.style import BLACK, COLUMN, GREY, SERIES, SIZES, new_figure
+from twodiscs.figures.style import BLACK, COLUMN_WIDTH, GREY, MARKER_SIZES, SERIES, new_figure
 from twodiscs.model.effects import EFFECTS
 
 #: Inches: the panels of curves and of residuals, with their labels.
@@ -65,7 +65,7 @@ def radius_panels(box, label, judged=True, beneath=False):
     heights = {"main": MAIN_HEIGHT}
     heights |= {"residuals": RESIDUALS_HEIGHT} if judged else {}
     heights |= {"beneath": 1.7} if beneath else {}
-    figure, axes = _column_of_panels(COLUMN, heights)
+    figure, axes = _column_of_panels(COLUMN_WIDTH, heights)
     main, lower = axes["main"], axes.get("residuals")
     over_radius(box, label, main, lower)
     title(main, "a" if beneath else "", box, up=TITLE_PAD)
@@ -92,7 +92,7 @@ def _column_of_panels(width, heights):
     return figure, figure.subplot_mosaic(rows, height_ratios=[*heights.values()])
 
 
-def stacked(width=COLUMN, **heights):
+def stacked(width=COLUMN_WIDTH, **heights):
     """Return (figure, its axes) of lettered panels above each other.
 
     ``heights`` are inches, with labels and titles, by the names of the panels from the top down.
@@ -221,7 +221,7 @@ def draw_series(main, lower, radii, series, single=False):
 
 
 #: The style of a limiting law, and its name in a legend.
-LAW = {"color": BLACK, "lw": 0.7, "ls": (0, (4, 2)), "zorder": 6}
+LAW_LOOK = {"color": BLACK, "lw": 0.7, "ls": (0, (4, 2)), "zorder": 6}
 LAW_NAME = "limiting law"
 
 
@@ -231,7 +231,7 @@ def _column(rows, *names):
 
 #: The names in a legend of estimates from a strip, of those from too few events for an error, and
 #: of bounds; their looks.
-STRIP_LOOK = ("from strips", {"color": GREY, "marker": "o", "markersize": SIZES["o"], "ls": ""})
+STRIP_LOOK = ("from strips", {"color": GREY, "marker": "o", "ms": MARKER_SIZES["o"], "ls": ""})
 CROSS_LOOK = ("too few events", {"color": GREY, "marker": "x", "ls": ""})
 ARROW_LOOK = ("95 % lower bound", {"color": GREY, "marker": r"$\uparrow$", "ls": ""})
 
@@ -264,7 +264,7 @@ def split_by_start(rows, style):
 
 def open_symbol(colour, marker, scale=1):
     """Return the settings of an open symbol, ``scale`` times as large as usual."""
-    size = scale * SIZES[marker]
+    size = scale * MARKER_SIZES[marker]
     return {"color": colour, "marker": marker, "markersize": size, "markerfacecolor": "white"}
 
 
@@ -288,8 +288,8 @@ def draw_residuals(axes, rows, colour, marker):
     ):
         r, z = _column(shown, "radius", "z")
         z = [math.copysign(min(abs(v), clip * LARGEST_RESIDUAL), v) for v in z]
-        style = open_symbol(colour, symbol) if clip == 1 else {"color": colour, "marker": symbol}
-        axes.plot(r, z, ls="", **style | {"markersize": 0.75 * SIZES[symbol] if clip == 1 else 2.6})
+        style = {"color": colour, "marker": symbol, "markersize": 2.6}
+        axes.plot(r, z, ls="", **(open_symbol(colour, symbol, 0.75) if clip == 1 else style))
 
 
 def legend(axes, series, single=None, more=()):

@@ -18,7 +18,7 @@ from twodiscs.figures import animation, panels, style
 from twodiscs.figures.draw import BOX_DRAWINGS, draw
 from twodiscs.figures.radius import CURVES, add
 from twodiscs.figures.scene_figures import FIGURES
-from twodiscs.figures.style import BLACK, LOOKS, SERIES, event_name, new_figure
+from twodiscs.figures.style import BLACK, EVENT_LOOKS, SERIES, event_name, new_figure
 from twodiscs.measure.intervals import Intervals
 from twodiscs.measure.load import plugin
 from twodiscs.measure.measurements import Measurements
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 #: The results that can be drawn.
-DRAWN = (
+DRAWN_RESULTS = (
     "a scene, a trajectory, results of simulate, scan, sample, intervals, transmission or observe, "
     "a table of exact_table, or a loaded table"
 )
@@ -117,8 +117,8 @@ def plot(
 
 def _draw(result, figure):
     """Return the drawn figure of a result; ``figure`` is its name, None for the first that fits."""
-    if type(result) in OVER_TIME:
-        name, draw_over_time = OVER_TIME[type(result)]
+    if type(result) in TIME_FIGURES:
+        name, draw_over_time = TIME_FIGURES[type(result)]
         check_choice("figure", figure or name, [name])
         return draw_over_time(result)
     table = getattr(result, "attrs", {}).get("table")
@@ -134,7 +134,7 @@ def _draw(result, figure):
                 f"{table!r} has none; the target report writes it"
             )
         raise InputError(
-            f"result must be {DRAWN}, with a quantity of a figure, not {quote(result)}"
+            f"result must be {DRAWN_RESULTS}, with a quantity of a figure, not {quote(result)}"
         )
     name = _chosen(figure, fitting, rows)
     if not box.is_plain and name in BOX_DRAWINGS:
@@ -356,8 +356,8 @@ def _draw_transmission(result):
     figure, (axes,) = _panels(scene, f",  {event_name(hop)}")
     times, values, errors = result.frame().reset_index().to_numpy().T
     known = np.isfinite(errors)
-    _points(axes, times[known], values[known], errors[known], LOOKS[hop])
-    axes.plot(times[~known], values[~known], "x", color=LOOKS[hop][0], zorder=3)
+    _points(axes, times[known], values[known], errors[known], EVENT_LOOKS[hop])
+    axes.plot(times[~known], values[~known], "x", color=EVENT_LOOKS[hop][0], zorder=3)
     if scene.is_plain:
         early = np.geomspace(result.times[0], 0.3 * box_time(scene, hop), 20)
         start = 1 - 2 * laws.density_at_zero(scene, hop) * early
@@ -375,7 +375,7 @@ def _draw_transmission(result):
 
 
 #: {type of a result: (the name of its only figure, the function that draws it)}
-OVER_TIME = {
+TIME_FIGURES = {
     Observed: ("observed", _draw_observed),
     Transmission: ("transmission", _draw_transmission),
 }

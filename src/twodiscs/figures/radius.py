@@ -9,7 +9,7 @@ from twodiscs.analysis.tables import row_quantity
 from twodiscs.figures import curves, panels
 from twodiscs.figures.curves import hop_ends
 from twodiscs.figures.scene_figures import FIGURES, Curves
-from twodiscs.figures.style import BLACK, LOOKS, SERIES, event_name, new_figure
+from twodiscs.figures.style import BLACK, EVENT_LOOKS, SERIES, event_name, new_figure
 from twodiscs.model.checks import InputError
 from twodiscs.theory import virial
 from twodiscs.theory.exact import mean_times, rate
@@ -22,8 +22,9 @@ SMALL_RANGE, LAW_RANGE = 0.4, 0.3
 
 def _every(kind, label):
     """Return the ``Curves`` of one kind of quantity, "time" or "area", for all events."""
-    names = {f"{event}_{kind}": event_name(event) for event in LOOKS}
-    return Curves(names, label, looks={f"{event}_{kind}": look for event, look in LOOKS.items()})
+    names = {f"{event}_{kind}": event_name(event) for event in EVENT_LOOKS}
+    looks = {f"{event}_{kind}": look for event, look in EVENT_LOOKS.items()}
+    return Curves(names, label, looks=looks)
 
 
 #: The figures by their names. ``mean_times`` and ``areas`` show all events in one panel.
@@ -54,7 +55,7 @@ def draw(name, box, rows):
     for quantity in by_quantity:
         _laws(main, box, quantity.removesuffix("_time"), kind.laws)
     series = _draw_series(main, residuals, radii, kind, by_quantity)
-    laws = [(panels.LAW_NAME, panels.LAW)] if kind.laws and box.is_plain else []
+    laws = [(panels.LAW_NAME, panels.LAW_LOOK)] if kind.laws and box.is_plain else []
     panels.legend(main, series, kind.single, laws)
     if beneath:
         _approach(approach, box, by_quantity)
@@ -113,7 +114,7 @@ def add(axes, box, rows, names):
     kinds = [CURVES["volume"], CURVES["mean_times"], CURVES["areas"]]
     present = {*map(row_quantity, rows)} & {*names}
     kind = next(one for one in kinds if present & {*one.names})
-    before, looks = len(axes.get_legend_handles_labels()[1]), [*LOOKS.values()]
+    before, looks = len(axes.get_legend_handles_labels()[1]), [*EVENT_LOOKS.values()]
     texts = {q: text for one in kinds for q, text in one.names.items() if q in present}
     names = {q: ", ".join([text, *panels.heading(box)]) for q, text in texts.items()}
     looks = {q: looks[(before + i) % len(looks)] for i, q in enumerate(texts)}
@@ -171,10 +172,10 @@ def _laws(axes, box, event, laws):
     end = box.largest_radius
     if "small" in laws:
         radii = np.linspace(0, SMALL_RANGE, 41)[1:] * end
-        axes.plot(radii, [small_radius_time(box, event, r) for r in radii], **panels.LAW)
+        axes.plot(radii, [small_radius_time(box, event, r) for r in radii], **panels.LAW_LOOK)
     if "last" in laws:
         radii = end * (1 - np.geomspace(0.1, 1e-6, 60))
-        axes.plot(radii, [threshold_time(box.scene(r), event) for r in radii], **panels.LAW)
+        axes.plot(radii, [threshold_time(box.scene(r), event) for r in radii], **panels.LAW_LOOK)
 
 
 def _approach(axes, box, by_quantity):
@@ -197,7 +198,7 @@ def _approach(axes, box, by_quantity):
         if box.is_plain:
             near = distances < LAW_RANGE
             laws = [threshold_time(scene, event) for scene in scenes]
-            axes.plot(distances[near], np.array(laws)[near], **panels.LAW)
+            axes.plot(distances[near], np.array(laws)[near], **panels.LAW_LOOK)
         rows = [row | {"radius": 1 - row["radius"] / end} for row in part.rows]
         panels.draw_estimates(axes, [row for row in rows if row["radius"] > 0], colour, marker)
     low, high = min(shown) / 3, 3 * max(shown)
@@ -206,7 +207,7 @@ def _approach(axes, box, by_quantity):
     axes.set_xlabel(r"relative distance from the end, $1-r/r_{\mathrm{c}}$")
     axes.set_ylabel(r"mean time $\tau$ (length/speed)")
     if box.is_plain:
-        handles.append(Line2D([], [], label=panels.LAW_NAME, **panels.LAW))
+        handles.append(Line2D([], [], label=panels.LAW_NAME, **panels.LAW_LOOK))
     axes.legend(handles=handles, loc="best")
 
 
@@ -228,7 +229,7 @@ def draw_pressure(box, rows):
     main.axhline(1, **ideal)
     more = [("ideal gas", ideal)]
     if box.is_plain:
-        more.append((panels.LAW_NAME, panels.LAW))
+        more.append((panels.LAW_NAME, panels.LAW_LOOK))
         end = box.largest_radius
         farthest = min(0.12, 1 - max(box.thresholds, default=0) / end)
         near = [box.scene(float(r)) for r in end * (1 - np.geomspace(0.99 * farthest, 1e-6))]
@@ -238,7 +239,7 @@ def draw_pressure(box, rows):
                 for scene in near
                 for time in [threshold_time(scene, event)]
             ]
-            main.plot([scene.radius for scene in near], laws, **panels.LAW)
+            main.plot([scene.radius for scene in near], laws, **panels.LAW_LOOK)
     panels.logarithmic(main, radii, series)
     main.set_ylim(min(main.get_ylim()[0], 0.97), None)
     panels.legend(main, series, more=more)

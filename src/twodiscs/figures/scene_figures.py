@@ -10,7 +10,7 @@ from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import HOPS
 
 # A report lists categories in alphabetical order.
-GEOMETRY, SPACE, DYNAMICS = "1 Geometry", "2 Volume and areas", "3 Mean times and hopping"
+GEOMETRY, VOLUMES, DYNAMICS = "1 Geometry", "2 Volume and areas", "3 Mean times and hopping"
 
 
 @dataclass(frozen=True)
@@ -147,12 +147,12 @@ def _name_lines(box):
     return f"Vertical lines mark {marked}{known}.{which}"
 
 
-SIMULATED = Caption(_RESIDUALS, **_LINES)
-SAMPLED = replace(
-    SIMULATED, field="In a field volumes and areas are weighted with the invariant density."
+DYNAMICS_CAPTION = Caption(_RESIDUALS, **_LINES)
+SAMPLING_CAPTION = replace(
+    DYNAMICS_CAPTION, field="In a field volumes and areas are weighted with the invariant density."
 )
-SHELLS = replace(
-    SAMPLED,
+SHELL_CAPTION = replace(
+    SAMPLING_CAPTION,
     text=f"""{_RESIDUALS} They are taken from the exact expectation of the shell. Its thickness
     shifts the estimate slightly off the line.""",
 )
@@ -190,7 +190,7 @@ def _hop_area(hop, q):
     label = rf"root of the hop area, $\sqrt{{S_{{\mathrm{{{hop[0]}}}}}}}$ (length$^{{3/2}}$)"
     names = {f"{hop}_hop_area": f"{hop} hops"}
     curves = _radius_fields("areas", names, label, single=SAMPLING, rooted=True)
-    return Figure(f"Area of {hop} hops", SPACE, own, SHELLS, **curves)
+    return Figure(f"Area of {hop} hops", VOLUMES, own, SHELL_CAPTION, **curves)
 
 
 FIGURES = {
@@ -232,10 +232,10 @@ FIGURES = {
     ),
     "volume": Figure(
         "Volume of configuration space",
-        SPACE,
+        VOLUMES,
         """The volume V of all positions without overlap against the radius of the discs: exact
         (line) and by Monte Carlo sampling (symbols).""",
-        SAMPLED,
+        SAMPLING_CAPTION,
         **_radius_fields(
             "volume", {"volume": "volume"}, "volume $V$ (length$^4$)", single=SAMPLING
         ),
@@ -244,13 +244,13 @@ FIGURES = {
     "horizontal_hop_area": _hop_area("horizontal", "x"),
     "collision_area": Figure(
         "Area of disc collisions",
-        SPACE,
+        VOLUMES,
         Caption(
             """Area of the surface on which the discs touch: exact (line) and from a thin shell
             outside it (symbols).""",
             many="It is the sum over all pairs of discs.",
         ),
-        SHELLS,
+        SHELL_CAPTION,
         **_radius_fields(
             "areas",
             {"disc_collision_area": "disc collisions"},
@@ -260,14 +260,14 @@ FIGURES = {
     ),
     "wall_area": Figure(
         "Areas of wall hits",
-        SPACE,
+        VOLUMES,
         Caption(
             """Areas of the surfaces on which discs touch walls: exact (lines) and from thin shells
             (symbols).""",
             plain="The area of any wall and any disc is four times the sum of the two others.",
             square="These are the same in a square box.",
         ),
-        SHELLS,
+        SHELL_CAPTION,
         **_radius_fields(
             "areas",
             {f"{event}_area": name for event, name in WALL_NAMES.items()},
@@ -276,12 +276,12 @@ FIGURES = {
     ),
     "all_areas": Figure(
         "Areas of all events",
-        SPACE,
+        VOLUMES,
         """Areas of surfaces in configuration space: exact (lines) and from thin shells (symbols).
         (a) Collisions of the discs. (b) Hits of walls. (c), (d) Square roots of the areas of hops:
         if an area ends quadratically, its root ends as a straight line. A symbol at zero means that
         no sample was in the shell of a blocked hop.""",
-        SHELLS,
+        SHELL_CAPTION,
         tables=("areas",),
         needs=frozenset(f"{e}_area" for e in (*HOPS, "disc_collision", "right_wall", "top_wall")),
         without=frozenset({*EFFECTS, "discs"}),
@@ -300,7 +300,7 @@ FIGURES = {
             square="In a square box both hops have the same mean time.",
             many="Hops are those of any pair of discs. There is no (b) if no exact value is known.",
         ),
-        SIMULATED,
+        DYNAMICS_CAPTION,
         **_radius_fields(
             "mean_times",
             {"vertical_hop_time": "vertical hops", "horizontal_hop_time": "horizontal hops"},
@@ -319,7 +319,7 @@ FIGURES = {
             as 3wh/(8√2 r), and the limiting law below the largest radius.""",
             many="Collisions are those of any pair.",
         ),
-        SIMULATED,
+        DYNAMICS_CAPTION,
         **_radius_fields(
             "mean_times",
             {"disc_collision_time": "disc collisions"},
@@ -343,7 +343,7 @@ FIGURES = {
             more than two discs over all initial conditions. A time halves if disc 1 begins to keep
             to its side.""",
         ),
-        SIMULATED,
+        DYNAMICS_CAPTION,
         **_radius_fields(
             "mean_times",
             {f"{event}_time": name for event, name in WALL_NAMES.items()},
@@ -363,7 +363,7 @@ FIGURES = {
             one at every radius.""",
             plain="Dashed lines in (a) are the limiting laws below the largest radius.",
         ),
-        SIMULATED,
+        DYNAMICS_CAPTION,
         tables=("mean_times",),
         needs=frozenset({"right_wall_time", "top_wall_time"}),
         without=frozenset({"field"}),

@@ -22,7 +22,7 @@ from twodiscs.model.checks import InputError, writing_to
 from twodiscs.model.events import EVENTS
 
 #: Width of one column of a two-column journal, in inches.
-COLUMN = 3.4
+COLUMN_WIDTH = 3.4
 
 # The palette of Okabe and Ito, distinguishable with any colour vision.
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
@@ -33,10 +33,10 @@ GREY = "#6E6E6E"
 SERIES = ((BLUE, "o"), (VERMILLION, "s"), (GREEN, "^"), (PURPLE, "D"))
 
 #: Sizes of the markers, in points: if two series coincide, both are visible.
-SIZES = {"o": 3.7, "s": 2.5, "^": 3.0, "D": 2.3, "v": 3.0, "P": 3.2}
+MARKER_SIZES = {"o": 3.7, "s": 2.5, "^": 3.0, "D": 2.3, "v": 3.0, "P": 3.2}
 
 #: The settings of matplotlib, from the file beside this one.
-SETTINGS = rc_params_from_file(Path(__file__).with_name("figures.mplstyle"), False, False)
+RC_PARAMS = rc_params_from_file(Path(__file__).with_name("figures.mplstyle"), False, False)
 
 
 def _have_fonts():
@@ -45,7 +45,7 @@ def _have_fonts():
     A partly removed installation leaves such a list, and texts would have different sizes.
     """
     try:
-        for family in SETTINGS["font.family"]:
+        for family in RC_PARAMS["font.family"]:
             findfont(family, fallback_to_default=False)
     except ValueError:
         for path in sorted(Path(matplotlib.get_data_path(), "fonts", "ttf").glob("*.ttf")):
@@ -62,7 +62,7 @@ def context():
     with _ONE_AT_A_TIME, matplotlib.rc_context():
         _have_fonts()
         matplotlib.rcdefaults()
-        matplotlib.rcParams.update(SETTINGS)
+        matplotlib.rcParams.update(RC_PARAMS)
         # The files of Computer Modern have dates that fontTools warns about, once for each file.
         logger = logging.getLogger("fontTools")
         level = logger.level
@@ -98,7 +98,7 @@ class StyledFigure(Figure):
         return stream.getvalue()
 
 
-def new_figure(height, width=COLUMN, **options):
+def new_figure(height, width=COLUMN_WIDTH, **options):
     """Return an empty figure of ``width`` × ``height`` inches, with ``options`` of matplotlib."""
     figure = StyledFigure(figsize=(width, height), **options)
     FigureCanvasAgg(figure)
@@ -134,7 +134,7 @@ if len(EVENTS) > len(_LOOKS):
     raise TypeError(f"figures/style.py has {len(_LOOKS)} looks, too few for {len(EVENTS)} events")
 
 #: {event: (colour, marker)}
-LOOKS = dict(zip(EVENTS, _LOOKS, strict=False))
+EVENT_LOOKS = dict(zip(EVENTS, _LOOKS, strict=False))
 
 
 def event_name(event):

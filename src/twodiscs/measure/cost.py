@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 #: The relative errors whose times are shown.
-ERRORS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+PRICED_ERRORS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 
 #: Processor seconds of a pilot of dynamics, about, and of a pilot that measures the speed only.
 PILOT_SECONDS, SPEED_SECONDS = 0.3, 0.1
@@ -473,7 +473,7 @@ def cost(
     from twodiscs.dynamics.runs import DynamicsRun
 
     if isinstance(errors, str) or not isinstance(errors, Iterable):
-        errors = ERRORS if errors is None else [errors]
+        errors = PRICED_ERRORS if errors is None else [errors]
     errors = [check_error("errors", error) for error in errors]
     check_fraction("shell", shell, THINNEST_SHELL)
     run = DynamicsRun(check_scene(scene), dict.fromkeys(scene.events, 1.0), 10**15, 0)

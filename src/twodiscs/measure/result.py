@@ -197,9 +197,9 @@ def note_of_number(what, asked, done, fewer="the budget ended the run"):
 
 
 #: Seconds before a bar appears: shorter work needs none.
-PATIENCE = 1.0
+BAR_DELAY = 1.0
 
-BAR = "{desc}: {percentage:3.0f}% |{bar}| {elapsed}, {remaining} left"
+BAR_FORMAT = "{desc}: {percentage:3.0f}% |{bar}| {elapsed}, {remaining} left"
 
 
 @contextmanager
@@ -229,7 +229,7 @@ def progress_bar(progress, what):
         from tqdm import tqdm
 
     shown = monotonic()
-    with tqdm(desc=what, total=1, leave=False, delay=PATIENCE, bar_format=BAR) as bar:
+    with tqdm(desc=what, total=1, leave=False, delay=BAR_DELAY, bar_format=BAR_FORMAT) as bar:
 
         def progress(done, total):
             nonlocal shown
@@ -237,7 +237,7 @@ def progress_bar(progress, what):
             if done is not None:
                 bar.set_description_str(what, refresh=False)
                 bar.update(done - bar.n)
-            elif monotonic() - shown > PATIENCE:
+            elif monotonic() - shown > BAR_DELAY:
                 shown = monotonic()
                 bar.set_description_str(f"{what}, compiling" if compiling() else what)
 

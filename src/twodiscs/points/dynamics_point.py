@@ -16,12 +16,10 @@ from twodiscs.points.base import Point, reached
 from twodiscs.points.estimates import stratified_mean
 from twodiscs.theory import clusters
 
-COLLISIONS, ANY_WALLS = EVENTS.index("disc_collision"), EVENTS.index("any_wall")
-
 
 def simulated_events(sums):
     """Return the number of wall hits and disc collisions among the counts of all events."""
-    return int(sums[COLLISIONS] + sums[ANY_WALLS])
+    return int(sums[EVENTS.index("disc_collision")] + sums[EVENTS.index("any_wall")])
 
 
 @dataclass(frozen=True, kw_only=True)

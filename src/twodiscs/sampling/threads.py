@@ -15,9 +15,6 @@ from threading import Thread
 
 from twodiscs.model.checks import check_integer
 
-#: Seconds between two calls of ``waiting`` during the wait for a result.
-POLL_SECONDS = 0.2
-
 #: The largest number of threads.
 MOST_CORES = 1024
 
@@ -55,7 +52,7 @@ def map_in_threads(work, arguments, cores=1, waiting=None):
             Thread(target=_serve, args=(work, calls), daemon=True).start()
         begin(2 * cores)
         while begun:
-            while not wait([begun[0]], POLL_SECONDS).done:
+            while not wait([begun[0]], 0.2).done:  # seconds between two calls of ``waiting``
                 if waiting is not None:
                     waiting()
             yield begun.popleft().result()

@@ -9,7 +9,7 @@ import math
 from pathlib import Path
 
 from twodiscs.analysis.tables import AreasTable, MeanTimesTable, VolumeTable
-from twodiscs.figures.style import LOOKS
+from twodiscs.figures.style import EVENT_LOOKS
 from twodiscs.model.events import EVENT_WAYS
 from twodiscs.theory.flux import flux_constant
 
@@ -17,7 +17,7 @@ from twodiscs.theory.flux import flux_constant
 SCRIPTS = ("theory.js", "dynamics.js", "plot.js", "page.js")
 
 #: The events that the page counts.
-COUNTED = ("vertical_hop", "horizontal_hop", "disc_collision", "any_wall")
+PAGE_EVENTS = ("vertical_hop", "horizontal_hop", "disc_collision", "any_wall")
 
 
 def dynamics_times(rows):
@@ -31,7 +31,7 @@ def dynamics_times(rows):
             for row in rows
             if row["event"] == event and row["estimate"] is not None
         ]
-        for event in COUNTED
+        for event in PAGE_EVENTS
     }
 
 
@@ -44,7 +44,7 @@ def monte_carlo_times(volumes, areas, components):
     are also free samples; therefore the error is slightly too large.
     """
     volume = {row["radius"]: row for row in volumes if row["stderr"] is not None}
-    times = {event: [] for event in COUNTED}
+    times = {event: [] for event in PAGE_EVENTS}
     for row in areas:
         event, radius = row["quantity"].removesuffix("_area"), row["radius"]
         if event in times and radius in volume and row["stderr"] is not None and row["exact"]:
@@ -67,7 +67,7 @@ def points(tables, periodic=""):
     )
     dynamics, sampled = dynamics_times(times), monte_carlo_times(volumes, areas, 4 - len(periodic))
     return {
-        event: {"dynamics": dynamics[event], "monte_carlo": sampled[event]} for event in COUNTED
+        event: {"dynamics": dynamics[event], "monte_carlo": sampled[event]} for event in PAGE_EVENTS
     }
 
 
@@ -89,7 +89,8 @@ def explorer(parts, tables, scenes, seed):
         own = {Path(path).stem: path for path in tables if Path(path).parent.name == name}
         kept = {key: scene[key] for key in ("name", "width", "height")}
         shown.append(kept | effects | {"points": points(own, effects.get("periodic", ""))})
-    data = {"looks": {event: LOOKS[event] for event in COUNTED}, "scenes": shown, "seed": seed}
+    looks = {event: EVENT_LOOKS[event] for event in PAGE_EVENTS}
+    data = {"looks": looks, "scenes": shown, "seed": seed}
     texts = {Path(path).name: Path(path).read_text(encoding="utf-8") for path in parts}
     environment = Environment(undefined=StrictUndefined, trim_blocks=True)
     return environment.from_string(texts["explorer.html"]).render(

@@ -13,9 +13,9 @@ from twodiscs.figures.style import (
     BLUE,
     GREEN,
     GREY,
+    MARKER_SIZES,
     ORANGE,
     PURPLE,
-    SIZES,
     SKY,
     VERMILLION,
     new_figure,
@@ -184,4 +184,4 @@ def _draw_exact(axes, rows, radius, quantity):
         shown = [row for row in nodes if row["error"] > ERROR_RANGE[1]]
         error = [row["error"] for row in shown]
         text = f"quadrature, 1 to {len(error)} nodes"
-        axes.plot(error, [seconds] * len(error), "P", color=BLACK, ms=SIZES["P"], label=text)
+        axes.plot(error, [seconds] * len(error), "P", color=BLACK, ms=MARKER_SIZES["P"], label=text)

@@ -3,7 +3,7 @@
 from matplotlib.ticker import LogLocator, NullLocator
 
 from twodiscs.figures import panels
-from twodiscs.figures.style import BLACK, COLUMN, LOOKS, event_name, new_figure
+from twodiscs.figures.style import BLACK, COLUMN_WIDTH, EVENT_LOOKS, event_name, new_figure
 from twodiscs_paper.study import select
 
 #: The methods of each panel, and its name.
@@ -21,7 +21,7 @@ HEIGHT, PRICE_RANGE = 4.1, (1e-11, 1e5)
 def draw(box, tables):
     """Draw the rows of accuracy_cost.csv; ``box`` is not used, because the table has its own."""
     rows = select(tables["accuracy_cost"], part="radius")
-    figure = new_figure(HEIGHT, COLUMN, layout="constrained")
+    figure = new_figure(HEIGHT, COLUMN_WIDTH, layout="constrained")
     axes = figure.subplots(2, 2, sharex=True, sharey=True).flat
     for one, letter, (name, methods) in zip(axes, "abcd", PANELS.items(), strict=True):
         one.set_label(name)
@@ -40,10 +40,10 @@ def draw(box, tables):
     for axis, number in ((axes[0].xaxis, 4), (axes[0].yaxis, 9)):
         axis.set_major_locator(LogLocator(numticks=number))
         axis.set_minor_locator(NullLocator())
-    names = [event_name(event) for event in LOOKS] + ["volume"]
+    names = [event_name(event) for event in EVENT_LOOKS] + ["volume"]
     handles = [
         axes[0].plot([], [], lw=0.7, **panels.open_symbol(*look, 0.8))[0]
-        for look in (*LOOKS.values(), VOLUME)
+        for look in (*EVENT_LOOKS.values(), VOLUME)
     ]
     figure.legend(handles, names, loc="outside lower center", ncols=3, columnspacing=1.0)
     return figure
@@ -55,6 +55,6 @@ VOLUME = BLACK, "P"
 def looks():
     """Return {quantity: (colour, marker)}: mean times and areas of one event look the same."""
     found = {"volume": VOLUME}
-    for event, look in LOOKS.items():
+    for event, look in EVENT_LOOKS.items():
         found |= {f"{event}_time": look, f"{event}_area": look}
     return found

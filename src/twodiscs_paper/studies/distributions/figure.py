@@ -3,7 +3,7 @@
 import numpy as np
 
 from twodiscs.figures import panels
-from twodiscs.figures.style import BLACK, GREY, SERIES, SIZES, event_name
+from twodiscs.figures.style import BLACK, GREY, SERIES, event_name
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Box
 from twodiscs.theory import laws
@@ -94,7 +94,7 @@ def _passages(axes, rows):
         axes.errorbar(
             radius, value / mean, error / mean, ls="", label=event_name(hop), zorder=3, **style
         )
-        style |= {"markerfacecolor": colour, "markersize": 0.4 * SIZES[marker]}
+        style = panels.open_symbol(colour, marker, 0.4) | {"markerfacecolor": colour}
         axes.errorbar(radius, other / mean, spread / mean, ls="", elinewidth=0.5, zorder=4, **style)
     axes.plot(
         [], [], ls="", marker=".", color=BLACK, label=r"from intervals, $(1+\mathrm{CV}^2)/2$"

@@ -1,7 +1,7 @@
 """Mean times against the number of discs: theory, Monte Carlo and dynamics."""
 
 from twodiscs.figures import panels
-from twodiscs.figures.style import BLACK, GREY, LOOKS, event_name
+from twodiscs.figures.style import BLACK, EVENT_LOOKS, GREY, event_name
 from twodiscs_paper.study import select
 
 #: Inches: heights of a panel of one radius and of the residuals.
@@ -50,7 +50,7 @@ def draw(box, tables):
 
 
 def _times(axes, rows):
-    for event, (colour, marker) in LOOKS.items():
+    for event, (colour, marker) in EVENT_LOOKS.items():
         own = [row for row in rows if row["event"] == event and row["dynamics"]]
         if not own:
             continue
@@ -79,7 +79,7 @@ def _legend(axes):
 
 
 def _residuals(axes, rows, radii):
-    for event, (colour, marker) in {**LOOKS, "virial": (BLACK, "x")}.items():
+    for event, (colour, marker) in {**EVENT_LOOKS, "virial": (BLACK, "x")}.items():
         own = [row for row in rows if row["event"] == event and row["z"] is not None]
         # Residuals of one number of discs stand side by side, from radius to radius.
         x = [r["discs"] * 1.035 ** (radii.index(r["radius"]) - (len(radii) - 1) / 2) for r in own]

@@ -4,7 +4,7 @@ import numpy as np
 
 from twodiscs.dynamics.transmission import box_time
 from twodiscs.figures import drawing, panels
-from twodiscs.figures.style import BLACK, BLUE, GREEN, PURPLE, SIZES, SKY, VERMILLION, event_name
+from twodiscs.figures.style import BLACK, BLUE, GREEN, PURPLE, SKY, VERMILLION, event_name
 from twodiscs.model.scene import Box
 from twodiscs.theory import exact, laws
 from twodiscs_paper.studies.estimates import columns
@@ -81,9 +81,9 @@ def first_scene(rows, box):
 def points(axes, x, y, error, look, label=None, filled=False):
     """Draw symbols of one ``look`` with error bars."""
     colour, marker = look
-    style = panels.open_symbol(colour, marker, 0.85)
+    style = panels.open_symbol(colour, marker, 0.5 if filled else 0.85)
     if filled:
-        style |= {"markerfacecolor": colour, "markersize": 0.5 * SIZES[marker]}
+        style |= {"markerfacecolor": colour}
     axes.errorbar(x, y, error, ls="", elinewidth=0.6, label=label, zorder=3, **style)
 
 

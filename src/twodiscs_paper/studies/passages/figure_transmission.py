@@ -3,7 +3,7 @@
 import numpy as np
 
 from twodiscs.figures import panels
-from twodiscs.figures.curves import QUARTERS
+from twodiscs.figures.curves import QUARTER_LABELS
 from twodiscs.figures.style import BLACK, BLUE, GREY, SKY, VERMILLION
 from twodiscs.model.events import EVENT_AXES
 from twodiscs.model.scene import Box
@@ -100,7 +100,7 @@ def _units(rows):
 
 def place(box, hop):
     """Return the sides of a ``Box`` and the radius where a ``hop`` becomes blocked, in mathtext."""
-    return f"${panels.sides(box)}$, ${QUARTERS[EVENT_AXES[hop]]}$"
+    return f"${panels.sides(box)}$, ${QUARTER_LABELS[EVENT_AXES[hop]]}$"
 
 
 def _rough(axes, ours, kept, where):

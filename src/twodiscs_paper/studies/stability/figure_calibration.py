@@ -6,7 +6,7 @@ import re
 from matplotlib.ticker import NullFormatter
 
 from twodiscs.figures import panels
-from twodiscs.figures.style import BLACK, BLUE, COLUMN, GREEN, GREY, VERMILLION, new_figure
+from twodiscs.figures.style import BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, VERMILLION, new_figure
 
 #: {what scenes have in common: colour and marker}.
 SCENE_LOOKS = {"plain discs": (BLUE, "o"), "effects": (VERMILLION, "s"), "more discs": (GREEN, "^")}
@@ -55,7 +55,7 @@ def draw(box, tables):
     rows = [
         r for r in tables["calibration"] if r["scores"] >= FEWEST_SCORES and r["size"] != "long"
     ]
-    figure = new_figure(0.155 * len(ESTIMATORS) + 0.9, COLUMN, layout="constrained")
+    figure = new_figure(0.155 * len(ESTIMATORS) + 0.9, COLUMN_WIDTH, layout="constrained")
     axes = figure.subplots()
     axes.set_label("calibration")
     for level, (call, part) in enumerate(ESTIMATORS.values()):

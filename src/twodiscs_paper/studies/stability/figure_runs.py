@@ -8,8 +8,8 @@ from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import (
     BLACK,
+    EVENT_LOOKS,
     GREY,
-    LOOKS,
     ORANGE,
     SERIES,
     VERMILLION,
@@ -154,7 +154,7 @@ def _extremes(axes, rows):
     """Draw the residuals of the mean times in extreme scenes, a line for each scene."""
     cases = [*dict.fromkeys(row["case"] for row in rows)]
     rule_lines(axes, cases)
-    for event, look in (LOOKS | {"virial": VIRIAL}).items():
+    for event, look in (EVENT_LOOKS | {"virial": VIRIAL}).items():
         quantities = event, f"{event}_time"
         own = [r for r in rows if r["quantity"] in quantities and r["z"] is not None]
         x, y = [row["z"] for row in own], [cases.index(row["case"]) for row in own]

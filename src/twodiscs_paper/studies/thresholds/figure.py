@@ -3,7 +3,7 @@
 import numpy as np
 
 from twodiscs.figures import drawing, panels
-from twodiscs.figures.style import BLACK, GREY, LOOKS, event_name
+from twodiscs.figures.style import BLACK, EVENT_LOOKS, GREY, event_name
 from twodiscs.model.events import HOPS, SHELL_EVENTS
 from twodiscs.theory.exact import mean_times
 from twodiscs_paper.studies.estimates import columns
@@ -17,7 +17,7 @@ NEAREST, POINTS = 2e-5, 80
 def draw(box, tables):
     """Draw mean_times.csv, if given, and the first passages of distributions.csv."""
     figure, (hops, ratios) = panels.stacked(hops=2.3, ratios=2.0)
-    for event, (colour, marker) in LOOKS.items():
+    for event, (colour, marker) in EVENT_LOOKS.items():
         law = leading_law(box, event) if event in SHELL_EVENTS else None
         if law is None:
             continue
