@@ -346,7 +346,7 @@ def test_a_run_with_failed_jobs_ends_with_their_reasons(log, lines, tmp_path, mo
         workflow = SimpleNamespace(scheduler=SimpleNamespace(failed=[failed]))
         assert build.failure(workflow, 1, tmp_path).splitlines() == [*lines, again]
     assert build.failure(None, 1, tmp_path) == ""  # Snakemake ended with the reason
-    monkeypatch.setattr(build, "FULL", math.inf)
+    monkeypatch.setattr(build, "LEAST_FREE_BYTES", math.inf)
     full = f"error: no space is left on the disk of {tmp_path}"
     for one, reasons in ((workflow, lines), (None, [])):
         assert build.failure(one, 1, tmp_path).splitlines() == [full, *reasons, again]

@@ -26,7 +26,7 @@ from twodiscs.sampling.initial_states import states
 from twodiscs.theory.exact import event_rate
 from twodiscs_paper.studies.accuracy_cost import scalar
 from twodiscs_paper.studies.effects.price import (
-    BLOCKS,
+    PRICE_BLOCKS,
     SCENE,
     compared,
     interleaved,
@@ -59,7 +59,7 @@ def lockstep_intervals(intervals=5_000_000):
     return summary.intervals * summary.mean * event_rate(SCENE), seconds
 
 
-def scalar_engine(blocks=BLOCKS // 8):
+def scalar_engine(blocks=PRICE_BLOCKS // 8):
     """Do the same as ``lockstep``, one trajectory after the other."""
     duration = find_engine(SCENE).replica_duration(SCENE)
     draw = conditioned_sampler(SCENE)
@@ -115,13 +115,13 @@ def numpy_sampler(chunks=1000, chunk=16384):
 #: Numbers of discs in a square box or torus, 8 in lock step and more in cells, and their packing
 #: fractions. All hops are counted, with initial states as in a call of ``simulate``, and without:
 #: the share of time of initial states is 1 − called/kernel.
-NUMBERS, PACKINGS = (8, 64, 256, 1024, 4096), (0.3, 0.6)
-TWO = replace(SCENE, radius=SCENE.radius / 2)
-BY_NUMBER = {"lockstep": partial(lockstep, BLOCKS // 8, TWO)} | {
+DISC_NUMBERS, PACKINGS = (8, 64, 256, 1024, 4096), (0.3, 0.6)
+TWO_DISC_SCENE = replace(SCENE, radius=SCENE.radius / 2)
+RATES_BY_NUMBER = {"lockstep": partial(lockstep, PRICE_BLOCKS // 8, TWO_DISC_SCENE)} | {
     f"discs_{discs}_packing_{packing}{shape}_{name}": partial(
         count_in_square, discs, packing, periodic, with_states
     )
-    for discs in NUMBERS
+    for discs in DISC_NUMBERS
     for packing in PACKINGS
     for shape, periodic in (("", ""), ("_torus", "xy"))
     for name, with_states in (("called", True), ("kernel", False))
@@ -141,5 +141,5 @@ def benchmarks(scenes):
         *cost_rows(scenes),
         *compared("md_events_per_second", interleaved(of_engines), "scalar"),
         *compared("mc_samples_per_second", interleaved(of_samplers), "numpy"),
-        *compared("md_events_per_second_by_number", interleaved(BY_NUMBER, 3), "lockstep"),
+        *compared("md_events_per_second_by_number", interleaved(RATES_BY_NUMBER, 3), "lockstep"),
     ]

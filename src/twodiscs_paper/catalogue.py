@@ -36,8 +36,8 @@ LONG_RUN_TABLES = {table.name(): table for study in STUDIES.values() for table i
 TABLES = {**SCENE_TABLES, **STUDY_TABLES, **LONG_RUN_TABLES, "benchmark": Benchmark}
 
 #: The tables with seconds that belong to no study, and the documents that show them.
-TIMED = {"cost", "benchmark", "paper", "paper_numbers", "report"}
-TIMED |= {name for study in STUDIES.values() for name in study.timed}
+TIMED_FILES = {"cost", "benchmark", "paper", "paper_numbers", "report"}
+TIMED_FILES |= {name for study in STUDIES.values() for name in study.timed}
 
 
 def read_table(path):
@@ -53,5 +53,5 @@ def is_reproducible(path):
     """Return whether a result is the same bytes on every run: a table or figure without seconds."""
     path = Path(path)
     figure = STUDY_FIGURES.get(path.stem) if path.suffix != ".csv" else None
-    timed = not TIMED.isdisjoint(figure.tables if figure else [path.stem])
+    timed = not TIMED_FILES.isdisjoint(figure.tables if figure else [path.stem])
     return path.suffix in (".csv", ".pdf", ".png", ".gif") and not timed

@@ -105,7 +105,7 @@ def cases():
     (path,) = STUDY_FIGURES["brownian"].long_runs.values()
     rows = [row for row in read_table(EXPECTED.parents[1] / path) if row["room"] <= 1 / 4]
     for program, (colour, _) in brownian.PROGRAM_LOOKS.items():
-        for step, marker in brownian.MARKERS.items():
+        for step, marker in brownian.ROOM_MARKERS.items():
             for panel, quantity in (("kappa", "coefficient"), ("exponent", "local_exponent")):
                 own = select(rows, program=program, step=step, quantity=quantity)
                 yield "brownian", panel, (colour, marker), columns(own, "neck")
@@ -158,7 +158,7 @@ def passage_cases():
         # Both methods, open symbols and dots.
         ring = select(rows, quantity="diffusion", discs=2, moment_of_inertia=inertia)
         yield "diffusion", "ring", look, columns(ring, "distance")
-    for rate, look in zip(friction.KICKED, style.SERIES, strict=True):
+    for rate, look in zip(friction.NECK_HALVINGS, style.SERIES, strict=True):
         kappa, exponents = [], []
         for some in (rows, kept):
             own = select(some, friction=rate, quantity="coefficient")
@@ -174,7 +174,7 @@ def passage_cases():
 def long_file_cases():
     """Yield the symbols of long files in the figures of diffusion and of files."""
     rows = long_run("displacements")
-    for discs, look in diffusion.FILES.items():
+    for discs, look in diffusion.FILE_LOOKS.items():
         own = select(long_run("files"), quantity="diffusion", discs=discs)
         yield "diffusion", "files", look, columns(own, "distance")
     order = select(rows, quantity="diffusion", method="order")
@@ -348,7 +348,7 @@ def test_the_symbols_of_tori_are_those_of_the_long_run():
         own, axes = select(rows, reference=reference, discs=discs), drawn("tori")
         due = {(row["packing_fraction"], row["estimate"]) for row in own}
         assert points(axes["factor"], colour, marker) >= due != set()
-        settled = [row for row in own if abs(row["starts_z"] or 0.0) <= tori.AGREE]
+        settled = [row for row in own if abs(row["starts_z"] or 0.0) <= tori.AGREEMENT_Z]
         due = {(row["packing_fraction"], row["z"]) for row in settled}
         assert points(axes["residuals"], colour, marker) >= due
 

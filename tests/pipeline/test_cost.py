@@ -61,7 +61,7 @@ def test_days_are_those_of_the_jobs_of_all_radii_or_of_some_times_their_number(m
     request = scene(accuracy=1e-7, event_budget=1e15, radii=radii, watch={"mean_times": True})
     whole = sum(job_cost.seconds(request, "dynamics", radius) for radius in radii) / 86400
     for some, worst in ((21, 1e-6), (7, 0.1)):
-        monkeypatch.setattr(job_cost, "SOME", some)
+        monkeypatch.setattr(job_cost, "TRIED_RADII", some)
         assert job_cost.days([request]) == pytest.approx(whole, rel=worst)
     assert job_cost.days([scene()]) < 0.1
 

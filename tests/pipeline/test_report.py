@@ -24,7 +24,7 @@ def test_other_figures_stand_in_for_those_that_are_not_there():
 
     assert key("model", "volume", "mean_hop_time", "animation") == ["mean_hop_time", "volume"]
     assert key("model", "animation") == []
-    assert key("volume", *report.KEY) == [*report.KEY]
+    assert key("volume", *report.KEY_FIGURES) == [*report.KEY_FIGURES]
     assert key("stability", *report.KEY_OF_ALL, of_scene=False) == [*report.KEY_OF_ALL]
 
 

@@ -52,7 +52,7 @@ def test_a_method_estimates_its_quantity_with_its_bias(method):
         # Events come late by Δt/2 and grazing collisions are missed: an error ∝ Δt.
         assert 0.5 * method.setting < mean < 8 * method.setting
     elif error == 0:  # 192 blocks near h/4 without a hop
-        assert method.scene == costs.HARD
+        assert method.scene == costs.HARD_SCENE
         assert (mean, method.name) == (-1, "lockstep")
     else:
         assert abs(mean - method.bias) < SIGMA * error
@@ -60,7 +60,7 @@ def test_a_method_estimates_its_quantity_with_its_bias(method):
 
 def test_blocks_have_their_own_random_numbers_and_those_of_their_seed():
     for make in (costs.scalar_method, costs.surface_method, costs.strip_method):
-        scene = costs.HARD if make is costs.strip_method else PAPER
+        scene = costs.HARD_SCENE if make is costs.strip_method else PAPER
         blocks = [make(scene, seed).block(n) for seed, n in ((1, 2), (1, 3), (2, 2), (1, 2))]
         assert np.array_equal(blocks[0], blocks[3])
         assert not any(np.array_equal(a, b) for a, b in pairwise(blocks))
@@ -240,7 +240,7 @@ def test_rows_are_those_of_all_methods_and_of_all_distances(given, monkeypatch):
     assert len(of(rows, part="error")) == len(costs.methods(1))
     assert sum(seconds for seconds, _ in given) == pytest.approx(7)
     by_radius = of(rows, part="radius")
-    assert [row["distance"] for row in by_radius] == [*costs.DISTANCES]
+    assert [row["distance"] for row in by_radius] == [*costs.HARD_DISTANCES]
     for row in by_radius:
         assert (row["c"], row["floor"], row["method"]) == (2.0, 0.5, "rejection")
         assert row["radius"] == pytest.approx(0.25 * (1 - row["distance"]))
@@ -274,9 +274,9 @@ def rows(long):
         ("shells, conditioned", "disc_collision_area"),
     ]  # fmt: skip
     made = [*costs.exact_rows()]
-    for (method, quantity), distance in product(prices, costs.DISTANCES):
+    for (method, quantity), distance in product(prices, costs.HARD_DISTANCES):
         cells = {"distance": distance, "c": float(10 ** generator.uniform(-9, 3))}
-        made.append(costs.cost_row(costs.EASY, "radius", quantity, method, **cells))
+        made.append(costs.cost_row(costs.EASY_SCENE, "radius", quantity, method, **cells))
     return build + [empty(AccuracyCostTable, **row) for row in made]
 
 
@@ -288,8 +288,8 @@ def panels(long, rows):
     return {axes.get_label(): axes for axes in both}
 
 
-RADII = [costs.EASY.radius, costs.HARD.radius]
-ALL = [("a", one) for one in figure.TIMES] + [("b", one) for one in figure.SAMPLES]
+RADII = [costs.EASY_SCENE.radius, costs.HARD_SCENE.radius]
+ALL = [("a", one) for one in figure.TIME_CURVES] + [("b", one) for one in figure.SAMPLE_CURVES]
 
 
 @pytest.mark.parametrize(("panel", "one"), ALL, ids=lambda value: getattr(value, "name", value))
@@ -303,7 +303,7 @@ def test_symbols_are_errors_and_times_and_lines_are_c_over_the_square(
         own = [line for line in mine if (line.get_marker(), line.get_markerfacecolor()) == look]
         shown = {point for line in own for point in zip(*line.get_data(), strict=True)}
         for some in figure.by_setting(table, one, RADII).values():
-            thinned = [*some[::-1][:: figure.THINNED], some[-1]]
+            thinned = [*some[::-1][:: figure.SYMBOL_DOUBLINGS], some[-1]]
             assert {(row["error"], row["seconds"]) for row in thinned} <= shown
     curves = [line.get_xydata() for line in mine if len(line.get_xdata()) > 100]
     for first, *_ in figure.by_setting(long, one, RADII).values():
@@ -318,7 +318,7 @@ def test_texts_stand_clear_and_symbols_are_named(panels):
 
 def test_exact_values_are_at_the_bottom(rows, panels):
     for panel, quantity in (("a", "volume"), ("b", costs.AREA)):
-        own = of(rows, part="exact", radius=costs.EASY.radius, quantity=quantity)
+        own = of(rows, part="exact", radius=costs.EASY_SCENE.radius, quantity=quantity)
         (row,) = of(own, method="exact")
         heights = [line.get_ydata()[0] for line in panels[panel].lines if line.get_lw() == 1.0]
         assert heights == [row["seconds"]]

@@ -131,5 +131,5 @@ def test_both_methods_agree(program):
 
 def test_clusters_hold_each_crossing_once():
     counts = study.crossing_counts(1, "reflected", 0.125, 4, 100)
-    assert sum(number for _, number in counts["sizes"]) == 2 * brownian_steps.CROSSINGS
-    assert counts["tried"] == 2 * brownian_steps.CROSSINGS  # none is rejected
+    assert sum(number for _, number in counts["sizes"]) == 2 * brownian_steps.STEP_CROSSINGS
+    assert counts["tried"] == 2 * brownian_steps.STEP_CROSSINGS  # none is rejected

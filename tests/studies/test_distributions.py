@@ -120,7 +120,7 @@ def test_what_is_measured_meets_what_is_exact(box, radius, hop):
     passage, cut = by_name["first_passage", True], by_name["first_passage", False]
     off = (cut["estimate"] - cut["reference"]) / math.hypot(cut["stderr"], cut["reference_stderr"])
     assert abs(cut["z"]) < 5
-    assert cut["z"] == pytest.approx(student_deviate(off, distributions.BLOCKS - 1))
+    assert cut["z"] == pytest.approx(student_deviate(off, distributions.INTERVAL_BLOCKS - 1))
     assert cut["estimate"] <= passage["estimate"]
     cubic = tail_constant(scene, hop) > 0
     assert (passage["z"] is None) == cubic

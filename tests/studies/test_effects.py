@@ -136,7 +136,7 @@ def test_rows_of_shares(rows):
     assert {row["scene"] for row in rows} == {"rough"}
     rows = of(rows, radius=0.24)
     assert [row["duration"] for row in rows] == 2 * [1e2, 1e3, 1e4]
-    rough, smooth, starts = rows[2], rows[3], effects.BLOCKS * REPLICAS
+    rough, smooth, starts = rows[2], rows[3], effects.MEETING_BLOCKS * REPLICAS
     share = 1900 / starts
     assert rough["estimate"] == pytest.approx(share)
     assert rough["stderr"] == pytest.approx((share * (1 - share) / starts) ** 0.5)
@@ -158,7 +158,7 @@ RATIOS = {"without_effects": 1.0, "plain": 0.99, "plain_walls": 1.05}
 
 def costs():
     """Return rows of effects_cost.csv: ratios of 0.5, 0.6, … in their order."""
-    ratios = RATIOS | {name: 0.5 + 0.1 * i for i, name in enumerate((*NAMES, *price.MORE))}
+    ratios = RATIOS | {name: 0.5 + 0.1 * i for i, name in enumerate((*NAMES, *price.ADDITIONS))}
     rows = [{"variant": v, "ratio": r} for v, r in (ratios | {"all effects": 0.007}).items()]
     return [empty(EffectsCostTable, instructions=4000 + i, **row) for i, row in enumerate(rows)]
 
@@ -188,7 +188,7 @@ def test_costs_are_the_times_over_the_package_without_effects():
     numbers = {(text.get_text(), text.xy[1]) for text in axes.texts}
     for i, row in enumerate(costs()):
         assert {(f"{1 / row['ratio']:.3g}", i), (f"{row['instructions']}", i)} <= numbers
-    assert [label.get_text() for label in axes.get_yticklabels()][3:] == [*NAMES, *price.MORE]
+    assert [label.get_text() for label in axes.get_yticklabels()][3:] == [*NAMES, *price.ADDITIONS]
 
 
 # The cost of an event -----------------------------------------------------------------------------
@@ -202,7 +202,7 @@ def test_costs_are_of_every_scene_and_of_what_is_watched(monkeypatch):
         watched[bool(scene.effects), tuple(events)] = scene
         return 2.0 if scene.effects else 4.0, 1.0 if events == EVENTS else 0.5
 
-    bare = {"instructions(lockstep)": 10, f"lockstep({price.QUICK['blocks']})": (8.0, 1.0)}
+    bare = {"instructions(lockstep)": 10, f"lockstep({price.QUICK_OPTIONS['blocks']})": (8.0, 1.0)}
     monkeypatch.setattr(price, "lockstep", lockstep)
     monkeypatch.setattr(price, "result_without_effects", bare.get)
     monkeypatch.setattr(price, "instructions", lambda work: 20)

@@ -200,7 +200,7 @@ def test_rejected_steps_have_their_law_without_a_parameter():
     rows = [
         row
         for row in of(found, method="crossings", quantity="coefficient")
-        if row["program"] in brownian.REJECTING and row["neck"] >= 8 and row["room"] <= 1 / 16
+        if row["program"] in brownian.MOVE_WIDTHS and row["neck"] >= 8 and row["room"] <= 1 / 16
     ]
     assert len(rows) == 8
     assert all(abs(row["estimate"] - row["diffusive"]) < 5 * row["stderr"] for row in rows)

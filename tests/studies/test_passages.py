@@ -97,7 +97,7 @@ def small(monkeypatch):
             if hasattr(module, name):
                 monkeypatch.setattr(module, name, value)
     monkeypatch.setattr("twodiscs_paper.studies.passages.study.INERTIAS", (0.5, 1.0))
-    monkeypatch.setattr("twodiscs_paper.studies.passages.study.BLOCKED", (0.28,))
+    monkeypatch.setattr("twodiscs_paper.studies.passages.study.BLOCKED_RADII", (0.28,))
 
 
 # A file of discs ----------------------------------------------------------------------------------

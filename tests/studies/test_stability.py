@@ -170,7 +170,7 @@ def test_the_extremes_are_those_of_every_effect():
 
 def test_rows_of_extremes_are_their_mean_times(monkeypatch):
     """A plain box of 1e6 × 1e-6, where most events are never seen, and an ordinary one."""
-    scenes = {"long": stability.EXTREMES["1e6 by 1e-6"], "ordinary": stability.PAPER}
+    scenes = {"long": stability.EXTREMES["1e6 by 1e-6"], "ordinary": stability.PAPER_SCENE}
     rows = list(stability.extreme_rows(1, scenes))
     assert failed(rows) == []
     own = {(row["case"], row["quantity"]): row for row in rows}
@@ -186,7 +186,7 @@ def test_rows_of_extremes_are_their_mean_times(monkeypatch):
     times = exact.mean_times
     wrong = {"mean_times": lambda scene: {e: 1.05 * t for e, t in times(scene).items()}}
     monkeypatch.setattr(exact, *wrong.popitem())
-    found = failed(stability.extreme_rows(1, {"ordinary": stability.PAPER}))
+    found = failed(stability.extreme_rows(1, {"ordinary": stability.PAPER_SCENE}))
     assert {row["quantity"] for row in found} >= {"any_wall_time", "disc_collision_time"}
 
 
@@ -197,7 +197,7 @@ def test_a_bound_that_says_something_is_judged(monkeypatch):
     found = [cells | {"quantity": "a_time", "z": 6.0}, cells | {"quantity": "b_time", "z": 0.0}]
     found.append(cells | {"quantity": "c_time", "z": 0.0, "test": "certain"})
     monkeypatch.setattr(stability, "comparisons", lambda *_: found)
-    rows = stability.extreme_rows(1, {"ordinary": stability.PAPER})
+    rows = stability.extreme_rows(1, {"ordinary": stability.PAPER_SCENE})
     judged = [(row["quantity"], row["z"], row["passed"]) for row in rows]
     assert judged == [("a_time", 6.0, False), ("b_time", None, None)]
 
@@ -253,7 +253,7 @@ def test_the_audit_sees_what_is_wrong():
 
 def test_events_retraced_are_those_the_exponent_allows(monkeypatch):
     """z within 5 for the exponents; the number within five binary digits of roundings."""
-    monkeypatch.setattr(stability, "REVERSED", 1000)
+    monkeypatch.setattr(stability, "REVERSED_PATHS", 1000)
     box = td.Box(1e-3, 1.3e-3)
     rows = list(stability.reversal_rows(box, seed=3))
     judged = [row for row in rows if row["passed"] is not None]
@@ -310,8 +310,8 @@ SOME = (
     "friction 10.0", "three discs", "100 × 1",
 )  # fmt: skip
 COUNTED = [("simulate", ("r = 0.2499",)), ("cost", ("r = 0.2",))]
-COUNTED += [slow(call, SOME) for call in calibration.CALLS]
-COUNTED += [slow(study, (kind,)) for study, kind in calibration.STUDIES]
+COUNTED += [slow(call, SOME) for call in calibration.STAGE_CALLS]
+COUNTED += [slow(study, (kind,)) for study, kind in calibration.STUDY_CASES]
 
 
 @pytest.mark.parametrize(("call", "cases"), COUNTED)
@@ -339,7 +339,7 @@ def test_errors_of_few_are_what_they_say(make, monkeypatch):
     monkeypatch.setattr(near_threshold, "MOST_HOPS", 2**11)
     monkeypatch.setattr(distributions, "FEWEST_ENDED", 100)
     monkeypatch.setattr(distributions, "FEWEST_IN_BIN", 30)
-    monkeypatch.setattr(calibration, "STUDIES", {("few", ""): make})
+    monkeypatch.setattr(calibration, "STUDY_CASES", {("few", ""): make})
     rows = [row for row in calibration.rows(64, 990_000, calls=("few",)) if row["scores"] >= 32]
     assert len({row["quantity"].split()[0] for row in rows}) == 7
     check_mean_squares(rows)
@@ -371,9 +371,9 @@ def test_table_and_figure_of_any_box(tmp_path, monkeypatch):
     """Everything is small, for the form of the table only."""
     for name in ("SHARE_PROPOSALS", "ESTIMATE_PROPOSALS"):
         monkeypatch.setattr(stability, name, montecarlo.PROPOSALS_PER_BLOCK)
-    monkeypatch.setattr(stability, "REVERSED", 200)
+    monkeypatch.setattr(stability, "REVERSED_PATHS", 200)
     monkeypatch.setattr(stability, "WINDOW", 64)
-    one = partial(stability.extreme_rows, scenes={"ordinary": stability.PAPER})
+    one = partial(stability.extreme_rows, scenes={"ordinary": stability.PAPER_SCENE})
     monkeypatch.setattr(stability, "extreme_rows", one)
     box = td.Box(1e-6, 1e6)
     rows = written(tmp_path, StabilityTable, box=box, seed=1, ordinary=2000, hard=1000)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from twodiscs.model import checks
 from twodiscs.model.checks import InputError
 from twodiscs.model.formats import SYNONYMS, decimal_hint, did_you_mean
-from twodiscs_paper.configuration.model import TAKEN
+from twodiscs_paper.configuration.model import RESERVED_NAMES
 from twodiscs_paper.configuration.schema import keys
 
 #: Pydantic's errors about a key: it is unknown or no text, or it is missing.
@@ -75,7 +75,7 @@ class _Mistake:
             return f"{path} needs the key {self.key!r}"
         if self.kind in UNKNOWN_KEY:
             return f"{path} has an unknown key {describe(self.key)}{self.hint_about_key()}"
-        if self.steps[-1:] == ("name",) and self.value in TAKEN:
+        if self.steps[-1:] == ("name",) and self.value in RESERVED_NAMES:
             what = "the name of a target, a folder of results or a device of Windows"
             return f"{path} must not be {describe(self.value)}, {what}"
         near = did_you_mean(self.value, self.node.get("enum", ()))

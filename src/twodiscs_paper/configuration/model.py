@@ -24,7 +24,7 @@ from twodiscs.model.formats import format_number
 from twodiscs_paper.catalogue import STUDIES
 
 #: A decimal number. YAML 1.1 has others: it reads 010 as 8 and 1:30 as 90. Python has more digits.
-DECIMAL = re.compile(r"(?ai)[-+]?(0|[1-9]\d*|\d*\.\d+|\d+\.\d*)(e[-+]?\d+)?")
+DECIMAL_NUMBER = re.compile(r"(?ai)[-+]?(0|[1-9]\d*|\d*\.\d+|\d+\.\d*)(e[-+]?\d+)?")
 
 ABOUT_PLAIN = (*(name for name, study in STUDIES.items() if study.about_plain), "paper")
 BUILT_ONCE = (*STUDIES, "paper", "report")
@@ -51,12 +51,12 @@ def otherwise(text, meaning=None):
 
 def _read_float(value):
     """Return text such as "2e9", which is no number in YAML, as a float; others as they are."""
-    return float(value) if isinstance(value, str) and DECIMAL.fullmatch(value) else value
+    return float(value) if isinstance(value, str) and DECIMAL_NUMBER.fullmatch(value) else value
 
 
 def _read_integer(value):
     """Return 2e9 or "2e9" as an integer, if it is one; others as they are."""
-    if isinstance(value, str) and DECIMAL.fullmatch(value):
+    if isinstance(value, str) and DECIMAL_NUMBER.fullmatch(value):
         return parse_number(value)
     return int(value) if isinstance(value, float) and value.is_integer() else value
 
@@ -134,13 +134,13 @@ Folder = text(
     200,
 )
 #: Names that a scene must not have: of folders, of targets, and of devices of Windows.
-TAKEN = (
+RESERVED_NAMES = (
     "all", "benchmarks", "code", "draft", "figures", "logs", "parts", "points", "scenes", *STUDIES,
     "aux", "con", "nul", "prn", *(f"{port}{n}" for port in ("com", "lpt") for n in range(10)),
 )  # fmt: skip
 Name = text(
     "a name of small letters, digits, - and _, 100 at most, that starts with a letter or a digit",
-    f"^(?!({'|'.join(TAKEN)})$)[a-z0-9][a-z0-9_-]*",
+    f"^(?!({'|'.join(RESERVED_NAMES)})$)[a-z0-9][a-z0-9_-]*",
     100,
 )
 

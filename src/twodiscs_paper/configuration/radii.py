@@ -8,7 +8,7 @@ from twodiscs.model.formats import shortest_decimal
 from twodiscs.model.scene import Box
 
 #: A regime narrower than this fraction of the largest radius has no points.
-NARROWEST = 1e-6
+NARROWEST_REGIME = 1e-6
 
 
 def radii(width, height, smallest, count):
@@ -20,7 +20,7 @@ def radii(width, height, smallest, count):
     """
     box = Box(width, height)
     largest, limits = box.largest_radius, box.thresholds
-    if smallest >= largest * (1 - NARROWEST):
+    if smallest >= largest * (1 - NARROWEST_REGIME):
         raise InputError(
             f"smallest must be below the largest radius of the box, {largest!r}, not {smallest!r}"
         )
@@ -29,7 +29,7 @@ def radii(width, height, smallest, count):
 
     edges = [smallest]
     for limit in (*limits, largest):
-        if limit - edges[-1] > NARROWEST * largest:
+        if limit - edges[-1] > NARROWEST_REGIME * largest:
             edges.append(limit)
     regimes = list(pairwise(edges))
     places = []

@@ -16,7 +16,7 @@ from twodiscs_paper.configuration.model import MOST_EVENTS
 
 #: The thickness of shells in jobs that sample no area. It has no effect; as a constant it keeps an
 #: edit of the configured thickness from running these jobs again.
-NO_SHELL = 0.5
+UNUSED_SHELL = 0.5
 
 #: The events to which studies are scaled if the main scene has no budget.
 USUAL_EVENTS = 2 * 10**9
@@ -118,7 +118,7 @@ class SceneRequest:
     @property
     def shell(self):
         """The thickness of the shells with which Monte Carlo measures areas."""
-        return self.monte_carlo["shell"] if self.quantities.areas else NO_SHELL
+        return self.monte_carlo["shell"] if self.quantities.areas else UNUSED_SHELL
 
     @property
     def target(self):

@@ -16,7 +16,7 @@ from twodiscs_paper.configuration.mistakes import ConfigError, describe, scene_n
 from twodiscs_paper.configuration.model import (
     ABOUT_PLAIN,
     BUILT_ONCE,
-    DECIMAL,
+    DECIMAL_NUMBER,
     Model,
 )
 from twodiscs_paper.configuration.request import Configuration
@@ -24,10 +24,10 @@ from twodiscs_paper.configuration.scene_block import scene_request
 from twodiscs_paper.configuration.schema import keys
 
 #: The range of sides that the study of stability can take: lengths end at 1e-60 and 1e60.
-LOW, HIGH = 1e-40, 1e40
+SHORTEST_SIDE, LONGEST_SIDE = 1e-40, 1e40
 
 #: The tags of numbers in YAML.
-NUMBERS = {f"tag:yaml.org,2002:{kind}" for kind in ("int", "float")}
+NUMBER_TAGS = {f"tag:yaml.org,2002:{kind}" for kind in ("int", "float")}
 
 
 def read(path):
@@ -86,8 +86,8 @@ class _Loader(yaml.SafeLoader):
 
     def compose_scalar_node(self, anchor):
         node = super().compose_scalar_node(anchor)
-        number = self.construct_object(node) if node.tag in NUMBERS else None
-        is_decimal = number is None or DECIMAL.fullmatch(node.value)
+        number = self.construct_object(node) if node.tag in NUMBER_TAGS else None
+        is_decimal = number is None or DECIMAL_NUMBER.fullmatch(node.value)
         # A float may be a rounded integer.
         if not is_decimal or (isinstance(number, float) and parse_number(node.value) != number):
             problem = (
@@ -148,12 +148,12 @@ def _check_built_once(asked, configuration):
                 f"shared must leave out {name!r} if every scene has effects, because it is about "
                 "a scene without effects"
             )
-    in_range = main is None or all(LOW <= side <= HIGH for side in main.box.sides)
+    in_range = main is None or all(SHORTEST_SIDE <= side <= LONGEST_SIDE for side in main.box.sides)
     if "stability" in configuration.shared and not in_range:
         raise ConfigError(
             f"shared must leave out 'stability' unless the sides of the scene {main.name!r} "
-            f"lie between {format_number(LOW, 'g')} and {format_number(HIGH, 'g')}, because it "
-            "uses much smaller radii"
+            f"lie between {format_number(SHORTEST_SIDE, 'g')} and "
+            f"{format_number(LONGEST_SIDE, 'g')}, because it uses much smaller radii"
         )
 
 

@@ -32,16 +32,16 @@ TARGETS = (
 
 #: The path of the workflow of a wheel, below the folder of the installation. If pip has a --target,
 #: this is the folder of the packages, and the paths in the wheel's records are wrong.
-SHARED = "share/twodiscs/Snakefile"
+SNAKEFILE = "share/twodiscs/Snakefile"
 
 #: The exit status of a command that Ctrl-C ended.
-INTERRUPTED = 128 + signal.SIGINT
+INTERRUPT_STATUS = 128 + signal.SIGINT
 
 #: A disk with fewer free bytes is full.
-FULL = 2**20
+LEAST_FREE_BYTES = 2**20
 
 #: The target of a command without one: check, tables, figures and the report on them.
-DEFAULT = "report"
+DEFAULT_TARGET = "report"
 
 
 def snakefile():
@@ -53,8 +53,8 @@ def snakefile():
         files = metadata.files("twodiscs") or ()
     except metadata.PackageNotFoundError:
         files = ()
-    installed = [Path(file.locate()) for file in files if file.as_posix().endswith(SHARED)]
-    for path in (Path(twodiscs.__file__).parents[1] / SHARED, *installed):
+    installed = [Path(file.locate()) for file in files if file.as_posix().endswith(SNAKEFILE)]
+    for path in (Path(twodiscs.__file__).parents[1] / SNAKEFILE, *installed):
         if path.is_file():
             return path.resolve()
     raise InputError("the workflow is not installed: twodiscs comes without its Snakefile here")
@@ -107,7 +107,7 @@ def command(path, targets, snakefile, cores=None, dry_run=False, unlock=False):
     words += ["--quiet", "rules", "host"]
     words += ["progress", "reason"] if dry_run else []  # ``planned`` prints them by scene
     words += ["--dry-run"] * dry_run + ["--unlock"] * unlock + ["--configfile", str(path)]
-    return [*words, "--", *(targets or [DEFAULT])]
+    return [*words, "--", *(targets or [DEFAULT_TARGET])]
 
 
 def check_targets(path, targets, configuration):
@@ -181,7 +181,7 @@ def build(path, targets, cores=None, dry_run=False, unlock=False, force=False):
     interrupts = []
 
     def interrupt(number, frame):
-        interrupts.append(INTERRUPTED)
+        interrupts.append(INTERRUPT_STATUS)
         raise KeyboardInterrupt
 
     signal.signal(signal.SIGINT, interrupt)
@@ -192,7 +192,7 @@ def build(path, targets, cores=None, dry_run=False, unlock=False, force=False):
         # Snakemake ends a stopped run as a failed one.
         status = max([end.code or 0, *interrupts])
     except KeyboardInterrupt:
-        status = INTERRUPTED
+        status = INTERRUPT_STATUS
     # Snakemake keeps the last workflow of a process among the names of a Snakefile.
     if status:
         run = getattr(workflow, "workflow", None)
@@ -230,8 +230,8 @@ def failure(workflow, status, results):
     again = "the same command goes on, and keeps the files that are finished"
     scheduler = workflow and workflow.scheduler
     folder = Path(results if Path(results).exists() else ".").resolve()
-    is_full = shutil.disk_usage(folder).free < FULL
-    if scheduler is None and status != INTERRUPTED and not is_full:
+    is_full = shutil.disk_usage(folder).free < LEAST_FREE_BYTES
+    if scheduler is None and status != INTERRUPT_STATUS and not is_full:
         if workflow and workflow.persistence and workflow.persistence.locked:
             return (
                 "Another run works in this folder, or one was killed there. If none works, run the "

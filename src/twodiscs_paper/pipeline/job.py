@@ -6,9 +6,6 @@ import signal
 import threading
 import time
 
-#: The seconds after which a job notices that Snakemake has ended.
-PERIOD = 0.5
-
 # matplotlib reads this when it is imported, so scripts that draw import this module first. A
 # notebook sets it to its own backend, for its child processes too, and jobs may not have that.
 os.environ["MPLBACKEND"] = "agg"
@@ -35,5 +32,5 @@ def start(log):
 
 def _end_after(parent):
     while os.getppid() == parent:
-        time.sleep(PERIOD)
+        time.sleep(0.5)
     os.kill(os.getpid(), signal.SIGTERM)

@@ -20,21 +20,22 @@ from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.pipeline.points import read_point, read_seconds, shard_ranges
 
 #: Events and samples per second of a core, and the largest factor by which effects slow it down.
-WORK_PER_SECOND, SLOWER = 1e8, 5.0
+WORK_PER_SECOND, EFFECTS_FACTOR = 1e8, 5.0
 
 #: The largest cost of an event of a budget, in events of the plain ensemble: an event from a strip,
 #: with its draws.
-DEAREST = 16.0
+DEAREST_EVENT = 16.0
 
 #: The cost of a sample of more than two discs, for each disc, in samples of the prism. The cost of
 #: an event is proportional to the number of pairs.
-DRAW = 10.0
+DRAW_COST = 10.0
 
-#: The limit of time of a job is ``PATIENCE`` times its cost, and ``MINUTES`` more to start it.
-PATIENCE, MINUTES = 4.0, 10.0
+#: The limit of time of a job is ``LIMIT_RATIO`` times its cost, and ``LIMIT_MINUTES`` more to start
+#: it.
+LIMIT_RATIO, LIMIT_MINUTES = 4.0, 10.0
 
 #: The number of radii from which the cost of all radii is estimated.
-SOME = 100
+TRIED_RADII = 100
 
 #: Processor seconds of a pilot at one radius; the most sentences on accuracies not reached.
 PILOT_SECONDS, SENTENCES = 0.1, 8
@@ -59,7 +60,7 @@ def seconds(scene, stage, radius):
 
 def _seconds(scene, work):
     """Return the seconds that ``work`` takes."""
-    return work / WORK_PER_SECOND * (SLOWER if scene.box.effects else 1.0)
+    return work / WORK_PER_SECOND * (EFFECTS_FACTOR if scene.box.effects else 1.0)
 
 
 def _most(scene, stage, radius=None):
@@ -69,9 +70,9 @@ def _most(scene, stage, radius=None):
     rates, if a ``radius`` is given.
     """
     discs = scene.box.discs
-    sample, event, interval = 1.0, DEAREST, 1.0
+    sample, event, interval = 1.0, DEAREST_EVENT, 1.0
     if "discs" in scene.box.options:
-        sample, event = DRAW * discs, max(DEAREST, discs**2 / 2)
+        sample, event = DRAW_COST * discs, max(DEAREST_EVENT, discs**2 / 2)
         interval = event
     each, most, needed = {
         "monte_carlo": (sample, scene.monte_carlo["samples"], None),
@@ -110,7 +111,7 @@ def minutes(scene, stage):
     It follows from the budgets, without theory.
     """
     most = min(_most(scene, stage), scene.shard_events)
-    return math.ceil(MINUTES + PATIENCE * _seconds(scene, most) / 60)
+    return math.ceil(LIMIT_MINUTES + LIMIT_RATIO * _seconds(scene, most) / 60)
 
 
 def study_seconds(study, configuration):
@@ -120,7 +121,7 @@ def study_seconds(study, configuration):
 
 def study_minutes(study, configuration):
     """Return the limit of time of the job of a ``Study``, in minutes."""
-    return math.ceil(MINUTES + PATIENCE * study_seconds(study, configuration) / 60)
+    return math.ceil(LIMIT_MINUTES + LIMIT_RATIO * study_seconds(study, configuration) / 60)
 
 
 def days(scenes):
@@ -141,7 +142,7 @@ def days(scenes):
 def _days(scene):
     total = 0.0
     for stage, keys in scene.keys.items():
-        some = [*keys.values()][:: -(-len(keys) // SOME) or 1]
+        some = [*keys.values()][:: -(-len(keys) // TRIED_RADII) or 1]
         taken = sum(seconds(scene, stage, radius) for radius in some)
         total += taken * len(keys) / max(1, len(some)) / DAY
     return total

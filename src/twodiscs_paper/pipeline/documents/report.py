@@ -31,22 +31,22 @@ from twodiscs_paper.catalogue import ALL_FIGURES
 from twodiscs_paper.pipeline.job_cost import missed, taken
 from twodiscs_paper.pipeline.results.provenance import commit, versions
 
-#: The large figures of the section of a scene, of which it has ``SOME``, and of the section of all
-#: scenes. If a figure of a scene is missing, another one replaces it. All other figures are
-#: thumbnails.
-KEY, SOME = ("mean_hop_time", "mean_collision_time"), 2
+#: The large figures of the section of a scene, of which it has ``KEY_FIGURES_SHOWN``, and of the
+#: section of all scenes. If a figure of a scene is missing, another one replaces it. All other
+#: figures are thumbnails.
+KEY_FIGURES, KEY_FIGURES_SHOWN = ("mean_hop_time", "mean_collision_time"), 2
 KEY_OF_ALL = ("accuracy_cost", "tails", "distributions", "passages", "effects")
 
 #: The tables that have an error for each radius, by the stage that makes them, and the errors whose
 #: time the report has.
-ACCURATE = {"dynamics": "mean_times", "monte_carlo": "volume"}
+ERROR_TABLES = {"dynamics": "mean_times", "monte_carlo": "volume"}
 TABULATED_ERRORS = (1e-3, 1e-4, 1e-5, 1e-6)
 
 #: Pixels: the width of a thumbnail.
 THUMBNAIL = 320
 
 #: Pixels of a figure per pixel on the screen.
-DENSITY = 2
+PIXEL_DENSITY = 2
 
 #: The form of a symbol with a subscript in a caption: r_c.
 SUBSCRIPT = re.compile(r"\b([A-Za-z])_(\w+)\b")
@@ -102,7 +102,7 @@ def accuracies(folder, scene):
     speed.
     """
     jobs_of, rows = taken(folder, scene), []
-    for stage, name in ACCURATE.items():
+    for stage, name in ERROR_TABLES.items():
         path = Path(folder, scene["name"], f"{name}.csv")
         jobs, speed = jobs_of.get(stage, ({}, None))
         table = SCENE_TABLES[name].read(path) if path.exists() else ()
@@ -137,7 +137,7 @@ def figure(folder, path, scenes):
     if scene:
         text += f" The box is {scene['box']} (scene “{scene['name']}” of the configuration)."
     with Image.open(Path(folder, path)) as image:
-        width = image.width // DENSITY
+        width = image.width // PIXEL_DENSITY
     return {
         "alt": SENTENCE.match(text)[0],
         "caption": Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text)))),
@@ -185,10 +185,10 @@ def key_figures(paths, of_scene=True):
     if not of_scene:
         return [here[name] for name in KEY_OF_ALL if name in here]
     wanted = [
-        *KEY,
+        *KEY_FIGURES,
         *(n for n, e in ALL_FIGURES.items() if e.category != GEOMETRY and e != ANIMATION),
     ]
-    return [here[name] for name in dict.fromkeys(wanted) if name in here][:SOME]
+    return [here[name] for name in dict.fromkeys(wanted) if name in here][:KEY_FIGURES_SHOWN]
 
 
 def section(folder, paths, scenes, scene=None):

@@ -1,7 +1,8 @@
 """Compare results with the expected results that are committed in ``paper/expected``.
 
 Counts depend only on + − × / and √, so integers and texts must be the same on every processor.
-Floats also depend on math libraries, whose last digits differ: they are compared to ``RELATIVE``.
+Floats also depend on math libraries, whose last digits differ: they are compared to
+``FLOAT_ERROR``.
 """
 
 import json
@@ -17,11 +18,11 @@ from twodiscs_paper.configuration import yaml_files
 from twodiscs_paper.pipeline.points import read_point
 
 #: The largest difference of floats, relative to their size.
-RELATIVE = 1e-12
+FLOAT_ERROR = 1e-12
 
 #: The largest absolute difference in columns that lose digits. A score is a difference of two
 #: numbers over its standard error, which is 1e-4 of them at best; a bias is a difference of areas.
-ABSOLUTE = dict.fromkeys(("z", "monte_carlo_z", "p", "chi2"), 1e-8) | {"bias": RELATIVE}
+COLUMN_ERRORS = dict.fromkeys(("z", "monte_carlo_z", "p", "chi2"), 1e-8) | {"bias": FLOAT_ERROR}
 
 #: The exact theory of discs that hardly fit is the more sensitive to the rounding of the radius the
 #: closer they are to the largest radius. Its last digits then differ by this over the distance.
@@ -53,11 +54,11 @@ def same(name, column, observed, expected):
     if not all(pd.api.types.is_float_dtype(values) for values in (observed, expected)):
         texts = (values.astype("string").fillna("") for values in (observed, expected))
         return operator.eq(*texts)
-    tolerance = ABSOLUTE.get(column, 0.0)
+    tolerance = COLUMN_ERRORS.get(column, 0.0)
     if name in TABLES_OF_SCORES and column == "estimate":
-        tolerance = ABSOLUTE["z"]
+        tolerance = COLUMN_ERRORS["z"]
     pair = (values.to_numpy(float, na_value=np.nan) for values in (observed, expected))
-    return np.isclose(*pair, rtol=max(RELATIVE, tolerance), atol=tolerance, equal_nan=True)
+    return np.isclose(*pair, rtol=max(FLOAT_ERROR, tolerance), atol=tolerance, equal_nan=True)
 
 
 def well_conditioned(observed, expected):
@@ -103,7 +104,7 @@ def json_difference(observed, expected):
     for name in asked | found:
         a, b = found.get(name), asked.get(name)
         floats = isinstance(a, float) and isinstance(b, float)
-        if type(a) is not type(b) or not (np.isclose(a, b, RELATIVE, 0) if floats else a == b):
+        if type(a) is not type(b) or not (np.isclose(a, b, FLOAT_ERROR, 0) if floats else a == b):
             return f"{name} is {a!r}, expected {b!r}"
     return ""
 

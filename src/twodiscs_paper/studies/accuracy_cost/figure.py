@@ -31,10 +31,10 @@ ERROR_RANGE, SECONDS_RANGE = (1.0, 1e-6), (1e-7, 1e6)
 GUIDES = {"1 s": 1.0, "1 min": 60.0, "1 h": 3600.0, "1 day": 86400.0}
 
 #: The number of doublings of the time from one symbol to the next; the longest run also has one.
-THINNED = 2
+SYMBOL_DOUBLINGS = 2
 
 #: The white box of a text that lines would run through.
-WHITE = {"facecolor": "white", "edgecolor": "none", "pad": 0.4}
+PATCH = {"facecolor": "white", "edgecolor": "none", "pad": 0.4}
 
 
 class MethodCurve(NamedTuple):
@@ -49,14 +49,14 @@ class MethodCurve(NamedTuple):
 
 
 HOP_TIME, COLLISION_AREA = "horizontal_hop_time", "disc_collision_area"
-TIMES = (
+TIME_CURVES = (
     MethodCurve("time_step", HOP_TIME, False, "time steps", VERMILLION, "s"),
     MethodCurve("scalar", HOP_TIME, False, "one by one", ORANGE, "D"),
     MethodCurve("lockstep", HOP_TIME, False, "dynamics", BLUE, "o"),
     MethodCurve("lockstep", HOP_TIME, True, "dynamics", SKY, "o"),
     MethodCurve("strip", HOP_TIME, True, "strips", GREEN, "^"),
 )
-SAMPLES = (
+SAMPLE_CURVES = (
     MethodCurve("shell", COLLISION_AREA, False, "area, shells", VERMILLION, "s"),
     MethodCurve("surface", COLLISION_AREA, False, "area, surface", GREEN, "^"),
     MethodCurve("conditioned", "volume", False, "volume, conditioned", PURPLE, "v"),
@@ -66,7 +66,7 @@ SAMPLES = (
 )
 
 #: The symbols of the settings of methods.
-SETTINGS = {"time_step": r"\Delta t", "shell": r"\varepsilon"}
+SETTING_SYMBOLS = {"time_step": r"\Delta t", "shell": r"\varepsilon"}
 
 #: The lines of hard radii.
 DASHES = (0, (4, 2))
@@ -81,7 +81,7 @@ def draw(box, tables):
     figure = new_figure(HEIGHT, WIDTH, layout="constrained")
     radii = sorted({row["radius"] for row in kept})
     for axes, letter, series, title in zip(
-        figure.subplots(1, 2, sharey=True), "ab", (TIMES, SAMPLES),
+        figure.subplots(1, 2, sharey=True), "ab", (TIME_CURVES, SAMPLE_CURVES),
         ("mean time between horizontal hops", "volume, area of disc collisions"), strict=True,
     ):  # fmt: skip
         axes.set_label(letter)
@@ -96,7 +96,7 @@ def draw(box, tables):
             drawing.label(axes, name, (ERROR_RANGE[1], seconds), (3, 0), ha="left", fontsize=6.8)
         for one in series:
             _draw_series(axes, kept, rows, one, radii)
-        _draw_exact(axes, rows, radii[0], "volume" if series is TIMES else COLLISION_AREA)
+        _draw_exact(axes, rows, radii[0], "volume" if series is TIME_CURVES else COLLISION_AREA)
         axes.plot([], [], ls="", label="this build", **panels.open_symbol(BLACK, "o", 0.8))
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=2, columnspacing=1.0)
     figure.axes[0].set_ylabel("processor time on one core (s)")
@@ -128,7 +128,7 @@ def _draw_series(axes, kept, rows, one, radii):
 
 def _draw_errors(axes, rows, style):
     """Draw some of the errors in a ``style``, the longest run always; few runs have bars."""
-    rows = rows[::-1][::THINNED]
+    rows = rows[::-1][::SYMBOL_DOUBLINGS]
     axes.plot(*_columns(rows), ls="", **style)
     # Errors of fewer runs than this have a bar.
     few = [row for row in rows if row["repetitions"] < 64]
@@ -161,13 +161,13 @@ def _draw_law(axes, c, floor, one, setting, is_last):
     errors, seconds = _law(c, floor)
     dashes = DASHES if one.is_hard else "-"
     axes.plot(errors, seconds, color=one.colour, lw=0.8, ls=dashes, zorder=1)
-    if floor and one.method in SETTINGS:
+    if floor and one.method in SETTING_SYMBOLS:
         number = f"{setting:.2g}"
         if one.method == "time_step":
             number = f"2^{{{round(math.log2(setting))}}}"
-        style = {"rotation": 90, "va": "top", "fontsize": 6.8, "bbox": WHITE}
+        style = {"rotation": 90, "va": "top", "fontsize": 6.8, "bbox": PATCH}
         offset, style["ha"] = ((2, -3), "left") if is_last else ((-2, -3), "right")
-        text = f"${SETTINGS[one.method]}={number}$"
+        text = f"${SETTING_SYMBOLS[one.method]}={number}$"
         drawing.label(axes, text, (floor, SECONDS_RANGE[1]), offset, **style)
 
 
@@ -177,7 +177,7 @@ def _draw_exact(axes, rows, radius, quantity):
     seconds = median(row["seconds"] for row in select(own, method="exact"))
     axes.axhline(seconds, color=BLACK, lw=1.0, zorder=2)
     text = f"exact: {1e3 * seconds:.2g} ms, error $10^{{-15}}$"
-    drawing.label(axes, text, (ERROR_RANGE[1], seconds), (-3, -2), ha="right", va="top", bbox=WHITE)
+    drawing.label(axes, text, (ERROR_RANGE[1], seconds), (-3, -2), ha="right", va="top", bbox=PATCH)
     if quantity == COLLISION_AREA:
         nodes = select(own, method="quadrature")
         seconds = median(row["seconds"] for row in nodes)

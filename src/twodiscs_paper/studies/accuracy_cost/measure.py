@@ -38,27 +38,27 @@ from twodiscs_paper.study import row
 
 #: The hop of all mean times, and the relative distance of the hard radius from where it is blocked.
 TIMED_HOP, HARD_DISTANCE = "horizontal_hop", 1e-4
-EASY = Scene(1.5, 1.0, 0.2)
-HARD = EASY.with_radius(EASY.threshold(TIMED_HOP) * (1 - HARD_DISTANCE))
+EASY_SCENE = Scene(1.5, 1.0, 0.2)
+HARD_SCENE = EASY_SCENE.with_radius(EASY_SCENE.threshold(TIMED_HOP) * (1 - HARD_DISTANCE))
 
 AREA = "disc_collision_area"
 
 #: Time steps, and fractions for ``montecarlo.shell_thickness``: a thick shell, and the usual one.
-STEPS = (2.0**-4, 2.0**-6, 2.0**-7)
-SHELLS = (0.3, 0.02)
+TIME_STEPS = (2.0**-4, 2.0**-6, 2.0**-7)
+SHELL_SIZES = (0.3, 0.02)
 
 #: Replicas of a block of the methods for comparison, samples of a block on the surface.
 FEW_REPLICAS, ON_SURFACE = 64, 1 << 16
 
 #: Relative distances from the radius where the hop is blocked at which c is measured.
-DISTANCES = (0.6, 0.2, 0.05, 1e-2, 1e-4, 1e-6)
+HARD_DISTANCES = (0.6, 0.2, 0.05, 1e-2, 1e-4, 1e-6)
 
 #: Calls of methods that are deterministic and take microseconds, and the nodes of quadrature.
 CALLS, NODES = 100, range(1, 17)
 
 #: Larger errors are left out. A power is fitted to errors above this multiple of the floor, of at
 #: least this number of runs.
-LARGEST_ERROR, ABOVE_FLOOR, FEWEST_RUNS = 0.5, 3.0, 16
+PRICED_ERROR, ABOVE_FLOOR, FEWEST_RUNS = 0.5, 3.0, 16
 
 #: The most blocks of a method in a build.
 MOST_BLOCKS = 1 << 14
@@ -212,17 +212,17 @@ def surface_method(scene, seed):
 def methods(seed):
     """Return all methods that are measured, with random numbers of ``seed``."""
     return [
-        lockstep_method(EASY, seed),
-        scalar_method(EASY, seed),
-        *(steps_method(EASY, seed, step) for step in STEPS),
-        strip_method(HARD, seed),
-        lockstep_method(HARD, seed, blocks=4),
-        samples_method(EASY, seed, "volume"),
-        samples_method(EASY, seed, "volume", name="conditioned"),
-        *(samples_method(EASY, seed, AREA, fraction) for fraction in SHELLS),
-        surface_method(EASY, seed),
-        samples_method(HARD, seed, "volume"),
-        samples_method(HARD, seed, AREA, SHELLS[-1]),
+        lockstep_method(EASY_SCENE, seed),
+        scalar_method(EASY_SCENE, seed),
+        *(steps_method(EASY_SCENE, seed, step) for step in TIME_STEPS),
+        strip_method(HARD_SCENE, seed),
+        lockstep_method(HARD_SCENE, seed, blocks=4),
+        samples_method(EASY_SCENE, seed, "volume"),
+        samples_method(EASY_SCENE, seed, "volume", name="conditioned"),
+        *(samples_method(EASY_SCENE, seed, AREA, fraction) for fraction in SHELL_SIZES),
+        surface_method(EASY_SCENE, seed),
+        samples_method(HARD_SCENE, seed, "volume"),
+        samples_method(HARD_SCENE, seed, AREA, SHELL_SIZES[-1]),
     ]
 
 
@@ -275,7 +275,7 @@ def exact_rows():
     """Yield the rows of quadrature and of the exact evaluation at both radii."""
     works = [("quadrature", partial(quadrature, nodes=n), n) for n in NODES]
     works.append(("exact", evaluated, None))
-    for scene in (EASY, HARD):
+    for scene in (EASY_SCENE, HARD_SCENE):
         true = reference(scene)
         for name, work, nodes in works:
             work(scene)
@@ -337,7 +337,7 @@ def power(joined, floor):
         if len(long) < FEWEST_RUNS or root_mean_square(long) <= ABOVE_FLOOR * floor:
             break
         before = short[: 2 * len(long)]
-        if root_mean_square(before) > LARGEST_ERROR:
+        if root_mean_square(before) > PRICED_ERROR:
             continue  # of rare counts, whose products are too few
         products = 2 * before[::2] * before[1::2]
         powers.append(math.log2(root_mean_square(long) / root_mean_square(before)))
@@ -362,7 +362,7 @@ def error_rows(method, seconds, most, **cells):
     slope, slope_error = power(joined, floor)
     for blocks, errors in joined.items():
         error = root_mean_square(errors)
-        if error <= LARGEST_ERROR:
+        if error <= PRICED_ERROR:
             yield cost_row(
                 method.scene, "error", method.quantity, method.name,
                 setting=method.setting, seconds=each * blocks, error=error,
@@ -385,8 +385,8 @@ def long_run(seed, blocks):
 
 def radius_rows():
     """Yield the rows of the part ``radius``: c of each quantity and method, by ``td.cost``."""
-    for distance in DISTANCES:
-        scene = EASY.with_radius(EASY.threshold(TIMED_HOP) * (1 - distance))
+    for distance in HARD_DISTANCES:
+        scene = EASY_SCENE.with_radius(EASY_SCENE.threshold(TIMED_HOP) * (1 - distance))
         for price in twodiscs.cost(scene).prices:
             if price.method != "exact":
                 cells = {"distance": distance, "c": price.c, "floor": price.floor}

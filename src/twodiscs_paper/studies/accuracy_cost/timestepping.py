@@ -22,7 +22,7 @@ VERTICAL, HORIZONTAL, COLLISION, RIGHT, TOP, ANY = (256.0**i for i in range(N))
 X_WALL, Y_WALL = RIGHT + ANY, TOP + ANY
 
 #: Steps between two readings of the packed counts: a step has four walls at most.
-STEPS = 60
+STEPS_PER_READ = 60
 
 
 @compiled
@@ -86,7 +86,7 @@ def step_blocks(seed, first, stop, replicas, lanes, steps, step, sigma, draw):
                         u1[i], v1[i] = u1[i] - exchange * dx, v1[i] - exchange * dy
                         u2[i], v2[i] = u2[i] + exchange * dx, v2[i] + exchange * dy
                         packed[i] += COLLISION
-                if (now + 1) % STEPS == 0 or now + 1 == steps:
+                if (now + 1) % STEPS_PER_READ == 0 or now + 1 == steps:
                     for i in range(lanes):
                         unpack(packed, counts, i)
     for e in range(N):

@@ -12,9 +12,6 @@ from twodiscs.theory import exact
 from twodiscs.theory.three import integrals
 from twodiscs_paper.study import row, select
 
-#: Bins with fewer intervals do not show how errors of chains differ from errors of counts.
-WELL_FILLED = 1000
-
 
 def normal_tests(check):
     """Return the independent tests of mean times by dynamics with a normal distribution."""
@@ -39,7 +36,8 @@ def error_ratio(bins):
     """
     ratios = []
     for one in bins:
-        if one["count"] >= WELL_FILLED:
+        # Bins with fewer intervals do not show how errors of chains differ from errors of counts.
+        if one["count"] >= 1000:
             fraction = one["count"] / one["intervals"]
             independent = math.sqrt(fraction * (1 - fraction) / one["intervals"])
             ratios.append(one["stderr"] * (one["right"] - one["left"]) / independent)

@@ -38,27 +38,27 @@ from twodiscs_paper.studies.single import tail_constant, time_to_next
 from twodiscs_paper.study import row
 
 #: Independent blocks behind an error bar, and the bins of a histogram of intervals.
-BLOCKS, BINS = 128, 512
+INTERVAL_BLOCKS, BINS = 128, 512
 
 #: The most wall and disc events for the intervals of one radius, and again for its first passages;
 #: the most intervals and first passages. The density at 0 has an error of half a per cent from 4e6
 #: intervals.
-EVENTS, MOST_INTERVALS, MOST_PASSAGES = 2**22, 2**22, 2**18
+INTERVAL_EVENTS, MOST_INTERVALS, MOST_PASSAGES = 2**22, 2**22, 2**18
 
 #: The fewest intervals that must end for a test of constancy.
 FEWEST_ENDED = 1000
 
 #: Relative distances below the radius at which a hop becomes blocked.
-DISTANCES = (0.16, 0.08, 0.04, 0.02, 0.01)
+LIMIT_DISTANCES = (0.16, 0.08, 0.04, 0.02, 0.01)
 
 #: Widening of the bins of the hazard rate, and the fewest intervals in one.
 GROWTH, FEWEST_IN_BIN = 0.08, 100
 
 #: A hazard is a plateau if the probabilities of its χ² and of its trend exceed this level.
-LEVEL = 1e-3
+TEST_LEVEL = 1e-3
 
 #: The columns that identify one hop at one radius.
-CASE = ("scene", "width", "height", "radius", "event", "exact_mean")
+CASE_COLUMNS = ("scene", "width", "height", "radius", "event", "exact_mean")
 
 
 def density_at_zero(counts, intervals, width):
@@ -186,27 +186,27 @@ def hazard(counts, intervals, width):
 def near_threshold(box, hop):
     """Return radii that approach the threshold of ``hop``, or [] if it stays open at all radii.
 
-    They are ``DISTANCES`` below it, relative to it. Radii at which the hop is too rare even for the
-    fewest intervals, in very long boxes, are left out.
+    They are ``LIMIT_DISTANCES`` below it, relative to it. Radii at which the hop is too rare even
+    for the fewest intervals, in very long boxes, are left out.
     """
     limit = box.threshold(hop)
     if limit not in box.thresholds:
         return []
-    radii = [float(f"{limit * (1 - distance):.6g}") for distance in DISTANCES]
+    radii = [float(f"{limit * (1 - distance):.6g}") for distance in LIMIT_DISTANCES]
     return [radius for radius in radii if _affordable(box.scene(radius), hop)]
 
 
 def _affordable(scene, hop):
-    """Return whether the fewest possible intervals take a few times ``EVENTS`` at most."""
+    """Return whether the fewest possible intervals take a few times ``INTERVAL_EVENTS`` at most."""
     events = exact.event_rate(scene) * exact.mean_times(scene)[hop]
-    return BLOCKS * events < 4 * EVENTS
+    return INTERVAL_BLOCKS * events < 4 * INTERVAL_EVENTS
 
 
 def _z(deviation, error):
-    return student_deviate(deviation / error, BLOCKS - 1)
+    return student_deviate(deviation / error, INTERVAL_BLOCKS - 1)
 
 
-def measured(start, scene, hop, seed, events=EVENTS):
+def measured(start, scene, hop, seed, events=INTERVAL_EVENTS):
     """Yield the rows of distributions.csv on the times to the next ``hop`` of a ``Scene``.
 
     ``start`` has the columns that name scene and hop. ``events`` is the most wall and disc events
@@ -214,9 +214,9 @@ def measured(start, scene, hop, seed, events=EVENTS):
     """
     constant, mean = tail_constant(scene, hop), exact.mean_times(scene)[hop]
     rate = exact.event_rate(scene)
-    affordable = int(nearest_power_of_two(max(1.0, events / (rate * mean)))) // BLOCKS
-    block = max(1, min(affordable, MOST_INTERVALS // BLOCKS))
-    passages = min(block, MOST_PASSAGES // BLOCKS)
+    affordable = int(nearest_power_of_two(max(1.0, events / (rate * mean)))) // INTERVAL_BLOCKS
+    block = max(1, min(affordable, MOST_INTERVALS // INTERVAL_BLOCKS))
+    passages = min(block, MOST_PASSAGES // INTERVAL_BLOCKS)
     # For a test, first passages are cut at this many mean times.
     width, cut = nearest_power_of_two(mean / 16), 20 * mean
     oriented = scene
@@ -224,16 +224,16 @@ def measured(start, scene, hop, seed, events=EVENTS):
         oriented = scene.turned()
     draw, histogram = conditioned_sampler(oriented), np.zeros(BINS + 1, np.int64)
     means = draw_passages(
-        np.uint64(seed), 0, BLOCKS, block, passages, cut, two_disc_law(oriented), draw, width,
-        histogram,
+        np.uint64(seed), 0, INTERVAL_BLOCKS, block, passages, cut, two_disc_law(oriented), draw,
+        width, histogram,
     )  # fmt: skip
-    intervals, passages = BLOCKS * block, BLOCKS * passages
+    intervals, passages = INTERVAL_BLOCKS * block, INTERVAL_BLOCKS * passages
     time, square, cut_square, passage, cut_passage = sample_mean(means)
 
     of_intervals = start | {"count": intervals}
     z = _z(time.value - mean, time.stderr)
     yield row(of_intervals, time, quantity="mean", reference=mean, z=z)
-    variation = Estimate(square.value / mean**2 - 1, square.stderr / mean**2, BLOCKS)
+    variation = Estimate(square.value / mean**2 - 1, square.stderr / mean**2, INTERVAL_BLOCKS)
     yield row(of_intervals, variation, quantity="squared_cv", reference=1.0)
     scale = 1 / (2 * mean)
     for last, times, squares in ((None, passage, square), (cut, cut_passage, cut_square)):
@@ -270,7 +270,7 @@ def _constancy(start, bins, mean):
     yield row(ends, trend, quantity="trend", reference=0.0, z=z, p=two_sided_p(z))
 
 
-def rows(scenes, seed, events=EVENTS):
+def rows(scenes, seed, events=INTERVAL_EVENTS):
     """Return the rows of distributions.csv.
 
     ``scenes`` are dicts of name, box, event and radii of hops. For the first scene, the radii near
@@ -316,8 +316,8 @@ def shape(case):
     of = {one["quantity"]: one for one in case}
     if "rate" not in of:
         return
-    rate, start = of["rate"], {name: of["rate"][name] for name in CASE}
-    if min(rate["p"], of["trend"]["p"]) > LEVEL:
+    rate, start = of["rate"], {name: of["rate"][name] for name in CASE_COLUMNS}
+    if min(rate["p"], of["trend"]["p"]) > TEST_LEVEL:
         names = ("first", "last", "count", "estimate", "stderr")
         yield start | {name: rate[name] for name in names} | {"quantity": "plateau"}
         return

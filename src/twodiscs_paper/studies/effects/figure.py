@@ -22,7 +22,7 @@ from twodiscs.model.scene import Box
 from twodiscs_paper.studies.effects.measure import plain_time
 
 #: Inches: the width of the figure, and the heights of the panels of curves and of residuals.
-WIDTH, HEIGHTS = 7.0, (2.6, 1.1)
+WIDTH, PANEL_HEIGHTS = 7.0, (2.6, 1.1)
 
 #: The relative widths of the panels of times and of the panel of costs.
 WIDTHS = (1.5, 1.5, 1.5, 1.2)
@@ -34,27 +34,27 @@ SHOWN_EVENTS = ("vertical_hop", "disc_collision", "any_wall")
 EVENT_NAMES = {"any_wall": "wall hits"}
 
 #: The quantity that is no mean time, and is not drawn.
-SHARE = "never_met_share"
+SHARE_QUANTITY = "never_met_share"
 
 COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, BLACK)
-MARKERS = ("o", "s", "^", "D", "v", "P")
+SCENE_MARKERS = ("o", "s", "^", "D", "v", "P")
 
 #: The shortest relative time of the panel of costs, and the factor that leaves room for numbers.
 #: Points: the end of the column of instructions, from the edge of the panel.
-COST_FROM, COST_ROOM, COLUMN = 0.6, 8.0, 26
+COST_FROM, COST_ROOM, COUNT_OFFSET = 0.6, 8.0, 26
 
 
 def draw(box, tables):
     """Draw the rows of effects.csv and exact curves; ``box`` is not used: the rows name theirs."""
-    rows = [row for row in tables["effects"] if row["quantity"] != SHARE]
+    rows = [row for row in tables["effects"] if row["quantity"] != SHARE_QUANTITY]
     looks = {name: _look(i) for i, name in enumerate(dict.fromkeys(r["scene"] for r in rows))}
     boxes = {row["scene"]: _box(row) for row in rows}
     plain = Box(rows[0]["width"], rows[0]["height"])
     ends = limits(plain)
 
-    figure = new_figure(sum(HEIGHTS), WIDTH, layout="constrained")
+    figure = new_figure(sum(PANEL_HEIGHTS), WIDTH, layout="constrained")
     places = [["a", "b", "c", "d"], ["z of a", "z of b", "z of c", "d"]]
-    axes = figure.subplot_mosaic(places, width_ratios=WIDTHS, height_ratios=HEIGHTS)
+    axes = figure.subplot_mosaic(places, width_ratios=WIDTHS, height_ratios=PANEL_HEIGHTS)
     for letter, event in zip("abc", SHOWN_EVENTS, strict=True):
         main, lower = axes[letter], axes[f"z of {letter}"]
         for name, look in looks.items():
@@ -83,7 +83,7 @@ def draw(box, tables):
 def _look(i):
     """Return the colour and marker of scene ``i``, a different pair for each."""
     n = len(COLOURS)
-    return COLOURS[i % n], MARKERS[(i + i // n) % n]
+    return COLOURS[i % n], SCENE_MARKERS[(i + i // n) % n]
 
 
 def _box(row):
@@ -128,9 +128,9 @@ def _costs(axes, rows, looks):
         if row["variant"] in looks:
             axes.plot(time, i, **panels.open_symbol(*look))
         drawing.label(axes, f"{time:.3g}", (time, i), (6, 0), ha="left", **small)
-        drawing.label(axes, f"{row['instructions']}", (1, i), (COLUMN, 0), **column)
+        drawing.label(axes, f"{row['instructions']}", (1, i), (COUNT_OFFSET, 0), **column)
     head = column | {"ha": "center", "va": "bottom", "linespacing": 1.1}
-    drawing.label(axes, "instructions\nin kernel", (1, -0.6), (COLUMN - 9, 3), **head)
+    drawing.label(axes, "instructions\nin kernel", (1, -0.6), (COUNT_OFFSET - 9, 3), **head)
     axes.axvline(1, color=GREY, lw=0.5, zorder=0)
     axes.set_yticks(range(len(rows)), [VARIANTS.get(r["variant"], r["variant"]) for r in rows])
     axes.set_xlabel("time / that without effects")

@@ -24,7 +24,7 @@ from twodiscs_paper.study import row
 
 #: Blocks of ``REPLICAS`` starts that are followed until their discs meet, and the times at which
 #: the starts without a meeting are counted.
-BLOCKS = 256
+MEETING_BLOCKS = 256
 TIMES = (1e2, 1e3, 1e4)
 
 #: Discs with chaotic motion meet within this many mean times, except for a fraction e^−20.
@@ -78,7 +78,7 @@ def plain_time(box, radius, event):
     return exact.mean_times(plain.scene(radius))[event] if plain.fits(radius) else None
 
 
-def rows(tables, scenes, seed, blocks=BLOCKS):
+def rows(tables, scenes, seed, blocks=MEETING_BLOCKS):
     """Yield the rows of effects.csv.
 
     ``scenes`` is {name: parameters of its box}, ``tables`` has the rows of <name>/mean_times of

@@ -25,13 +25,13 @@ SCENE = Scene(1.5, 1.0, 0.2)
 REPETITIONS = 7
 
 #: Blocks of one timed run of the lock-step ensemble.
-BLOCKS = 200
+PRICE_BLOCKS = 200
 
 #: Blocks and repetitions of a quick run.
-QUICK = {"blocks": 40, "repetitions": 5}
+QUICK_OPTIONS = {"blocks": 40, "repetitions": 5}
 
 #: Effects that no scene of the study has, and all effects that discs can have together.
-MORE = {
+ADDITIONS = {
     "friction": {"friction": 5.0},
     "all effects": {
         "radius_ratio": 0.5, "mass_ratio": 2.0, "periodic": "x", "field": 0.5,
@@ -59,7 +59,7 @@ def interleaved(variants, repetitions=REPETITIONS):
     return {name: median(values) for name, values in speeds.items()}
 
 
-def lockstep(blocks=BLOCKS, scene=SCENE, events=EVENTS):
+def lockstep(blocks=PRICE_BLOCKS, scene=SCENE, events=EVENTS):
     """Count ``events``, by default all, up to a fixed end time, with statistics by replica."""
     engine = find_engine(scene)
     duration = engine.replica_duration(scene)
@@ -78,14 +78,14 @@ def compared(name, speeds, baseline):
     ]
 
 
-def rows(scenes, blocks=BLOCKS, repetitions=REPETITIONS):
+def rows(scenes, blocks=PRICE_BLOCKS, repetitions=REPETITIONS):
     """Return the rows on events per second with the effects of ``scenes``, {name: box}.
 
     All events of a scene are counted. ``without_effects`` is the plain scene in an engine that has
     no effects. Variants without effects are also ``plain`` and ``plain_walls``, which detects no
     hops.
     """
-    effects = {name: Box(**box).effects for name, box in scenes.items()} | MORE
+    effects = {name: Box(**box).effects for name, box in scenes.items()} | ADDITIONS
     variants = {
         "without_effects": partial(result_without_effects, f"lockstep({blocks})"),
         "plain": partial(lockstep, blocks),

@@ -82,7 +82,7 @@ class EffectsCostTable(Table):
         """Return the rows of ``scenes``; once the ``tables`` are made, all kernels are compiled."""
         from twodiscs_paper.studies.effects import price
 
-        return price.rows(scenes, **price.QUICK)
+        return price.rows(scenes, **price.QUICK_OPTIONS)
 
 
 class Benchmark(EffectsCostTable):

@@ -8,7 +8,7 @@ from twodiscs_paper.study import select
 PANEL, RESIDUALS = 1.5, 1.3
 
 #: {event: (how many pairs or discs share its times among N discs, the same in mathtext)}.
-SHARED = {
+PAIR_FACTORS = {
     "vertical_hop": (lambda n: n * (n - 1) / 2, r"$\times N(N-1)/2$"),
     "horizontal_hop": (lambda n: n - 1, r"$\times(N-1)$"),
     "disc_collision": (lambda n: n - 1, r"$\times(N-1)$"),
@@ -54,7 +54,7 @@ def _times(axes, rows):
         own = [row for row in rows if row["event"] == event and row["dynamics"]]
         if not own:
             continue
-        share, name = SHARED[event]
+        share, name = PAIR_FACTORS[event]
         numbers = [row["discs"] for row in own]
         times = {
             column: [row[column] and row[column] * share(row["discs"]) for row in own]

@@ -17,17 +17,17 @@ REFERENCE_LOOKS = {
 }
 
 #: Two starts that differ by more standard errors are not in equilibrium.
-AGREE = 3
+AGREEMENT_Z = 3
 
 #: From this packing fraction on, coefficients that are left out matter.
-CONVERGED = 0.45
+SERIES_PACKING = 0.45
 
 
 def draw(box, tables):
     """Draw the rows of tori.csv that have a reference; the ``box`` is not theirs."""
     rows = [row for row in tables["tori"] if row["reference"]]
     figure, (upper, lower) = panels.stacked(factor=3.0, residuals=1.6)
-    for low, high, style in ((0.08, CONVERGED, "-"), (CONVERGED, 0.62, (0, (1, 1.5)))):
+    for low, high, style in ((0.08, SERIES_PACKING, "-"), (SERIES_PACKING, 0.62, (0, (1, 1.5)))):
         packings = np.linspace(low, high, 100)
         factors = [virial_series(packing, 256)[0] for packing in packings]
         upper.plot(packings, factors, color=GREY, lw=0.9, ls=style, zorder=1)
@@ -42,7 +42,7 @@ def draw(box, tables):
             )  # fmt: skip
         for row in own:
             apart = row["starts_z"] or 0.0
-            style = panels.open_symbol(colour if abs(apart) <= AGREE else GREY, marker, 0.8)
+            style = panels.open_symbol(colour if abs(apart) <= AGREEMENT_Z else GREY, marker, 0.8)
             lower.plot(row["packing_fraction"], row["z"], ls="", **style)
     upper.plot([], [], "x", color=BLACK, markersize=3, label="published")
     lower.plot([], [], ls="", label="two starts differ", **panels.open_symbol(GREY, "o", 0.8))

@@ -27,7 +27,7 @@ DISCS, RADII = (2, 3, 4, 8, 16, 32, 64), (0.1, 0.2, 0.28)
 #: Numbers of discs whose initial states take longer than their motion, and their replicas: fewer
 #: ones, which are followed for longer. They have an eighth of the events, and no insertions, which
 #: take too long.
-FEWER, SHARE = {16: 128, 32: 96, 64: 48}, 1 / 8
+REPLICAS_OF_MANY, EVENT_SHARE = {16: 128, 32: 96, 64: 48}, 1 / 8
 
 #: (number of discs on a torus, their packing fraction): three, whose rate of collisions is exact,
 #: and a fluid.
@@ -63,8 +63,8 @@ def virial_sum(scene, rates):
 
 def counted(scene, events, seed):
     """Return (sums, products, replicas, duration) of about ``events``."""
-    if replicas := FEWER.get(scene.discs):
-        duration = many_rates.expected_duration(scene, SHARE * events / replicas)
+    if replicas := REPLICAS_OF_MANY.get(scene.discs):
+        duration = many_rates.expected_duration(scene, EVENT_SHARE * events / replicas)
         counts = class_counts.run_classes(scene, seed, 0, 1, duration, replicas=replicas)
         return *counts, replicas, duration
     duration = many_rates.expected_duration(scene)
@@ -141,7 +141,7 @@ def _of_scene(scene, events, samples, seed):
     known = known_derivatives(scene)
     theory = "plain" if scene.discs == 2 else n_discs.exact_method(scene) or "none"
     true = rates(scene, known) if known else {}
-    has_samples = scene.discs not in FEWER
+    has_samples = scene.discs not in REPLICAS_OF_MANY
     sampled, errors_of_samples = (
         (rates(scene, part) for part in insertions.sample(scene, samples, seed))
         if has_samples

@@ -37,10 +37,7 @@ ASPECTS = {
 }  # fmt: skip
 
 #: The number of discs that is compared with the virial series.
-OF_SERIES = 256
-
-#: The packing fraction of the liquid that is compressed.
-LIQUID = 0.45
+SERIES_DISCS = 256
 
 
 def torus(discs, packing, aspect):
@@ -73,7 +70,8 @@ def counted(seed, points):
 def from_liquid(scene, number, seed):
     """Return initial states that begin with a compressed liquid instead of rows."""
     states = many_initial_states.states(scene, number, seed)
-    shrunk = scene.with_radius(scene.radius * math.sqrt(LIQUID / packing_fraction(scene)))
+    # At this packing fraction discs are a liquid.
+    shrunk = scene.with_radius(scene.radius * math.sqrt(0.45 / packing_fraction(scene)))
     places = many_initial_states.states(shrunk, number, seed)[: 2 * scene.discs]
     stream, initial = open_stream(np.uint64(seed), 1), many_initial_states.make_initial(scene)
     for k in range(number):
@@ -133,7 +131,7 @@ def virial_series(packing, discs):
 
 def references(discs, aspect, packing):
     """Yield (source, Z, its uncertainty) of what is known at a point."""
-    if discs == OF_SERIES:
+    if discs == SERIES_DISCS:
         yield "virial", *virial_series(packing, discs)
     for one in read(PUBLISHED):
         point = int(one["discs"]), one["aspect"], float(one["packing_fraction"])

@@ -35,25 +35,26 @@ PROGRAMS = {
 }  # fmt: skip
 
 #: {program that rejects moves: the standard deviation of a move of u over s}.
-REJECTING = {"together": math.sqrt(2), "confined": math.sqrt(2), "singly": 1.0}
+MOVE_WIDTHS = {"together": math.sqrt(2), "confined": math.sqrt(2), "singly": 1.0}
 
 #: {program: its flights or moves in a step, if they are not one}.
-MOVES = {"kicked": 2, "singly": 2}
+MOVES_PER_STEP = {"kicked": 2, "singly": 2}
 
 #: Half of the length of the ring, in σ: the box 1.5 × 1 has this length close to h/4.
 HALF = 1.5
 
-#: Exponents are fitted where the neck is ``LONG`` steps or more, or ``SHORT`` steps or less.
-LONG, SHORT = 8.0, 0.125
+#: Exponents are fitted where the neck is ``LONG_NECK_STEPS`` steps or more, or ``SHORT_NECK_STEPS``
+#: steps or less.
+LONG_NECK_STEPS, SHORT_NECK_STEPS = 8.0, 0.125
 
 #: If heights diffuse as slowly as u, the resistance of the neck is larger by the factor 1 +
-#: ``HEIGHTS`` ε/σ + … Slacks ξ, η up to L then leave Φ′(u) L′(ξ² + η²)/L in the potential Φ, which
-#: adds (4/3)∫(L′/L)² du to the resistance 2∫du/L².
-HEIGHTS = 4 / 3
+#: ``HEIGHT_TERM`` ε/σ + … Slacks ξ, η up to L then leave Φ′(u) L′(ξ² + η²)/L in the potential Φ,
+#: which adds (4/3)∫(L′/L)² du to the resistance 2∫du/L².
+HEIGHT_TERM = 4 / 3
 
 #: In wider channels the methods differ by more than a per cent: pairs that are too far apart to
 #: touch need not come to the end of the ring, where passages begin and end.
-NARROW = 1 / 16
+COMPARED_ROOM = 1 / 16
 
 #: Nodes and weights on [0, 1].
 NODES, WEIGHTS = (part / 2 for part in np.polynomial.legendre.leggauss(48))
@@ -105,7 +106,7 @@ def resistance(room, program="reflected", step=1.0):
 
     def inverse(u):
         slack = 1 + room - math.sqrt(1 - u * u)
-        return slack**-2.0 / (acceptance(program, slack / step) if program in REJECTING else 1.0)
+        return slack**-2.0 / (acceptance(program, slack / step) if program in MOVE_WIDTHS else 1.0)
 
     near, _ = quad(inverse, 0, 1, points=[math.sqrt(room)], epsabs=0, epsrel=1e-9)
     return 2 * (near + (HALF - 1) * inverse(1.0))
@@ -155,7 +156,7 @@ def crossing_counts(seed, program, step, halvings, crossings):
     stream = _stream(seed, "crossings", program, step, halvings)
     sizes, tried, steps = brownian_steps.cluster_sizes(
         PROGRAMS[program], step, 2.0**-halvings, HALF, stream, 0,
-        -(-crossings // brownian_steps.CROSSINGS),
+        -(-crossings // brownian_steps.STEP_CROSSINGS)
     )  # fmt: skip
     return {"tried": int(tried), "steps": int(steps), "sizes": sparse(sizes)}
 
@@ -196,16 +197,16 @@ def joined(counts):
 
 def crossing_estimates(point, counts):
     """Return {quantity: ``Estimate``} from the ``counts`` of random crossings at a ``point``."""
-    sizes = dense(counts["sizes"], brownian_steps.LARGEST_CLUSTER + 2)
+    sizes = dense(counts["sizes"], brownian_steps.STEP_CLUSTER + 2)
     number = int(sizes.sum())
     kappa, found = cluster_coefficient(sizes), {}
-    if point["program"] in REJECTING:
+    if point["program"] in MOVE_WIDTHS:
         step, room = point["step"], 2.0 ** -point["halvings"]
-        length = REJECTING[point["program"]] * step
+        length = MOVE_WIDTHS[point["program"]] * step
         farthest = min(brownian_steps.LONGEST_MOVE * length, 1.0)
         area = (1 + room - math.sqrt(1 - farthest**2)) ** 2
         tried = length / math.sqrt(2 * math.pi) * area / side_volume(room)
-        tried *= MOVES.get(point["program"], 1)
+        tried *= MOVES_PER_STEP.get(point["program"], 1)
         share = number / counts["tried"]
         ratio = tried / crossing_rate(step, room) * share
         spread = math.sqrt((1 - share) / number)
@@ -217,7 +218,7 @@ def crossing_estimates(point, counts):
 
 def passage_estimates(point, counts):
     """Return {quantity: ``Estimate``} from the ``counts`` of first passages at a ``point``."""
-    pairs, moves = counts["pairs"], MOVES.get(point["program"], 1)
+    pairs, moves = counts["pairs"], MOVES_PER_STEP.get(point["program"], 1)
     means = {name: counts[name][0] / pairs for name in ("first", "passage", "crossings")}
     squares = {name: counts[name][1] / pairs for name in means}
 
@@ -295,7 +296,7 @@ def rows(counts):
 
 def _reference(known, program, step, halvings, quantity):
     """Return what a quantity is compared with: an ``Estimate``, or None, as in a wide channel."""
-    if 2.0**-halvings > NARROW:
+    if 2.0**-halvings > COMPARED_ROOM:
         return None
     if quantity == "crossing_rate" and program == "reflected":
         return Estimate(1.0, 0.0, 1)
@@ -325,7 +326,7 @@ def exponents(counts):
                     yield _slope_row(cells, [one, other])
             if (program, method) != ("reflected", "crossings"):
                 continue
-            for where in (lambda x: x >= LONG, lambda x: x <= SHORT):
+            for where in (lambda x: x >= LONG_NECK_STEPS, lambda x: x <= SHORT_NECK_STEPS):
                 chosen = [point for point in own if where(neck(step, point["halvings"]))]
                 if len(chosen) > 2:
                     cells = start | {"quantity": "exponent"}
@@ -342,8 +343,8 @@ def _fits(cells, chosen, estimates):
         for own in zip(*(point["seeds"] for point in chosen), strict=True)
     ]
     agree = {"seeds_z": compared(*map(_slope, seeds))["z"]} if len(seeds) == 2 else {}
-    if cells["neck"] >= LONG:
-        slow = [(*time[:3], time[3] + math.log1p(HEIGHTS * time[0])) for time in together]
+    if cells["neck"] >= LONG_NECK_STEPS:
+        slow = [(*time[:3], time[3] + math.log1p(HEIGHT_TERM * time[0])) for time in together]
         agree["reference"] = _slope(slow, column=3).value
     yield _slope_row(cells | agree, together)
     for number, times in enumerate(seeds, 1):

@@ -14,7 +14,7 @@ from twodiscs_paper.studies.passages.near import ONE_INERTIA
 from twodiscs_paper.study import select
 
 #: Short files of smooth discs; long files of smooth discs, without friction and with it.
-FILES = {4: (SKY, "P"), 8: (BLACK, "D")}
+FILE_LOOKS = {4: (SKY, "P"), 8: (BLACK, "D")}
 SMOOTH_FILE, KICKED_FILE = (GREEN, "^"), (PURPLE, "v")
 
 #: {quantity: colour, marker, name} of residuals.
@@ -67,7 +67,7 @@ def _ring(axes, rows):
 
 def _files(axes, short, long):
     """Draw short files, with full symbols, and long ones."""
-    for discs, look in FILES.items():
+    for discs, look in FILE_LOOKS.items():
         own = select(short, quantity="diffusion", discs=discs)
         points(axes, *_diffusion(own), look, f"{discs} smooth discs", True)
     for kicked, look in ((False, SMOOTH_FILE), (True, KICKED_FILE)):

@@ -7,7 +7,7 @@ from twodiscs.figures.style import BLACK, GREY, SERIES
 from twodiscs_paper.studies.estimates import columns
 from twodiscs_paper.studies.passages.figure import at_places, first_scene, is_empty, points
 from twodiscs_paper.studies.passages.parts.with_friction import (
-    KICKED,
+    NECK_HALVINGS,
     row_scene,
     scaled_friction,
     scaling_law,
@@ -21,7 +21,7 @@ FRICTION_RANGE = (0.015, 45)
 FORMULA = r"$1/\kappa=4x/3+1/(1+bx+cx^2)$"
 
 #: κ x for large x and smooth discs between walls, see docs/passages.md.
-DIFFUSIVE = 3 / 4
+FRICTION_LIMIT = 3 / 4
 
 
 def draw(box, tables):
@@ -34,7 +34,7 @@ def draw(box, tables):
         return figure
     panels.title(upper, "a", first_scene(rows, box)[0])
     # {rate of kicks: colour, marker}.
-    for friction, look in dict(zip(KICKED, SERIES, strict=True)).items():
+    for friction, look in dict(zip(NECK_HALVINGS, SERIES, strict=True)).items():
         for some, filled in ((rows, False), (kept, True)):
             own = select(some, friction=friction, quantity="coefficient")
             if own:
@@ -56,8 +56,8 @@ def draw(box, tables):
     upper.plot(x, scaling_law(x), color=BLACK, lw=0.8, label=FORMULA, zorder=5)
     style = {"color": BLACK, "lw": 0.8, "ls": (0, (4, 2)), "zorder": 5}
     upper.plot(FRICTION_RANGE, np.ones(2), **style)
-    large = np.array([DIFFUSIVE, FRICTION_RANGE[1]])
-    upper.plot(large, DIFFUSIVE / large, label=r"$1$ and $3/(4x)$", **style)
+    large = np.array([FRICTION_LIMIT, FRICTION_RANGE[1]])
+    upper.plot(large, FRICTION_LIMIT / large, label=r"$1$ and $3/(4x)$", **style)
     for exponent, name, side in (
         (-1.5, "$-3/2$  long necks", "left"),
         (-2.0, "$-2$  short necks", "right"),

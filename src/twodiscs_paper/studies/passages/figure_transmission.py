@@ -21,8 +21,8 @@ from twodiscs_paper.studies.passages.powers import law_scale
 from twodiscs_paper.study import select
 
 #: The distances that are named above the panel of smooth discs, in halvings, and the end of its
-#: abscissa. The slope of its line is fitted from ``CLOSE`` on.
-NAMED, END, CLOSE = (4, 8, 12, 16, 20), 0.55, 2.0**-12
+#: abscissa. The slope of its line is fitted from ``FIT_DISTANCE`` on.
+HALVINGS, X_END, FIT_DISTANCE = (4, 8, 12, 16, 20), 0.55, 2.0**-12
 
 #: {quantity: colour, marker, name} of residuals, each in a panel of its own.
 RESIDUAL_LOOKS = {
@@ -77,15 +77,15 @@ def _smooth(axes, rows, kept, ours):
         axes.errorbar([0], [c], [row["stderr"]], color=BLACK, marker="*", markersize=5, ls="",
                       clip_on=False, zorder=6, label=r"$c$, in the limit")  # fmt: skip
         close = select(kept, quantity="coefficient", event="horizontal_hop", scene="h/4")
-        close = [row for row in close if row["distance"] <= CLOSE]
+        close = [row for row in close if row["distance"] <= FIT_DISTANCE]
         if close:
             x, value, error = _units(close)
             slope = np.sum((value - c) * x / error**2) / np.sum(x**2 / error**2)
-            axes.plot([0, END], [c, c + slope * END], color=GREY, lw=0.8, zorder=1)
-    axes.set(xlim=(0, END), ylim=(0.6, 1.6), xlabel=r"sixth root of the distance, $\delta^{1/6}$")
+            axes.plot([0, X_END], [c, c + slope * X_END], color=GREY, lw=0.8, zorder=1)
+    axes.set(xlim=(0, X_END), ylim=(0.6, 1.6), xlabel=r"sixth root of the distance, $\delta^{1/6}$")
     axes.set_ylabel(r"$(1-\kappa)\,A/\sigma^{2/3}\varepsilon^{1/3}$")
     above = axes.secondary_xaxis("top")
-    above.set_xticks([2 ** (-n / 6) for n in NAMED], [f"$2^{{-{n}}}$" for n in NAMED])
+    above.set_xticks([2 ** (-n / 6) for n in HALVINGS], [f"$2^{{-{n}}}$" for n in HALVINGS])
     axes.tick_params(which="both", top=False)
     axes.set_title("(a)   at $\\delta=$", loc="left", pad=4)
     axes.legend(loc="lower right")

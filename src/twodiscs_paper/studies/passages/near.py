@@ -40,7 +40,7 @@ MOST_HOPS, FEWEST_HOPS = 2**17, 2**11
 
 #: {rough: (factor, power)}: about factor/distance^power wall and disc events belong to a hop. In a
 #: neck of the relative length √distance, smooth discs fly and rough discs diffuse.
-MET = {False: (2, 0.5), True: (24, 1.0)}
+EVENTS_OF_HOP = {False: (2, 0.5), True: (24, 1.0)}
 
 #: On a ring, correlations of hops are summed up for ``ROUNDS`` times the time that a disc takes
 #: around it. Displacements take twice that time, or two mean times between hops if these are
@@ -85,7 +85,7 @@ def affordable_blocks(events, price, fewest=FEWEST_HOPS):
 
 def blocks_for(scene, distance, time, events):
     """Return how many blocks of hops take about ``events``, if hops are followed for ``time``."""
-    factor, power = MET[scene.moment_of_inertia is not None]
+    factor, power = EVENTS_OF_HOP[scene.moment_of_inertia is not None]
     price = time * exact.event_rate(scene) + factor / distance**power
     return affordable_blocks(events, price)
 

@@ -192,7 +192,7 @@ class BrownianTable(Table):
 INERTIAS, OTHERS = [0.1, 0.25, 0.5, 1.0], [0.5]
 
 #: The radii over the height of the box at which discs of a long single file cannot pass.
-BLOCKED = (0.28, 0.27, 0.3)
+BLOCKED_RADII = (0.28, 0.27, 0.3)
 
 
 def _parts(configuration):
@@ -210,7 +210,7 @@ def _parts(configuration):
         if first and scene.box.fits(scene.box.height / 4):
             own_parts = ("on_ring", "with_friction")
             parts |= {part: {"part": part} | own for part in own_parts}
-        blocked = [part * scene.box.height for part in BLOCKED]
+        blocked = [part * scene.box.height for part in BLOCKED_RADII]
         if first and all(scene.box.fits(radius) for radius in blocked):
             alone = {"name": scene.name, "box": scene.box.parameters(), "blocked": blocked} | seed
             parts["in_long_file"] = {"part": "in_long_file"} | alone

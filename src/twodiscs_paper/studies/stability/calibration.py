@@ -98,10 +98,10 @@ SCENES = {
 
 #: Scenes of more discs have calls of the least size, and half of the seeds. Scenes of still more
 #: have one call, with the budget that help(simulate) names for them, or that its warning names.
-MANY, MORE = 8, 20
+LEAST_CALLS, ONE_CALL = 8, 20
 
 #: The least size that the face accepts, the default one, a long one, and one that an error ends.
-SIZES = {
+CALL_SIZES = {
     "simulate": {
         "least": {"budget": 1}, "usual": {"error": 1e-2}, "long": {"error": 3e-3},
         "small": {"error": 0.5, "budget": 1e6}, "dense": {"error": 0.5, "budget": 2e7},
@@ -118,10 +118,10 @@ SIZES = {
 }  # fmt: skip
 
 #: The most wall and disc events of a call.
-MOST_EVENTS = 3e7
+MOST_CALL_EVENTS = 3e7
 
 #: Times of observed averages, over the side of the box along x.
-TIMES = (0.5, 2.0)
+TEST_TIMES = (0.5, 2.0)
 
 
 # Calls of the face --------------------------------------------------------------------------------
@@ -139,13 +139,13 @@ def _measured(result):
 
 def simulated(scene, **settings):
     """Yield the values of ``simulate``, of ratios of its mean times, and of ``pressure``."""
-    result = td.simulate(scene, **{"error": 1e-2, "budget": MOST_EVENTS} | settings)
+    result = td.simulate(scene, **{"error": 1e-2, "budget": MOST_CALL_EVENTS} | settings)
     yield from _measured(result)
     for first, other in pairwise(one for one in result.values() if one.stderr and one.exact):
         ratio, exact = first.u / other.u, first.exact / other.exact
         yield "ratio of times", ratio.nominal_value, ratio.std_dev, exact, "ratio"
     # Without walls a pressure has the scores of the time: one scene of more discs is enough.
-    if not scene.field and scene.radius_ratio == 1 and (scene.walled or scene.discs <= MORE):
+    if not scene.field and scene.radius_ratio == 1 and (scene.walled or scene.discs <= ONE_CALL):
         for name, one in td.pressure(result).items():
             yield name, one.value, one.stderr, one.exact, "pressure"
 
@@ -164,7 +164,7 @@ def intervals(scene, **settings):
     if event_rate(scene) is None:  # the work of an interval is not known
         return
     for hop in HOPS:
-        if scene.is_possible(hop) and events_per_interval(scene, hop) * 2**17 < MOST_EVENTS:
+        if scene.is_possible(hop) and events_per_interval(scene, hop) * 2**17 < MOST_CALL_EVENTS:
             result = td.intervals(scene, hop, **settings)
             for name, one in {"mean": result.mean, "density at 0": result.at_zero}.items():
                 exact = one.exact if name == "mean" else None  # a parabola has a bias
@@ -188,7 +188,7 @@ def transmitted(scene, **settings):
 def averages(call, scene, **settings):
     """Yield averages of ``observe``, of a square of a coordinate, or of ``diffusion``."""
     squares = [lambda start, now: now["x1"] ** 2] if call is td.observe else []
-    found = call(scene, *squares, [time * scene.width for time in TIMES], **settings)
+    found = call(scene, *squares, [time * scene.width for time in TEST_TIMES], **settings)
     for k, (means, errors) in enumerate(zip(found.mean, found.stderr, strict=True)):
         for c, (mean, error) in enumerate(zip(np.ravel(means), np.ravel(errors), strict=True)):
             yield f"average {c} at time {k}", float(mean), float(error), None, "average"
@@ -229,7 +229,7 @@ def priced(scene, seed):
 
 
 #: {name of a call: its values}
-CALLS = {
+STAGE_CALLS = {
     "simulate": simulated, "sample": sampled, "intervals": intervals, "transmission": transmitted,
     "observe": partial(averages, td.observe), "diffusion": partial(averages, td.diffusion),
     "cost": priced,
@@ -239,16 +239,16 @@ CALLS = {
 # Studies ------------------------------------------------------------------------------------------
 
 #: The columns that tell rows of a study apart.
-NAMES = (
+TABLE_NAMES = (
     "quantity", "method", "event", "form", "parameter", "program", "discs", "radius", "distance",
     "moment_of_inertia", "friction", "step", "room", "neck", "time", "duration", "first", "last",
 )  # fmt: skip
 
 #: The quantities whose reference, if it has no error, is their exact value.
-EXACT = {"mean", "density_at_zero", "slope", "single_file", "crossing_rate"}
+EXACT_QUANTITIES = {"mean", "density_at_zero", "slope", "single_file", "crossing_rate"}
 
 #: Files of few discs, as in the long run: times are in units of h over the thermal speed.
-FILES = {
+FILE_CASES = {
     "files": [{"discs": n, "halvings": 3, "replicas": 64} for n in (4, 16)], "name": "files",
     "width": 1.5, "height": 1.0, "step": 4.0, "records": 128, "lags": [4, 8], "sums": [2.0, 4.0],
 }  # fmt: skip
@@ -272,9 +272,9 @@ def table_values(make, seed):
         if not error or row.get("seed"):  # an exponent from one seed is that of all seeds
             continue
         known = row.get("curve", row.get("exact"))
-        if row["quantity"] in EXACT and not row.get("reference_stderr"):
+        if row["quantity"] in EXACT_QUANTITIES and not row.get("reference_stderr"):
             known = row.get("reference")
-        cells = (row.get(name) for name in NAMES)
+        cells = (row.get(name) for name in TABLE_NAMES)
         name = " ".join(f"{c:.4g}" if isinstance(c, float) else str(c) for c in cells if c)
         yield name, value, error, known, "study"
 
@@ -317,8 +317,8 @@ def passage_rows_of_effects(seed):
 
 def file_rows(seed):
     """Yield rows of passages.csv of files: hops, κ, D, displacements and F."""
-    yield from long_files.long_files(**FILES, seeds=[seed])
-    open_radius, friction = near.radius_at(0.25, 3), in_long_file.FRICTION
+    yield from long_files.long_files(**FILE_CASES, seeds=[seed])
+    open_radius, friction = near.radius_at(0.25, 3), in_long_file.FILE_FRICTION
     for radius, frictions in ((0.28, [friction]), (open_radius, [None, friction])):
         yield from in_long_file.one_long_file("", BOX, radius, frictions, seed)
 
@@ -344,7 +344,7 @@ def lyapunov_rows(seed):
 def power_rows(seed):
     """Yield the powers of the time with which errors fall, of two methods of accuracy_cost.csv."""
     for method in accuracy_cost.methods(np.uint64(seed)):
-        if method.name in ("lockstep", "rejection") and method.scene == accuracy_cost.EASY:
+        if method.name in ("lockstep", "rejection") and method.scene == accuracy_cost.EASY_SCENE:
             one = next(accuracy_cost.error_rows(method, math.inf, 256))
             yield one | {"estimate": one["slope"], "stderr": one["slope_stderr"], "exact": -0.5}
 
@@ -358,7 +358,7 @@ def rate_rows(seed):
 
 
 #: {(study, kind of its scenes): function of a seed that returns rows of its table}.
-STUDIES = {
+STUDY_CASES = {
     ("tails", "plain discs"): partial(tails.rows, BOX, 2, 4000),
     ("distributions", "plain discs"): interval_rows,
     ("thresholds", "plain discs"): threshold_rows,
@@ -388,23 +388,23 @@ def kind(case):
 
 def _sizes(scene):
     """Return the names of the sizes of calls of a ``Scene``."""
-    if scene.discs > MORE:
+    if scene.discs > ONE_CALL:
         packing = scene.discs * math.pi * scene.radius**2 / (scene.width * scene.height)
         return ("dense",) if packing > 0.65 else ("small",) if scene.walled else ("small", "torus")
-    return ("least",) if scene.discs > MANY else ("least", "usual", "long", "error")
+    return ("least",) if scene.discs > LEAST_CALLS else ("least", "usual", "long", "error")
 
 
 def runs(seeds):
     """Yield (case, call, size, number of seeds, function of a ``seed`` that yields values)."""
     for case, parameters in SCENES.items():
         scene = td.Scene(**parameters)
-        for call, sizes in SIZES.items():
+        for call, sizes in CALL_SIZES.items():
             for size, settings in sizes.items():
                 if size in _sizes(scene):
-                    half = MANY < scene.discs <= MORE
+                    half = LEAST_CALLS < scene.discs <= ONE_CALL
                     number = seeds // (4 if size == "long" else 2 if half else 1)
-                    yield case, call, size, number, partial(CALLS[call], scene, **settings)
-    for (study, case), make in STUDIES.items():
+                    yield case, call, size, number, partial(STAGE_CALLS[call], scene, **settings)
+    for (study, case), make in STUDY_CASES.items():
         yield case, study, "study", seeds, partial(table_values, make)
 
 

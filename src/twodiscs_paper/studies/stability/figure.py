@@ -13,10 +13,10 @@ WIDTH, HEIGHT = 7.0, 2.0
 
 BOUND = {"color": GREY, "lw": 0.6, "ls": (0, (4, 2)), "zorder": 0}
 #: Errors that are exactly zero are drawn here.
-NOTHING = 1e-17
+ZERO_ERROR = 1e-17
 
 #: Residuals are counted up to this size, which no test passes.
-LARGEST_Z = 5
+SHOWN_Z = 5
 
 
 def draw(box, tables):
@@ -66,11 +66,11 @@ def _errors(axes, rows, high):
     """Draw relative errors over distances, with their bound."""
     for method, quantity, colour, marker, name in LINES:
         x, y = _worst(rows, method, quantity)
-        y = [max(value, NOTHING) for value in y]
+        y = [max(value, ZERO_ERROR) for value in y]
         axes.plot(x, y, label=name, lw=0.7, **panels.open_symbol(colour, marker, 0.8))
     for row in select(rows, method="stable")[:1]:
         axes.axhline(row["high"], **BOUND)
-    _logarithmic(axes, (5e-15, 0.3), (NOTHING, high))
+    _logarithmic(axes, (5e-15, 0.3), (ZERO_ERROR, high))
     axes.set_ylabel("relative error")
 
 
@@ -105,7 +105,7 @@ def _shares(axes, rows):
 
 def _scores(axes, estimates, extremes):
     """Draw how many residuals are how large, beside the normal law of as many of them."""
-    edges = np.linspace(-LARGEST_Z, LARGEST_Z, 2 * LARGEST_Z + 1)
+    edges = np.linspace(-SHOWN_Z, SHOWN_Z, 2 * SHOWN_Z + 1)
     groups = {
         "volume and areas": [row["z"] for row in estimates if row["status"] == "sampled"],
         "extreme scenes": [row["z"] for row in extremes if row["z"] is not None],

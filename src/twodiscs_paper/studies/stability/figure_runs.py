@@ -20,10 +20,10 @@ from twodiscs_paper.studies.stability.figure import BOUND, HEIGHT, WIDTH
 from twodiscs_paper.study import select
 
 #: The symbol of times by the formula of textbooks; the look of the sum rule of virials.
-TEXTBOOK, VIRIAL = {"color": VERMILLION, "marker": "x", "markersize": 3.4}, (GREY, "o")
+TEXTBOOK, VIRIAL_LOOK = {"color": VERMILLION, "marker": "x", "markersize": 3.4}, (GREY, "o")
 
 #: Inches: the height of the lowest panel. Its legend stands above.
-LOWEST = 2.6
+LOWEST_HEIGHT = 2.6
 LEGEND_PLACE = {
     "loc": "lower right", "bbox_to_anchor": (1, 1.01), "handletextpad": 0.1, "columnspacing": 0.8,
     "borderaxespad": 0.0,
@@ -36,8 +36,8 @@ WORST = {"energy_error": "$|E-1/2|$", "smallest_gap": "overlap", "excess": "beyo
 def draw(box, tables):
     """Draw the rows of stability.csv on dynamics, for the ``box`` of the first scene."""
     rows = tables["stability"]
-    figure = new_figure(2 * HEIGHT + LOWEST, WIDTH, layout="constrained")
-    upper, middle, lower = figure.subfigures(3, height_ratios=(HEIGHT, HEIGHT, LOWEST))
+    figure = new_figure(2 * HEIGHT + LOWEST_HEIGHT, WIDTH, layout="constrained")
+    upper, middle, lower = figure.subfigures(3, height_ratios=(HEIGHT, HEIGHT, LOWEST_HEIGHT))
     axes = *upper.subplots(1, 2), middle.subplots(), lower.subplots()
     parts = {"dynamics": _runs, "times": _times, "reversal": _reversal, "extremes": _extremes}
     for one, letter, (part, draw_part) in zip(axes, "abcd", parts.items(), strict=True):
@@ -154,7 +154,7 @@ def _extremes(axes, rows):
     """Draw the residuals of the mean times in extreme scenes, a line for each scene."""
     cases = [*dict.fromkeys(row["case"] for row in rows)]
     rule_lines(axes, cases)
-    for event, look in (EVENT_LOOKS | {"virial": VIRIAL}).items():
+    for event, look in (EVENT_LOOKS | {"virial": VIRIAL_LOOK}).items():
         quantities = event, f"{event}_time"
         own = [r for r in rows if r["quantity"] in quantities and r["z"] is not None]
         x, y = [row["z"] for row in own], [cases.index(row["case"]) for row in own]

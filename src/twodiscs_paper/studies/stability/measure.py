@@ -66,18 +66,18 @@ STUCK = 0.01
 
 #: The number of reversed trajectories, and the error of return up to which they retrace their path:
 #: half of the digits are then lost.
-REVERSED, RETRACED = 4000, 2.0**-26
+REVERSED_PATHS, RETURN_ERROR = 4000, 2.0**-26
 
-#: Lengths of reversed paths over the predicted one. From ``FITTED`` to 1 the error of return is far
-#: above a rounding and far below the size of the box, and grows like an exponential.
-SHARES, FITTED = tuple(i / 10 for i in range(1, 13)), 0.4
+#: Lengths of reversed paths over the predicted one. From ``FIT_SHARE`` to 1 the error of return is
+#: far above a rounding and far below the size of the box, and grows like an exponential.
+SHARES, FIT_SHARE = tuple(i / 10 for i in range(1, 13)), 0.4
 
 #: The initial error may be five binary digits larger or smaller than one rounding.
 ROUNDINGS = 2.0**5
 
 #: Size of the separation whose growth is measured: its square is a rounding. Events before its
 #: growth is measured, and events of a pilot measurement, which sets the length of the paths.
-SEPARATION, FORGOTTEN, PILOT_EVENTS = 1e-8, 100, 200
+SEPARATION, FORGOTTEN_EVENTS, PILOT_EVENTS = 1e-8, 100, 200
 
 
 def judged(start, quantity, value, low=None, high=None, z=None, **cells):
@@ -450,7 +450,7 @@ def dynamics_rows(box, seed, ordinary, hard):
 
 # Extreme scenes ---------------------------------------------------------------------------------
 
-PAPER = Scene(1.5, 1.0, 0.2)
+PAPER_SCENE = Scene(1.5, 1.0, 0.2)
 
 
 def _hardly_fitting(width, height, distance, discs=2, **effects):
@@ -463,18 +463,18 @@ def _hardly_fitting(width, height, distance, discs=2, **effects):
 EXTREMES = {
     "1e6 by 1e-6": Scene(1e6, 1e-6, 2e-7),
     "1e-6 by 1e6": Scene(1e-6, 1e6, 2e-7),
-    "mass ratio 1e3": replace(PAPER, radius_ratio=0.5, mass_ratio=1e3),
-    "mass ratio 1e-3": replace(PAPER, radius_ratio=0.5, mass_ratio=1e-3),
-    "radius ratio 1e3": replace(PAPER, radius=2e-4, radius_ratio=1e3, mass_ratio=2.0),
-    "radius ratio 1e-3": replace(PAPER, radius_ratio=1e-3, mass_ratio=2.0),
-    "inertia 1e-3": replace(PAPER, moment_of_inertia=1e-3),
-    "inertia 1": replace(PAPER, moment_of_inertia=1.0),
-    "friction 1e-6": replace(PAPER, friction=1e-6),
-    "friction 1e4": replace(PAPER, friction=1e4),
-    "field 1e-9": replace(PAPER, field=1e-9),
-    "field 5": replace(PAPER, field=5.0),
-    "depth 1e6": replace(PAPER, depth=1e6),
-    "depth 2r(1 + 1e-4)": replace(PAPER, depth=0.4 * (1 + 1e-4)),
+    "mass ratio 1e3": replace(PAPER_SCENE, radius_ratio=0.5, mass_ratio=1e3),
+    "mass ratio 1e-3": replace(PAPER_SCENE, radius_ratio=0.5, mass_ratio=1e-3),
+    "radius ratio 1e3": replace(PAPER_SCENE, radius=2e-4, radius_ratio=1e3, mass_ratio=2.0),
+    "radius ratio 1e-3": replace(PAPER_SCENE, radius_ratio=1e-3, mass_ratio=2.0),
+    "inertia 1e-3": replace(PAPER_SCENE, moment_of_inertia=1e-3),
+    "inertia 1": replace(PAPER_SCENE, moment_of_inertia=1.0),
+    "friction 1e-6": replace(PAPER_SCENE, friction=1e-6),
+    "friction 1e4": replace(PAPER_SCENE, friction=1e4),
+    "field 1e-9": replace(PAPER_SCENE, field=1e-9),
+    "field 5": replace(PAPER_SCENE, field=5.0),
+    "depth 1e6": replace(PAPER_SCENE, depth=1e6),
+    "depth 2r(1 + 1e-4)": replace(PAPER_SCENE, depth=0.4 * (1 + 1e-4)),
     "torus, hardly fits": _hardly_fitting(1.5, 1.0, 1e-2, periodic="xy"),
     "3 discs, hardly fit": _hardly_fitting(1.5, 1.0, 1e-6, discs=3),
     "16 discs, hardly fit": _hardly_fitting(4.0, 4.0, 2e-2, discs=16),
@@ -597,41 +597,41 @@ def reversal_rows(box, seed):
     """Yield how many events reversed velocities retrace, and how many the exponent predicts.
 
     Errors begin at a rounding, 2⁻⁵³, and grow like exp(λn) with the number n of events, where λ is
-    the exponent per event. They reach ``RETRACED`` after ln(``RETRACED`` · 2⁵³)/λ events. The
-    measured number passes if it corresponds to an initial error between 2⁻⁵³/``ROUNDINGS`` and
+    the exponent per event. They reach ``RETURN_ERROR`` after ln(``RETURN_ERROR`` · 2⁵³)/λ events.
+    The measured number passes if it corresponds to an initial error between 2⁻⁵³/``ROUNDINGS`` and
     ``ROUNDINGS`` · 2⁻⁵³. In a long box the upper bound is multiplied by the ratio of its sides.
-    Errors of return are geometric means over ``REVERSED`` independent trajectories. The exponent
-    comes from the growth of a separation over the same events of such trajectories. Trajectories
-    from the invariant measure may remember their start for long, so their first events are no fair
-    sample of all events.
+    Errors of return are geometric means over ``REVERSED_PATHS`` independent trajectories. The
+    exponent comes from the growth of a separation over the same events of such trajectories.
+    Trajectories from the invariant measure may remember their start for long, so their first events
+    are no fair sample of all events.
     """
-    digits = math.log(RETRACED / 2.0**-53)
+    digits = math.log(RETURN_ERROR / 2.0**-53)
     long = max(box.sides) / min(box.sides)
     for radius in ordinary_radii(box):
         scene = box.scene(radius)
         law = two_disc_law(scene)
 
         def exponent(forgotten, measured, scene=scene, law=law):
-            starts = states(scene, REVERSED, seed)
+            starts = states(scene, REVERSED_PATHS, seed)
             factors = growth(starts, forgotten, measured, SEPARATION, law)
             return sample_mean(np.log(factors[np.isfinite(factors)]) / measured)
 
         there, back = (radius_cells("reversal", case, radius) for case in ("separation", "return"))
-        expected = exponent(FORGOTTEN, PILOT_EVENTS).value
+        expected = exponent(FORGOTTEN_EVENTS, PILOT_EVENTS).value
         # The longest path to reverse; if a smaller exponent allows more, the row has no value.
         if expected < digits / 2000:
             yield judged(back, "events_retraced", None, status="long")
             continue
         expected = digits / expected
-        first = round(FITTED * expected)
+        first = round(FIT_SHARE * expected)
         rate = exponent(first, round(expected) - first)
         predicted = digits / rate.value
-        yield judged(there, "exponent", rate.value, stderr=rate.stderr, count=REVERSED)
+        yield judged(there, "exponent", rate.value, stderr=rate.stderr, count=REVERSED_PATHS)
 
         log_errors = {}  # the logarithm of the error of return by the number of events
         numbers = sorted({max(1, round(share * expected)) for share in SHARES})
         for block, number in enumerate(numbers, start=1):
-            starts = states(scene, REVERSED, seed, block)
+            starts = states(scene, REVERSED_PATHS, seed, block)
             # A way back without any rounding is possible; it counts as an eighth of a rounding.
             off = np.maximum(return_errors(starts, number, law), 2.0**-56)
             log_errors[number] = log = sample_mean(np.log(off))
@@ -643,16 +643,16 @@ def reversal_rows(box, seed):
         ]
         slope = LinearFit(*zip(*fitted, strict=True)).slope
         z = (slope.value - rate.value) / math.hypot(slope.stderr, rate.stderr)
-        found = {"exact": rate.value, "stderr": slope.stderr, "count": REVERSED}
+        found = {"exact": rate.value, "stderr": slope.stderr, "count": REVERSED_PATHS}
         yield judged(back, "exponent", slope.value, z=z, **found)
         logs = [log.value for log in log_errors.values()]
         yield judged(
             back,
             "events_retraced",
-            float(np.interp(math.log(RETRACED), logs, numbers)),
+            float(np.interp(math.log(RETURN_ERROR), logs, numbers)),
             low=predicted - math.log(ROUNDINGS * long) / rate.value,
             high=predicted + math.log(ROUNDINGS) / rate.value,
-            count=REVERSED,
+            count=REVERSED_PATHS,
             exact=predicted,
         )
 

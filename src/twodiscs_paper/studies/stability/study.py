@@ -78,7 +78,7 @@ class CalibrationTable(Table):
         ),
         "quantity": TEXT(
             "the quantity with an error; of a study the cells that tell its rows apart, the first "
-            "of ``calibration.NAMES`` first"
+            "of ``calibration.TABLE_NAMES`` first"
         ),
         "test": TEXT("its test or status of the last seed"),
         "seeds": COUNT("seeds: fewer for long calls and for more than eight discs"),

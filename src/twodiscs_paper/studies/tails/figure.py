@@ -11,7 +11,7 @@ from twodiscs_paper.study import select
 CASE_LOOKS = ((BLUE, "o"), (VERMILLION, "s"), (GREEN, "^"))
 
 #: Counts with a larger relative error than this are not drawn.
-LARGEST_ERROR = 0.3
+SHOWN_TAIL_ERROR = 0.3
 
 
 def draw(box, tables):
@@ -49,7 +49,7 @@ def _name(row):
 
 def _values(rows):
     """Return the rows with a small enough error, and arrays of their t/τ, estimate and error."""
-    kept = [r for r in rows if r["stderr"] and r["stderr"] < LARGEST_ERROR * r["estimate"]]
+    kept = [r for r in rows if r["stderr"] and r["stderr"] < SHOWN_TAIL_ERROR * r["estimate"]]
     time, mean, estimate, error = columns(kept, "time", "exact_mean", "estimate", "stderr")
     return kept, time / mean, estimate, error
 

@@ -49,20 +49,17 @@ from twodiscs_paper.studies.single import advance_to, tail_constant
 from twodiscs_paper.study import row, select
 
 #: Independent blocks behind an error bar, which then has a relative error of about 7 %.
-BLOCKS = 100
+TAIL_BLOCKS = 100
 
 #: Times in the table, in units of the mean: for weighted starts and for plain counting.
 WEIGHTED = (1, 2, 3, 5, 7, 10, 14, 20, 30, 50, 70, 100, 140, 200, 300, 500, 700, 1000)
 COUNTED = (0.5, 1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9, 10)
 
 #: The window of the fitted rate, in units of the mean.
-WINDOW = (3, 9)
+FIT_WINDOW = (3, 9)
 
 #: The most wall and disc events in a mean time: intervals are followed for a thousand mean times.
-RAREST = 100
-
-#: A ratio is well measured if its relative error is below this one.
-WELL_MEASURED = 0.2
+MEAN_TIME_EVENTS = 100
 
 
 @compiled
@@ -174,7 +171,7 @@ def _oriented(scene, event):
     return scene, event in HOPS
 
 
-def tail(scene, event, times, samples, seed, blocks=BLOCKS):
+def tail(scene, event, times, samples, seed, blocks=TAIL_BLOCKS):
     """Return an ``Estimate`` of P(T > t) for each of the ascending ``times``, without bias.
 
     T is the interval between hops of one kind or between disc collisions of the ``Scene``.
@@ -246,14 +243,14 @@ def cases(box):
     They are disc collisions at 0.24 times the shorter side, and hops at 0.1 and 0.3 times the
     shorter side. Beyond a quarter of this side no drift avoids the hops that are still open; if no
     hop is open, the last case is missing. In very long boxes, events that come less than once in
-    ``RAREST`` events are left out.
+    ``MEAN_TIME_EVENTS`` events are left out.
     """
     hop, short = "vertical_hop" if box.width >= box.height else "horizontal_hop", box.shortest
 
     def comes(event, radius):
         scene = box.scene(radius)
         return scene.is_possible(event) and (
-            exact.event_rate(scene) * exact.mean_times(scene)[event] < RAREST
+            exact.event_rate(scene) * exact.mean_times(scene)[event] < MEAN_TIME_EVENTS
         )
 
     candidates = [("disc_collision", 0.24 * short), (hop, 0.1 * short), (hop, 0.3 * short)]
@@ -294,7 +291,7 @@ def rows(box, samples, replicas, seed):
             estimates = tail(scene, event, times, samples, seed + 2 * i + 1)
             found += survival_rows("weighted", start, times, estimates, constant)
         else:
-            ends = [time * mean for time in WINDOW]
+            ends = [time * mean for time in FIT_WINDOW]
             counted = survivals(scene, event, ends, replicas, seed + 2 * i)
             if not counted[:, 1].any():
                 continue
@@ -340,7 +337,7 @@ def last_ratios(rows):
         one["event"]: one
         for one in rows
         if one["method"] == "weighted" and one["stderr"]
-        if one["stderr"] < WELL_MEASURED * one["estimate"]
+        if one["stderr"] < 0.2 * one["estimate"]
     }
     for event, one in last.items():
         ratio, error = one["estimate"] / one["law"], one["stderr"] / one["law"]

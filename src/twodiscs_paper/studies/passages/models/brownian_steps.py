@@ -35,10 +35,10 @@ from twodiscs.sampling.streams import exponential, open_stream, signed_uniform, 
 REFLECTED, KICKED, TOGETHER, CONFINED, SINGLY = range(5)
 
 #: Crossings in a block, which has a stream of random numbers.
-CROSSINGS = 2**6
+STEP_CROSSINGS = 2**6
 
 #: Clusters of more crossings than this are counted as the largest ones.
-LARGEST_CLUSTER = 2**14
+STEP_CLUSTER = 2**14
 
 #: Rejected steps that cross have lengths up to ``LONGEST_MOVE`` standard deviations: all but 2e-8.
 LONGEST_MOVE = 6.0
@@ -246,15 +246,15 @@ def cluster_sizes(kind, step, room, half, seed, first, stop):
     A cluster are the crossings between two visits to an end of the ring. A random crossing is
     followed forwards and backwards, in the blocks ``first`` … ``stop`` − 1.
     """
-    sizes, state, other = np.zeros(LARGEST_CLUSTER + 1, np.int64), np.zeros(8), np.zeros(8)
+    sizes, state, other = np.zeros(STEP_CLUSTER + 1, np.int64), np.zeros(8), np.zeros(8)
     breadth, tried, steps = 1.0 + room, 0, 0
     for block in range(first, stop):
         stream = open_stream(seed, block)
-        for _ in range(CROSSINGS):
+        for _ in range(STEP_CROSSINGS):
             tried += draw_crossing(state, other, kind, step, half, breadth, stream)
             size = 1 + int(state[7])
             later, more = follow(state, kind, step, half, breadth, stream)
             earlier, less = follow(other, kind, step, half, breadth, stream)
-            sizes[min(size + later + earlier, LARGEST_CLUSTER)] += 1
+            sizes[min(size + later + earlier, STEP_CLUSTER)] += 1
             steps += more + less
     return sizes, tried, steps

@@ -27,19 +27,19 @@ from twodiscs.sampling.streams import open_stream, uniform
 from twodiscs_paper.studies.estimates import sample_mean
 
 #: The separation below which invariants are kept; for half as much c is the same within 5e-3.
-ADIABATIC = 0.3
+KEPT_SEPARATION = 0.3
 
 #: Separations U of the turn are drawn uniformly up to ``UNIFORM_TURNS``, and with this probability
 #: from a density ∝ 1/U up to ``FARTHEST_TURN`` times that. A pair passes with a probability ∝ U⁻²
 #: there, so all that turn later would add less than 1e-4 to c.
 UNIFORM_TURNS, FAR_SHARE, FARTHEST_TURN = 1.5, 0.4, 2.0**10
 
-#: A pair on its way back is given up once an invariant is ``HOPELESS`` times the largest that
-#: passes, where one traversal of the room changes the room by less than the share ``SLOW``.
-HOPELESS, SLOW = 1.5, 0.05
+#: A pair on its way back is given up once an invariant is ``LOST_INVARIANT`` times the largest that
+#: passes, where one traversal of the room changes the room by less than the share ``ROOM_CHANGE``.
+LOST_INVARIANT, ROOM_CHANGE = 1.5, 0.05
 
 #: Pairs in a block, which has a stream of random numbers.
-PAIRS = 2**12
+LIMIT_PAIRS = 2**12
 
 
 @inlined
@@ -81,7 +81,7 @@ def fly(state, separation, rate, end, largest):
         else:
             state[event - 1], state[event + 1] = 0.0, -state[event + 1]
         invariant = math.sqrt(state[2] ** 2 + state[3] ** 2) * separation * separation / 2
-        if invariant > largest and separation**3 * abs(rate) < SLOW * invariant:
+        if invariant > largest and separation**3 * abs(rate) < ROOM_CHANGE * invariant:
             return False
 
 
@@ -94,7 +94,7 @@ def returns(seed, first, stop, near):
     means, state, room = np.zeros(stop - first), np.zeros(4), near * near / 2
     for block in range(first, stop):
         stream = open_stream(seed, block)
-        for _ in range(PAIRS):
+        for _ in range(LIMIT_PAIRS):
             # 1 − (relative speed)²/2 on the surface, weighted by the flux, and a direction.
             rest, cosine = uniform(stream) ** (2 / 3), uniform(stream)
             total = math.sqrt(2 * rest) * cosine
@@ -117,15 +117,15 @@ def returns(seed, first, stop, near):
                 state[3] = math.copysign(across * math.sin(angle) / room, uniform(stream) - 0.5)
                 fly(state, near, apart, turn, math.inf)
                 most = total / math.sqrt(2.0)
-                passes = fly(state, turn, -total, near, HOPELESS * most)
+                passes = fly(state, turn, -total, near, LOST_INVARIANT * most)
                 passes = passes and (state[2] ** 2 + state[3] ** 2) * room * room < most * most
             if passes:
-                means[block - first] += weight * (1 + total / apart) / PAIRS
+                means[block - first] += weight * (1 + total / apart) / LIMIT_PAIRS
     return means
 
 
-def amplitude(blocks, seed, near=ADIABATIC):
-    """Return c as an ``Estimate``, from ``blocks`` blocks of ``PAIRS`` pairs.
+def amplitude(blocks, seed, near=KEPT_SEPARATION):
+    """Return c as an ``Estimate``, from ``blocks`` blocks of ``LIMIT_PAIRS`` pairs.
 
     ``near`` is the separation, in units of (ε σ²)^(1/3), below which invariants are taken as kept;
     c is the limit for small ones.

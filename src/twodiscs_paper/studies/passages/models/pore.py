@@ -43,7 +43,7 @@ from twodiscs_paper.studies.passages.models.brownian_steps import normal_pair
 HOP, COLLISION, END, SIDE = range(4)
 
 #: Crossings in a block, which has a stream of random numbers; larger clusters count as the largest.
-CROSSINGS, LARGEST_CLUSTER = 2**6, 2**14
+PORE_CROSSINGS, PORE_CLUSTER = 2**6, 2**14
 
 NODE, REST, WEIGHT = np.array(gauss_legendre(16)).T
 
@@ -240,16 +240,16 @@ def cluster_sizes(pore, friction, far, seed, first, stop):
 
     Each random crossing is followed in both directions of time, until |u| is ``far``.
     """
-    sizes, counts = np.zeros(LARGEST_CLUSTER + 1, np.int64), np.zeros(4, np.int64)
+    sizes, counts = np.zeros(PORE_CLUSTER + 1, np.int64), np.zeros(4, np.int64)
     q, v = np.zeros((2, 3)), np.zeros((2, 3))
     for block in range(first, stop):
         stream = open_stream(seed, block)
-        for _ in range(CROSSINGS):
+        for _ in range(PORE_CROSSINGS):
             before = counts[HOP]
             draw_crossing(q, pore, stream)
             draw_velocities(v, True, stream)
             earlier, reversed_ = q.copy(), -v
             move(q, v, pore, math.inf, friction, far, counts, stream)
             move(earlier, reversed_, pore, math.inf, friction, far, counts, stream)
-            sizes[min(1 + counts[HOP] - before, LARGEST_CLUSTER)] += 1
+            sizes[min(1 + counts[HOP] - before, PORE_CLUSTER)] += 1
     return sizes, counts

@@ -13,7 +13,7 @@ from twodiscs_paper.study import row
 #: Long files: the number of discs, and of replicas. The rate of kicks, and the time between
 #: records, with the thermal speed and h as units. The number of records, and the lags in records.
 LONG_FILE, LONG_REPLICAS = 128, 32
-FRICTION, STEP, RECORDS, LAGS = 4.0, 0.5, 128, (1, 2, 4, 8, 16, 32, 64)
+FILE_FRICTION, FILE_STEP, RECORDS, LAGS = 4.0, 0.5, 128, (1, 2, 4, 8, 16, 32, 64)
 
 #: The lags between which displacements give F, and those between which they give D.
 SINGLE, HOPPED = (16, 64), (16, 32)
@@ -45,10 +45,10 @@ def one_long_file(name, box, radius, frictions, seed, inertia=None, replicas=LON
         stream = hop_seed(scene, "horizontal_hop", name, seed, f"long file {kind} states")
 
         def make_row(quantity, method, found, lag=None, **more):
-            more["time"] = None if lag is None else lag * STEP * unit
+            more["time"] = None if lag is None else lag * FILE_STEP * unit
             return row(start, found, quantity=quantity, method=method, replicas=found.n, **more)
 
-        places, hops = file.recorded(scene, STEP * unit, RECORDS, replicas, stream, rate)
+        places, hops = file.recorded(scene, FILE_STEP * unit, RECORDS, replicas, stream, rate)
         numbers = file.order(places, scene.width)
         ordered = file.ordered_places(places, numbers, scene.width)
         moved, whole_file = (file.squares(x, LAGS) / per_disc**2 for x in (places, ordered))
@@ -60,7 +60,7 @@ def one_long_file(name, box, radius, frictions, seed, inertia=None, replicas=LON
         def law(lag, rate=rate, variance=variance and variance.value):
             if inertia or (rate is None and variance):
                 return None
-            return file.law(scene, rate, lag * STEP * unit, variance)
+            return file.law(scene, rate, lag * FILE_STEP * unit, variance)
 
         for k, lag in enumerate(LAGS):
             yield make_row("displacement", "states", sample_mean(moved[k]), lag)
@@ -69,7 +69,7 @@ def one_long_file(name, box, radius, frictions, seed, inertia=None, replicas=LON
             yield make_row("file", "states", sample_mean(whole_file[k]), lag, reference=law(lag))
         if rate is not None:
             early, late = (LAGS.index(lag) for lag in SINGLE)
-            root = math.sqrt(SINGLE[0] * STEP * unit)
+            root = math.sqrt(SINGLE[0] * FILE_STEP * unit)
             found = sample_mean((whole_file[late] - whole_file[early]) / root)
             due = (law(SINGLE[1]) - law(SINGLE[0])) / root
             # F is ∝ √S.
@@ -77,14 +77,14 @@ def one_long_file(name, box, radius, frictions, seed, inertia=None, replicas=LON
             cells = compared(found, Estimate(due, error, 1), found.n)
             yield make_row("single_file", "states", found, SINGLE[1], **cells)
         if is_open:
-            per_time = hops / (RECORDS * STEP * unit)
+            per_time = hops / (RECORDS * FILE_STEP * unit)
             yield make_row("rate", "states", sample_mean(per_time))
             early, late = (LAGS.index(lag) for lag in HOPPED)
-            walked = (steps[late] - steps[early]) / ((HOPPED[1] - HOPPED[0]) * STEP * unit)
+            walked = (steps[late] - steps[early]) / ((HOPPED[1] - HOPPED[0]) * FILE_STEP * unit)
             yield make_row("diffusion", "order", file.quotient(walked, per_time), HOPPED[1])
 
 
 def in_long_file(name, box, blocked, seed):
     """Yield the rows of long files with friction that are blocked at the radii ``blocked``."""
     for radius in blocked:
-        yield from one_long_file(name, box, radius, [FRICTION], seed)
+        yield from one_long_file(name, box, radius, [FILE_FRICTION], seed)

@@ -22,22 +22,22 @@ from twodiscs_paper.studies.passages.parts.with_friction import LONG_NECK, local
 from twodiscs_paper.study import row
 
 #: The radius of the pore, and its lengths for rates and for κ: ends have a share √(εσ)/length in κ.
-RADIUS, SHORT, LONG = 1.0, 3.0, 32.0
+R_PORE, SHORT_PORE, LONG_PORE = 1.0, 3.0, 32.0
 
 #: Radii of spheres for rates, the time and the number of independent initial states.
-COUNTED, TIME, REPLICAS = (0.2, 0.4, 0.48), 16.0, 2**17
+COUNTED_RADII, RUN_TIME, PORE_REPLICAS = (0.2, 0.4, 0.48), 16.0, 2**17
 
 #: {rate of kicks: halvings of the distance}, and blocks of crossings for κ.
-KICKED, BLOCKS = {1.0: (8, 12, 16), 60.0: (6, 8)}, 2**8
+PORE_HALVINGS, PORE_BLOCKS = {1.0: (8, 12, 16), 60.0: (6, 8)}, 2**8
 
 #: κ x where the separation and the angle diffuse.
-DIFFUSIVE = 75 * math.pi**2 / 1024
+PORE_LIMIT = 75 * math.pi**2 / 1024
 
 
 def one_pore(length, sphere, friction, seed):
     """Return (its ``Pore``, the cells that its rows have in common, a seed of its streams)."""
-    model, limit = pore.Pore.of(length, RADIUS, sphere), RADIUS / 2
-    cells = {"scene": "pore", "width": length, "height": 2 * RADIUS, "event": "horizontal_hop"}
+    model, limit = pore.Pore.of(length, R_PORE, sphere), R_PORE / 2
+    cells = {"scene": "pore", "width": length, "height": 2 * R_PORE, "event": "horizontal_hop"}
     cells |= {"discs": 2, "radius": sphere, "distance": 1 - sphere / limit}
     cells |= {"friction": friction or None, "exact_mean": 1 / float(pore.rates(model)[pore.HOP])}
     return model, cells, np.uint64(stream_seed(seed, f"pore {friction}", "passages", repr(sphere)))
@@ -45,20 +45,20 @@ def one_pore(length, sphere, friction, seed):
 
 def in_pore(seed):
     """Yield the rows of spheres in a pore: rates, κ, κ x of long necks and powers of τ/κ."""
-    for sphere in COUNTED:
-        model, cells, stream = one_pore(SHORT, sphere, 0.0, seed)
-        counts = pore.count_events(model, 0.0, TIME, stream, REPLICAS)
+    for sphere in COUNTED_RADII:
+        model, cells, stream = one_pore(SHORT_PORE, sphere, 0.0, seed)
+        counts = pore.count_events(model, 0.0, RUN_TIME, stream, PORE_REPLICAS)
         events = ("horizontal_hop", "disc_collision", "right_wall", "top_wall")
-        found = zip(events, pore.rates(model).tolist(), sample_mean(counts / TIME), strict=True)
+        found = zip(events, pore.rates(model).tolist(), sample_mean(counts / RUN_TIME), strict=True)
         for event, rate, one in found:
             own = {"event": event, "exact_mean": 1 / rate, "quantity": "rate", "method": "states"}
-            yield row(cells | own, one, time=TIME, replicas=one.n, **compared(one, rate))
-    for friction, halvings in KICKED.items():
+            yield row(cells | own, one, time=RUN_TIME, replicas=one.n, **compared(one, rate))
+    for friction, halvings in PORE_HALVINGS.items():
         measured = []
         for n in halvings:
-            model, cells, stream = one_pore(LONG, radius_at(RADIUS / 2, n), friction, seed)
+            model, cells, stream = one_pore(LONG_PORE, radius_at(R_PORE / 2, n), friction, seed)
             far = model.sigma
-            sizes, counts = pore.cluster_sizes(model, friction, far, stream, 0, BLOCKS)
+            sizes, counts = pore.cluster_sizes(model, friction, far, stream, 0, PORE_BLOCKS)
             kappa, hops = cluster_coefficient(sizes), {"replicas": int(sizes.sum())}
             x = friction * math.sqrt((2 * model.breadth - model.sigma) * model.sigma)
             own = {"method": "clusters", "events": int(counts[1:].sum())}
@@ -68,7 +68,7 @@ def in_pore(seed):
             yield row(cells | own | hops, time, quantity="passage_time")
             if x > LONG_NECK:
                 scaled = Estimate(kappa.value * x, kappa.stderr * x, kappa.n)
-                limit = {"quantity": "scaled_coefficient", "reference": DIFFUSIVE}
+                limit = {"quantity": "scaled_coefficient", "reference": PORE_LIMIT}
                 yield row(cells | {"method": "clusters"} | hops | limit, scaled)
             measured.append(((kappa, x), cells))
         for (before, _), (after, cells) in pairwise(measured):

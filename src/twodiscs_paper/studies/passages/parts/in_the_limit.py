@@ -31,7 +31,7 @@ def kicked_rows(scaled, counts):
     """Yield the rows of κ beside ``scaling_law``, and of the coefficient of x² in this law."""
     start, left = {"discs": 2, "method": "limit"}, []
     for x, pairs in zip(scaled, counts, strict=True):
-        kappa = cluster_coefficient(dense(pairs, kicked_neck.LARGEST_CLUSTER + 1))
+        kappa = cluster_coefficient(dense(pairs, kicked_neck.NECK_CLUSTER + 1))
         cells = {"quantity": "coefficient", "friction": x, "reference": scaling_law(x)}
         yield row(start | cells, kappa, replicas=kappa.n)
         inverse = 1 / (1 / kappa.value - 4 * x / 3)

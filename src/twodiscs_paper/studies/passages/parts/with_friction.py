@@ -19,7 +19,7 @@ from twodiscs_paper.studies.passages.near import NearThreshold, affordable_block
 from twodiscs_paper.study import row
 
 #: {rate of kicks: halvings of the distance}.
-KICKED = {
+NECK_HALVINGS = {
     10.0: (5, 6, 8, 10, 12, 14, 16), 40.0: range(6, 17, 2), 160.0: range(8, 17, 2),
     640.0: (8, 12),
 }  # fmt: skip
@@ -27,7 +27,7 @@ KICKED = {
 #: With kicks, the least time without a hop that ends a cluster, in ``box_time``. Then the work of
 #: an estimate over that of others, the price of a kick in events, the fewest hops, and the blocks
 #: of initial states for the rate of hops.
-PAUSE, WORK, KICK, FEWEST_KICKED, STRIPS = 12, 4, 4, 2**9, 16
+PAUSE, WORK, KICK_EVENTS, FEWEST_KICKED, STRIPS = 12, 4, 4, 2**9, 16
 
 #: Necks are long from this x on: a pair forgets its velocity several times within it.
 LONG_NECK = 5
@@ -48,7 +48,7 @@ def one_friction(name, box, friction, halvings, events, seed):
         scene = scene_at(box, "horizontal_hop", n, friction=friction)
         near = NearThreshold(name, scene, "horizontal_hop", n, seed)
         gap = cluster_pause(scene, near.hop)
-        price = 2 * gap * (exact.event_rate(scene) + KICK * friction)
+        price = 2 * gap * (exact.event_rate(scene) + KICK_EVENTS * friction)
         blocks = affordable_blocks(WORK * events, price, FEWEST_KICKED)
         found = cluster_sizes(scene, near.hop, gap, blocks, near.cluster_seed)
         kappa, rows = near.cluster_rows(*found, gap)
@@ -143,5 +143,5 @@ def row_scene(row):
 
 def with_friction(name, box, events, seed):
     """Yield the rows of the passages of two smooth discs with friction."""
-    for friction, halvings in KICKED.items():
+    for friction, halvings in NECK_HALVINGS.items():
         yield from one_friction(name, box, friction, halvings, events, seed)
