@@ -76,12 +76,12 @@ def plain_python(replicas=200):
     return sum(map(scalar.simulated_events, counts)), seconds
 
 
-QUANTITIES = ("volume", *(f"{event}_area" for event in EVENTS))
+SAMPLED_QUANTITIES = ("volume", *(f"{event}_area" for event in EVENTS))
 
 
 def sampling_engine(blocks=100):
     """Sample the volume and all shells with the compiled kernel."""
-    sampler = montecarlo.prism_sampler(SCENE, QUANTITIES, 0.02, 1)
+    sampler = montecarlo.prism_sampler(SCENE, SAMPLED_QUANTITIES, 0.02, 1)
     _, seconds = timed(lambda: sampler.count(0, blocks))
     return blocks * montecarlo.SAMPLES_PER_BLOCK, seconds
 

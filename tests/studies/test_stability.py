@@ -372,7 +372,7 @@ def test_table_and_figure_of_any_box(tmp_path, monkeypatch):
     for name in ("SHARE_PROPOSALS", "ESTIMATE_PROPOSALS"):
         monkeypatch.setattr(stability, name, montecarlo.PROPOSALS_PER_BLOCK)
     monkeypatch.setattr(stability, "REVERSED_PATHS", 200)
-    monkeypatch.setattr(stability, "WINDOW", 64)
+    monkeypatch.setattr(stability, "WINDOW_EVENTS", 64)
     one = partial(stability.extreme_rows, scenes={"ordinary": stability.PAPER_SCENE})
     monkeypatch.setattr(stability, "extreme_rows", one)
     box = td.Box(1e-6, 1e6)

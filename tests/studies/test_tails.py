@@ -151,7 +151,7 @@ def test_cases_of_other_boxes():
 
 def test_the_table_is_written(tmp_path, monkeypatch):
     """And depends on the seed alone."""
-    monkeypatch.setattr(tails, "WEIGHTED", (5, 50))
+    monkeypatch.setattr(tails, "WEIGHTED_TIMES", (5, 50))
     given = {"box": BOX, "samples": 5, "replicas": 2000}
     rows, again, other = (written(tmp_path, TailsTable, **given, seed=seed) for seed in (1, 1, 2))
     assert rows == again != other

@@ -12,9 +12,6 @@ from twodiscs_paper.errata.statements import GENERAL, LIMIT_STEP, LIMITS, REGIME
 from twodiscs_paper.reference import DIGITS, MpScene
 from twodiscs_paper.study import row
 
-#: The box of the source's figures, in which ratios are reported.
-WIDTH, HEIGHT = 1.5, 1.0
-
 
 def printed_ratio(statement, q):
     """Return printed over true, or None if the printed value is no real number."""
@@ -35,7 +32,8 @@ def reported_boxes(name):
     sides, limit, side = LIMITS[name]
     outlines = [MpScene.of(*box, 0) for box in sides]
     boxes = [box._replace(r=limit(box) + side * LIMIT_STEP) for box in outlines]
-    return boxes, float(limit(outlines[0])) if sides[0] == (WIDTH, HEIGHT) else None
+    # Ratios are reported in the box of the source's figures.
+    return boxes, float(limit(outlines[0])) if sides[0] == (1.5, 1.0) else None
 
 
 def finding(statement, name):

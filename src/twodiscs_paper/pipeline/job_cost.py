@@ -38,7 +38,7 @@ LIMIT_RATIO, LIMIT_MINUTES = 4.0, 10.0
 TRIED_RADII = 100
 
 #: Processor seconds of a pilot at one radius; the most sentences on accuracies not reached.
-PILOT_SECONDS, SENTENCES = 0.1, 8
+FORECAST_SECONDS, SENTENCES = 0.1, 8
 
 DAY = 86400.0
 
@@ -183,11 +183,11 @@ def forecast(scene, stage, radius):
     run = run_at(scene, stage, radius)
     in_shards = bool(shards(scene, stage, radius))
     if stage == "dynamics":
-        return forecast_dynamics(run, cost.pilots(run, PILOT_SECONDS), in_shards), run
+        return forecast_dynamics(run, cost.pilots(run, FORECAST_SECONDS), in_shards), run
     if stage == "monte_carlo":
-        return forecast_samples(run, PILOT_SECONDS), run
+        return forecast_samples(run, FORECAST_SECONDS), run
     one = run.components["all"]
-    each = cost.timed(one.work, PILOT_SECONDS)[-1]
+    each = cost.timed(one.work, FORECAST_SECONDS)[-1]
     return Forecast(each * one.planned, one.planned * one.block_events, {}), run
 
 

@@ -23,7 +23,7 @@ from twodiscs.figures.style import (
 from twodiscs_paper.study import select
 
 #: Inches: width of two columns, and the height.
-WIDTH, HEIGHT = 7.0, 4.3
+COST_WIDTH, COST_HEIGHT = 7.0, 4.3
 
 #: The ends of the axes: relative errors, and seconds.
 ERROR_RANGE, SECONDS_RANGE = (1.0, 1e-6), (1e-7, 1e6)
@@ -69,7 +69,7 @@ SAMPLE_CURVES = (
 SETTING_SYMBOLS = {"time_step": r"\Delta t", "shell": r"\varepsilon"}
 
 #: The lines of hard radii.
-DASHES = (0, (4, 2))
+HARD_DASHES = (0, (4, 2))
 
 
 def draw(box, tables):
@@ -78,7 +78,7 @@ def draw(box, tables):
     ``box`` is not used, because the tables have their own.
     """
     rows, kept = tables["accuracy_cost"], tables["kept"]
-    figure = new_figure(HEIGHT, WIDTH, layout="constrained")
+    figure = new_figure(COST_HEIGHT, COST_WIDTH, layout="constrained")
     radii = sorted({row["radius"] for row in kept})
     for axes, letter, series, title in zip(
         figure.subplots(1, 2, sharey=True), "ab", (TIME_CURVES, SAMPLE_CURVES),
@@ -117,7 +117,7 @@ def _draw_series(axes, kept, rows, one, radii):
     """Draw measured errors, full for the long run and open for this build, and c/error²."""
     full = panels.open_symbol(one.colour, one.marker) | {"markerfacecolor": one.colour}
     name = f"{one.name}, near $h/4$" if one.is_hard else one.name
-    axes.plot([], [], lw=0.8, ls=DASHES if one.is_hard else "-", label=name, **full)
+    axes.plot([], [], lw=0.8, ls=HARD_DASHES if one.is_hard else "-", label=name, **full)
     found = by_setting(kept, one, radii)
     for setting, own in found.items():
         _draw_law(axes, own[0]["c"], own[0]["floor"], one, setting, setting == min(found))
@@ -159,7 +159,7 @@ def _law(c, floor):
 def _draw_law(axes, c, floor, one, setting, is_last):
     """Draw c/error², or c/(error² − bias²) with the setting, right of the ``is_last`` line."""
     errors, seconds = _law(c, floor)
-    dashes = DASHES if one.is_hard else "-"
+    dashes = HARD_DASHES if one.is_hard else "-"
     axes.plot(errors, seconds, color=one.colour, lw=0.8, ls=dashes, zorder=1)
     if floor and one.method in SETTING_SYMBOLS:
         number = f"{setting:.2g}"

@@ -15,13 +15,13 @@ PANELS = {
 }
 
 #: Inches: the height of the figure; the ends of the ordinate, seconds.
-HEIGHT, PRICE_RANGE = 4.1, (1e-11, 1e5)
+RADIUS_HEIGHT, PRICE_RANGE = 4.1, (1e-11, 1e5)
 
 
 def draw(box, tables):
     """Draw the rows of accuracy_cost.csv; ``box`` is not used, because the table has its own."""
     rows = select(tables["accuracy_cost"], part="radius")
-    figure = new_figure(HEIGHT, COLUMN_WIDTH, layout="constrained")
+    figure = new_figure(RADIUS_HEIGHT, COLUMN_WIDTH, layout="constrained")
     axes = figure.subplots(2, 2, sharex=True, sharey=True).flat
     for one, letter, (name, methods) in zip(axes, "abcd", PANELS.items(), strict=True):
         one.set_label(name)

@@ -54,7 +54,7 @@ FEW_REPLICAS, ON_SURFACE = 64, 1 << 16
 HARD_DISTANCES = (0.6, 0.2, 0.05, 1e-2, 1e-4, 1e-6)
 
 #: Calls of methods that are deterministic and take microseconds, and the nodes of quadrature.
-CALLS, NODES = 100, range(1, 17)
+CALLS, COST_NODES = 100, range(1, 17)
 
 #: Larger errors are left out. A power is fitted to errors above this multiple of the floor, of at
 #: least this number of runs.
@@ -148,12 +148,12 @@ def strip_method(scene, seed, blocks=8):
 
 
 #: {method: function of a scene, quantities, the fraction of shells and a seed that samples}.
-SAMPLERS = {"rejection": montecarlo.prism_sampler, "conditioned": montecarlo.conditioned}
+SAMPLERS_BY_NAME = {"rejection": montecarlo.prism_sampler, "conditioned": montecarlo.conditioned}
 
 
 def samples_method(scene, seed, quantity, fraction=None, name="rejection"):
     """Return the ``Method`` of samples of the prism, or ``name``; an area has a shell."""
-    sampler = SAMPLERS[name](scene, [quantity], fraction or 0.5, seed)
+    sampler = SAMPLERS_BY_NAME[name](scene, [quantity], fraction or 0.5, seed)
     event = quantity.removesuffix("_area")
     true, thickness, bias = exact.volume(scene), None, 0.0
     if quantity != "volume":
@@ -273,7 +273,7 @@ def reference(scene):
 
 def exact_rows():
     """Yield the rows of quadrature and of the exact evaluation at both radii."""
-    works = [("quadrature", partial(quadrature, nodes=n), n) for n in NODES]
+    works = [("quadrature", partial(quadrature, nodes=n), n) for n in COST_NODES]
     works.append(("exact", evaluated, None))
     for scene in (EASY_SCENE, HARD_SCENE):
         true = reference(scene)

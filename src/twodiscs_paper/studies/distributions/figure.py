@@ -20,7 +20,7 @@ DASH = 0.0, 0.3
 SMALLEST_P = 1e-3
 
 #: The line of a fitted rate, {whether the hazards are constant: style}.
-DASHES = {True: "-", False: (0, (1, 1))}
+FIT_DASHES = {True: "-", False: (0, (1, 1))}
 
 
 def draw(box, tables):
@@ -66,7 +66,7 @@ def _rates(axes, rows):
         constant = all(row["p"] > SMALLEST_P for row in tests)
         for row in tests[:1]:
             ends = row["first"] / mean, min(row["last"] / mean, LONGEST_INTERVAL)
-            fit = {"ls": DASHES[constant], "zorder": 2}
+            fit = {"ls": FIT_DASHES[constant], "zorder": 2}
             kinds.add(constant)
             axes.plot(ends, [row["estimate"] * mean] * 2, color=colour, lw=1.4, **fit)
         zero = mean * laws.density_at_zero(box.scene(radius), event)
@@ -74,7 +74,7 @@ def _rates(axes, rows):
     axes.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)), label="exponential")
     for constant in sorted(kinds, reverse=True):
         name = "constant rate" if constant else "constant rate, rejected"
-        axes.plot([], [], color=GREY, lw=1.4, ls=DASHES[constant], label=name)
+        axes.plot([], [], color=GREY, lw=1.4, ls=FIT_DASHES[constant], label=name)
     late = np.linspace(6, LONGEST_INTERVAL, 40)
     axes.plot(late, 3 / late, color=GREY, lw=0.9, ls=(0, (6, 1.5, 1, 1.5)), label=r"$3\tau/t$")
     axes.set(xlim=(0, LONGEST_INTERVAL), ylim=(0, None), xlabel=r"time since the last hop $t/\tau$")

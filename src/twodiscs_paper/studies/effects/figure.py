@@ -22,7 +22,7 @@ from twodiscs.model.scene import Box
 from twodiscs_paper.studies.effects.measure import plain_time
 
 #: Inches: the width of the figure, and the heights of the panels of curves and of residuals.
-WIDTH, PANEL_HEIGHTS = 7.0, (2.6, 1.1)
+EFFECTS_WIDTH, PANEL_HEIGHTS = 7.0, (2.6, 1.1)
 
 #: The relative widths of the panels of times and of the panel of costs.
 WIDTHS = (1.5, 1.5, 1.5, 1.2)
@@ -52,7 +52,7 @@ def draw(box, tables):
     plain = Box(rows[0]["width"], rows[0]["height"])
     ends = limits(plain)
 
-    figure = new_figure(sum(PANEL_HEIGHTS), WIDTH, layout="constrained")
+    figure = new_figure(sum(PANEL_HEIGHTS), EFFECTS_WIDTH, layout="constrained")
     places = [["a", "b", "c", "d"], ["z of a", "z of b", "z of c", "d"]]
     axes = figure.subplot_mosaic(places, width_ratios=WIDTHS, height_ratios=PANEL_HEIGHTS)
     for letter, event in zip("abc", SHOWN_EVENTS, strict=True):

@@ -19,7 +19,7 @@ from twodiscs_paper.studies.more_discs import tori
 from twodiscs_paper.study import row
 
 #: The box per disc, 0.75 × 1: two discs have the box 1.5 × 1.
-WIDTH_PER_DISC, HEIGHT = 0.75, 1.0
+WIDTH_PER_DISC, ROW_HEIGHT = 0.75, 1.0
 
 #: Numbers of discs, and radii: dilute, dense with both hops, and a channel of ordered discs.
 DISCS, RADII = (2, 3, 4, 8, 16, 32, 64), (0.1, 0.2, 0.28)
@@ -107,7 +107,7 @@ def rows(events, samples, seed, discs=DISCS, radii=RADII, on_tori=ON_TORI):
     """Yield the rows of more_discs.csv, from about ``events`` and ``samples`` for each scene."""
     for radius in radii:
         for number in discs:
-            scene = Scene(WIDTH_PER_DISC * number, HEIGHT, radius, discs=number)
+            scene = Scene(WIDTH_PER_DISC * number, ROW_HEIGHT, radius, discs=number)
             yield from _of_scene(scene, events, samples, seed)
     for number, packing in on_tori:
         yield _on_torus(tori.torus(number, packing, "1:1"), events, seed)

@@ -18,7 +18,7 @@ FILE_LOOKS = {4: (SKY, "P"), 8: (BLACK, "D")}
 SMOOTH_FILE, KICKED_FILE = (GREEN, "^"), (PURPLE, "v")
 
 #: {quantity: colour, marker, name} of residuals.
-RESIDUAL_LOOKS = {
+DIFFUSION_LOOKS = {
     "rate": (GREEN, "^", "rate of hops"),
     "diffusion": (BLUE, "o", "$D$, both methods"),
     "single_file": (PURPLE, "v", "$F$"),
@@ -43,7 +43,7 @@ def draw(box, tables):
         axes.tick_params(which="both", labelbottom=False)
     # Two discs with friction have a figure of their own.
     rows = [*select(rows, friction=None), *tables["displacements"]]
-    residuals(lower, rows, RESIDUAL_LOOKS)
+    residuals(lower, rows, DIFFUSION_LOOKS)
     for axes in (ring, files, lower):
         # The distances that are shown, from the threshold.
         axes.set(xlim=(0.01, 0.2))

@@ -25,7 +25,7 @@ from twodiscs_paper.study import select
 HALVINGS, X_END, FIT_DISTANCE = (4, 8, 12, 16, 20), 0.55, 2.0**-12
 
 #: {quantity: colour, marker, name} of residuals, each in a panel of its own.
-RESIDUAL_LOOKS = {
+TRANSMISSION_LOOKS = {
     "slope": (BLUE, "o", r"$\kappa'(0)$, from exact"),
     "plateau": (VERMILLION, "s", r"$\kappa$, by $\kappa(t)$ and by clusters"),
 }
@@ -46,7 +46,7 @@ def draw(box, tables):
     _smooth(smooth, rows, kept, place(main, hop))
     own = select(kept, width=main.width, height=main.height, event=hop)
     _rough(rough, ours, own, place(main, hop))
-    for axes, (quantity, look) in zip(lower, RESIDUAL_LOOKS.items(), strict=True):
+    for axes, (quantity, look) in zip(lower, TRANSMISSION_LOOKS.items(), strict=True):
         residuals(axes, select(rows, friction=None), {quantity: look})
     lower[0].set_xlabel("")
     lower[0].tick_params(which="both", labelbottom=False)

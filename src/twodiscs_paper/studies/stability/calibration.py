@@ -195,7 +195,7 @@ def averages(call, scene, **settings):
 
 
 #: {method of a row of a sample: name of its prices}.
-SAMPLERS = {"monte_carlo": "rejection", "insertion": "insertions"}
+SAMPLER_NAMES = {"monte_carlo": "rejection", "insertion": "insertions"}
 
 
 @cache
@@ -218,7 +218,7 @@ def priced(scene, seed):
         for row, (name, value, error, exact, _) in zip(result.rows, _measured(result), strict=True):
             method = "strips" if row.get("starts") == "strip" else "dynamics"
             if result is samples:
-                method = SAMPLERS.get(row["method"], row["method"])
+                method = SAMPLER_NAMES.get(row["method"], row["method"])
                 if name != "volume" and scene.discs == 2:
                     method = f"shells, {method}"
             one = known.get((name, method))

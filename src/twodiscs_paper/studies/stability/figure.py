@@ -9,7 +9,7 @@ from twodiscs.figures.style import BLACK, BLUE, GREY, ORANGE, SERIES, VERMILLION
 from twodiscs_paper.study import select
 
 #: Inches: the width of two columns, and the height of a panel with its labels.
-WIDTH, HEIGHT = 7.0, 2.0
+TWO_COLUMNS, PANEL_HEIGHT = 7.0, 2.0
 
 BOUND = {"color": GREY, "lw": 0.6, "ls": (0, (4, 2)), "zorder": 0}
 #: Errors that are exactly zero are drawn here.
@@ -22,7 +22,7 @@ SHOWN_Z = 5
 def draw(box, tables):
     """Draw the rows of stability.csv on theory and sampling, for the ``box`` of the first scene."""
     rows = tables["stability"]
-    figure = new_figure(2 * HEIGHT, WIDTH, layout="constrained")
+    figure = new_figure(2 * PANEL_HEIGHT, TWO_COLUMNS, layout="constrained")
     axes = dict(zip("abcd", figure.subplots(2, 2).flat, strict=True))
     for letter, one in axes.items():
         one.set_label(letter)

@@ -16,7 +16,7 @@ from twodiscs.figures.style import (
     event_name,
     new_figure,
 )
-from twodiscs_paper.studies.stability.figure import BOUND, HEIGHT, WIDTH
+from twodiscs_paper.studies.stability.figure import BOUND, PANEL_HEIGHT, TWO_COLUMNS
 from twodiscs_paper.study import select
 
 #: The symbol of times by the formula of textbooks; the look of the sum rule of virials.
@@ -36,8 +36,9 @@ WORST = {"energy_error": "$|E-1/2|$", "smallest_gap": "overlap", "excess": "beyo
 def draw(box, tables):
     """Draw the rows of stability.csv on dynamics, for the ``box`` of the first scene."""
     rows = tables["stability"]
-    figure = new_figure(2 * HEIGHT + LOWEST_HEIGHT, WIDTH, layout="constrained")
-    upper, middle, lower = figure.subfigures(3, height_ratios=(HEIGHT, HEIGHT, LOWEST_HEIGHT))
+    heights = PANEL_HEIGHT, PANEL_HEIGHT, LOWEST_HEIGHT
+    figure = new_figure(sum(heights), TWO_COLUMNS, layout="constrained")
+    upper, middle, lower = figure.subfigures(3, height_ratios=heights)
     axes = *upper.subplots(1, 2), middle.subplots(), lower.subplots()
     parts = {"dynamics": _runs, "times": _times, "reversal": _reversal, "extremes": _extremes}
     for one, letter, (part, draw_part) in zip(axes, "abcd", parts.items(), strict=True):

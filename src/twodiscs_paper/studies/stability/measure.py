@@ -50,7 +50,7 @@ ENERGY_BOUND, GAP_BOUND, EXCESS_BOUND = 1e-11, -1e-14, 1e-15
 LARGEST_Z = 5.0
 
 #: The quantities of theory.
-QUANTITIES = "volume", "areas", "mean_times"
+CHECKED_QUANTITIES = "volume", "areas", "mean_times"
 
 #: Proposals for a measured share, and for an estimate of volume and areas.
 SHARE_PROPOSALS, ESTIMATE_PROPOSALS = 2**18, 2**22
@@ -59,7 +59,7 @@ SHARE_PROPOSALS, ESTIMATE_PROPOSALS = 2**18, 2**22
 SHELL = 0.02
 
 #: Lanes of a run of many events, and events of each lane between two tests of whether it advances.
-LANES, WINDOW = 64, 2**16
+STATE_LANES, WINDOW_EVENTS = 64, 2**16
 
 #: A lane that needs less than this fraction of the mean time for the events of a window is stuck.
 STUCK = 0.01
@@ -194,10 +194,10 @@ def theory_rows(box):
         closed = closed_form(scene)
         plain = {"volume": closed["volume"]}, closed["areas"]
         start = radius_cells("theory", case, radius, distance)
-        for quantity, values, due in zip(QUANTITIES, stable, true, strict=True):
+        for quantity, values, due in zip(CHECKED_QUANTITIES, stable, true, strict=True):
             error = relative_error(values, due)
             yield judged(start, quantity, error, high=THEORY_BOUND, method="stable")
-        for quantity, values, due in zip(QUANTITIES, plain, true, strict=False):
+        for quantity, values, due in zip(CHECKED_QUANTITIES, plain, true, strict=False):
             yield judged(start, quantity, relative_error(values, due), method="closed-form")
 
 
@@ -411,12 +411,12 @@ def run(scene, number, seed):
     Keys: events; energy_error, the largest |E − 1/2|; smallest_gap, the smallest |Δx| − σ, and
     excess, the largest distance of a centre beyond its range, both in ``box_units``; lanes_lost.
     """
-    per_lane = -(-number // LANES)
-    windows = -(-per_lane // WINDOW)
+    per_lane = -(-number // STATE_LANES)
+    windows = -(-per_lane // WINDOW_EVENTS)
     window = -(-per_lane // windows)
     law = two_disc_law(scene)
     nearest, energy, far_x, far_y, lost = audit(
-        states(scene, LANES, seed), windows, window, law,
+        states(scene, STATE_LANES, seed), windows, window, law,
         STUCK * window / exact.event_rate(scene),
     )  # fmt: skip
     unit_x, unit_y = box_units(scene)
@@ -424,7 +424,7 @@ def run(scene, number, seed):
         (float(far_x.max()) - law.half_x1) / unit_x, (float(far_y.max()) - law.half_y1) / unit_y
     )
     return {
-        "events": windows * window * LANES,
+        "events": windows * window * STATE_LANES,
         "energy_error": float(energy.max()) / 2,
         "smallest_gap": (math.sqrt(nearest.min()) - law.sigma) / max(unit_x, unit_y),
         "excess": excess,

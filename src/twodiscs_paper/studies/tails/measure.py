@@ -52,8 +52,8 @@ from twodiscs_paper.study import row, select
 TAIL_BLOCKS = 100
 
 #: Times in the table, in units of the mean: for weighted starts and for plain counting.
-WEIGHTED = (1, 2, 3, 5, 7, 10, 14, 20, 30, 50, 70, 100, 140, 200, 300, 500, 700, 1000)
-COUNTED = (0.5, 1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9, 10)
+WEIGHTED_TIMES = (1, 2, 3, 5, 7, 10, 14, 20, 30, 50, 70, 100, 140, 200, 300, 500, 700, 1000)
+COUNTED_TIMES = (0.5, 1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9, 10)
 
 #: The window of the fitted rate, in units of the mean.
 FIT_WINDOW = (3, 9)
@@ -283,11 +283,11 @@ def rows(box, samples, replicas, seed):
         scene = box.scene(radius)
         start, constant = event_cells(scene, event), tail_constant(scene, event)
         mean = start["exact_mean"]
-        times = [time * mean for time in COUNTED]
+        times = [time * mean for time in COUNTED_TIMES]
         estimates = counted_survival(scene, event, times, replicas, seed + 2 * i)
         found += survival_rows("counted", start, times, estimates, constant)
         if constant:
-            times = [time * mean for time in WEIGHTED]
+            times = [time * mean for time in WEIGHTED_TIMES]
             estimates = tail(scene, event, times, samples, seed + 2 * i + 1)
             found += survival_rows("weighted", start, times, estimates, constant)
         else:

@@ -23,7 +23,7 @@ from twodiscs_paper.studies.estimates import LinearFit, chi2_p, columns
 from twodiscs_paper.study import row, select
 
 #: Fits take radii within this relative distance of the limit, without another limit in between.
-WIDTH = 0.2
+FITTED_RANGE = 0.2
 
 #: The columns that a fit uses.
 COLUMNS = ("radius", "estimate", "stderr", "exact")
@@ -97,7 +97,7 @@ def _row(start, parameter, found, curve, law, chi2, degrees):
 def start(box, law):
     """Return the smallest radius of a fit to the ``law`` of a ``Box``."""
     others = [limit for limit in box.thresholds if limit < law.limit]
-    return max([(1 - WIDTH) * law.limit, *others])
+    return max([(1 - FITTED_RANGE) * law.limit, *others])
 
 
 def near(box, law, rows):

@@ -40,7 +40,7 @@ from twodiscs.theory.quadrature import gauss_legendre
 from twodiscs_paper.studies.passages.models.brownian_steps import normal_pair
 
 #: The events, by their columns in counts: sphere 1 hits the end at z = A, and the side.
-HOP, COLLISION, END, SIDE = range(4)
+HOP, COLLISION, END_HIT, SIDE = range(4)
 
 #: Crossings in a block, which has a stream of random numbers; larger clusters count as the largest.
 PORE_CROSSINGS, PORE_CLUSTER = 2**6, 2**14
@@ -150,7 +150,7 @@ def move(q, v, pore, time, friction, far, counts, stream):
         for i in range(2):
             gap = max(length - q[i, 2] if v[i, 2] > 0.0 else q[i, 2], 0.0)
             if gap < abs(v[i, 2]) * least:
-                least, event, who = gap / abs(v[i, 2]), END, i
+                least, event, who = gap / abs(v[i, 2]), END_HIT, i
             along, square = q[i, 0] * v[i, 0] + q[i, 1] * v[i, 1], v[i, 0] ** 2 + v[i, 1] ** 2
             gap = max(breadth * breadth - q[i, 0] ** 2 - q[i, 1] ** 2, 0.0)
             root = math.sqrt(along * along + square * gap)
@@ -183,8 +183,8 @@ def move(q, v, pore, time, friction, far, counts, stream):
             counts[COLLISION] += 1
             for k in range(3):
                 normal[0, k], normal[1, k] = apart[k], -apart[k]
-        elif event == END:
-            counts[END] += who == 0 and v[0, 2] > 0.0
+        elif event == END_HIT:
+            counts[END_HIT] += who == 0 and v[0, 2] > 0.0
             normal[who, 2] = 1.0
         else:
             counts[SIDE] += who == 0

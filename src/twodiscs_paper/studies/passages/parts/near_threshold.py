@@ -11,7 +11,7 @@ from twodiscs_paper.studies.passages.near import (
 )
 
 #: Distances below the radius where the hop becomes blocked: halved from the first to the last.
-SMOOTH, ROUGH = range(3, 15), range(3, 10)
+SMOOTH_HALVINGS, ROUGH_HALVINGS = range(3, 15), range(3, 10)
 
 #: Replicas for κ over replicas for κ(t), and events for κ over events for other estimates: most
 #: events for κ are in pauses, where they cost least.
@@ -40,6 +40,6 @@ def near_threshold(name, box, hop, inertias, events, seed):
 
     ``inertias`` are the moments of inertia of rough discs.
     """
-    yield from one_hop(name, box, hop, SMOOTH, None, events, seed)
+    yield from one_hop(name, box, hop, SMOOTH_HALVINGS, None, events, seed)
     for inertia in inertias:
-        yield from one_hop(name, box, hop, ROUGH, inertia, events, seed)
+        yield from one_hop(name, box, hop, ROUGH_HALVINGS, inertia, events, seed)
