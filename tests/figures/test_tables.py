@@ -332,8 +332,12 @@ def test_the_laws_of_passages_with_friction_are_one_and_three_quarters_over_x():
 
 
 def test_residuals_are_those_of_the_table():
-    for name, looks in (("transmission", transmission), ("diffusion", diffusion)):
-        for quantity, (colour, marker, _) in looks.RESIDUAL_LOOKS.items():
+    both = {
+        "transmission": transmission.TRANSMISSION_LOOKS,
+        "diffusion": diffusion.DIFFUSION_LOOKS,
+    }
+    for name, looks in both.items():
+        for quantity, (colour, marker, _) in looks.items():
             # Two discs with friction have a figure of their own.
             smooth = select(table("passages"), friction=None)
             rows = select([*smooth, *long_run("displacements")], quantity=quantity)
