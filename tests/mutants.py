@@ -99,7 +99,7 @@ MUTANTS = [
     ("range of a disc in the free fraction", "else 2 * radius)\n        for axis in scene.axes", "else radius)\n        for axis in scene.axes"),
     ("one block beyond the budget", "min(blocks, math.floor(affordable * done))", "min(blocks, math.ceil(affordable * done))"),
     ("misses resolved by units", "max(0.0, spread) * min(unit, samples)", "max(0.0, spread) * samples"),
-    ("sign of a varying number", 'weights |= {"all": -per_chain * count / self.intervals}', 'weights |= {"all": per_chain * count / self.intervals}'),
+    ("sign of a varying number", '"all": -per_chain * count', '"all": per_chain * count'),
     ("a shell independent of the volume", 'if len(shares) == 1 or "volume" in names:', "if len(shares) == 1:"),
     ("volume and area in a ratio", '| {"volume": -1 / volume}', '| {"volume": 1 / volume}'),
     ("fewest hits of both walls", "enough = min(self.sampled(wall).enough for wall in WALL_AREAS)", "enough = max(self.sampled(wall).enough for wall in WALL_AREAS)"),
