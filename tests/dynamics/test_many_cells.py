@@ -186,6 +186,25 @@ def test_a_small_budget_has_an_error_bar(discs, packing):
     assert all(one.stderr for one in md.values())
 
 
+@pytest.mark.parametrize("budget", [1e6, 1.2e6, 1.6e6, 4e6, 1e8])
+@pytest.mark.parametrize("discs", [64, 1024, 2048, 16384])
+def test_a_budget_has_room_for_the_replicas_of_an_error_or_for_few(discs, budget):
+    """In whole blocks; few replicas have no error, and 150 of them are a budget that is enough."""
+    scene = td.Scene(discs**0.5, discs**0.5, 0.3, discs=discs, periodic="xy")
+
+    def planned(budget):
+        duration = many_rates.replica_duration(scene, budget)
+        each = many_rates.events_per_disc(scene, duration)
+        block = many_rates.block_replicas(scene, duration)
+        blocks = max(1, int(budget / (block * each * discs)))
+        assert each >= 0.9 * discs / many_rates.DISCS_PER_EVENT
+        return block * blocks, block * blocks * each * discs
+
+    replicas, events = planned(budget)
+    assert (replicas < 100) == (budget < 0.9 * 100 * discs**2 / many_rates.DISCS_PER_EVENT)
+    assert planned(max(150 / replicas, 1) * events)[0] >= 100
+
+
 def test_errors_have_the_correlation_of_successive_replicas():
     """Sums of four neighbours in a row of random numbers; each error is known to 3 %."""
     alone = np.random.default_rng(3).integers(1000, 1100, (8000, 2))

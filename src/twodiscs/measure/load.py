@@ -68,8 +68,9 @@ def load(folder: str | PathLike[str]) -> dict[str, pd.DataFrame]:
     folder, known = Path(folder), plugin("tables") or SCENE_TABLES
     paths = [path for path in sorted(folder.glob("*.csv")) if path.stem in known]
     if not paths:
-        what = "does not exist" if not folder.exists() else "is no folder"
-        what = "has none" if folder.is_dir() else what
+        what = "has none"
+        if not folder.is_dir():
+            what = "is no folder" if folder.exists() else "does not exist"
         raise InputError(f"folder must hold tables of results, but {str(folder)!r} {what}")
     return {path.stem: read(path, known[path.stem]) for path in paths}
 

@@ -18,7 +18,7 @@ REPLICA_EVENTS, CHAIN_REPLICA_EVENTS = 256, 8192
 
 #: Events of each roomy disc in a replica of ``CELL_DISCS`` discs or more, and the most of all discs
 #: together. The motion then takes several times as long as the draw of the state.
-EVENTS_PER_DISC, MOST_REPLICA_EVENTS = 256, 2**21
+EVENTS_PER_DISC, MOST_REPLICA_EVENTS = 256, 2**22
 
 #: Replicas that a budget has room for, if they can be shorter: the 100 that an error needs, and
 #: some more. Those of crowded discs cannot, because each has a new chain.
