@@ -22,7 +22,7 @@ from twodiscs_paper.studies.passages.parts.with_friction import LONG_NECK, local
 from twodiscs_paper.study import row
 
 #: The radius of the pore, and its lengths for rates and for κ: ends have a share √(εσ)/length in κ.
-R_PORE, SHORT_PORE, LONG_PORE = 1.0, 3.0, 32.0
+PORE_RADIUS, SHORT_PORE, LONG_PORE = 1.0, 3.0, 32.0
 
 #: Radii of spheres for rates, the time and the number of independent initial states.
 COUNTED_RADII, RUN_TIME, PORE_REPLICAS = (0.2, 0.4, 0.48), 16.0, 2**17
@@ -36,8 +36,8 @@ PORE_LIMIT = 75 * math.pi**2 / 1024
 
 def one_pore(length, sphere, friction, seed):
     """Return (its ``Pore``, the cells that its rows have in common, a seed of its streams)."""
-    model, limit = pore.Pore.of(length, R_PORE, sphere), R_PORE / 2
-    cells = {"scene": "pore", "width": length, "height": 2 * R_PORE, "event": "horizontal_hop"}
+    model, limit = pore.Pore.of(length, PORE_RADIUS, sphere), PORE_RADIUS / 2
+    cells = {"scene": "pore", "width": length, "height": 2 * PORE_RADIUS, "event": "horizontal_hop"}
     cells |= {"discs": 2, "radius": sphere, "distance": 1 - sphere / limit}
     cells |= {"friction": friction or None, "exact_mean": 1 / float(pore.rates(model)[pore.HOP])}
     return model, cells, np.uint64(stream_seed(seed, f"pore {friction}", "passages", repr(sphere)))
@@ -56,7 +56,9 @@ def in_pore(seed):
     for friction, halvings in PORE_HALVINGS.items():
         measured = []
         for n in halvings:
-            model, cells, stream = one_pore(LONG_PORE, radius_at(R_PORE / 2, n), friction, seed)
+            model, cells, stream = one_pore(
+                LONG_PORE, radius_at(PORE_RADIUS / 2, n), friction, seed
+            )
             far = model.sigma
             sizes, counts = pore.cluster_sizes(model, friction, far, stream, 0, PORE_BLOCKS)
             kappa, hops = cluster_coefficient(sizes), {"replicas": int(sizes.sum())}
