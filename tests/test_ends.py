@@ -64,7 +64,7 @@ box = td.Box(width, height, discs=discs, **effects)
 largest = box.largest_radius
 try:
     scene = td.Scene(width, height, largest * (1 - distance), discs=discs, **effects)
-    rate = find_engine(scene).trajectory_rate(scene)
+    rate = find_engine(scene).paths.trajectory_rate(scene)
     {call}
 except td.InputError as error:
     sys.exit(f"refused: {{error}}")

@@ -14,9 +14,9 @@ from functools import partial
 import numpy as np
 
 from twodiscs.dynamics import runs
-from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import class_counts, many_rates
+from twodiscs.dynamics.two import two_rates
 from twodiscs.model.events import EVENTS, SHELL_EVENTS
 from twodiscs.model.many_geometry import CELL_DISCS
 from twodiscs.model.scene import Scene
@@ -61,7 +61,7 @@ def lockstep_intervals(intervals=5_000_000):
 
 def scalar_engine(blocks=PRICE_BLOCKS // 8):
     """Do the same as ``lockstep``, one trajectory after the other."""
-    duration = find_engine(SCENE).replica_duration(SCENE)
+    duration = two_rates.replica_duration(SCENE)
     draw = conditioned_sampler(SCENE)
     arguments = (REPLICAS, duration, SCENE.contact_distance, draw)
     counted, seconds = timed(lambda: scalar.count_blocks(np.uint64(1), 0, blocks, *arguments))
@@ -71,7 +71,7 @@ def scalar_engine(blocks=PRICE_BLOCKS // 8):
 def plain_python(replicas=200):
     """Do the same without a compiler."""
     starts = [tuple(map(float, state)) for state in states(SCENE, replicas, 1)[:8].T]
-    end = find_engine(SCENE).replica_duration(SCENE), SCENE.range_x / 2, SCENE.range_y / 2, 0.4
+    end = two_rates.replica_duration(SCENE), SCENE.range_x / 2, SCENE.range_y / 2, 0.4
     counts, seconds = timed(lambda: [scalar.count_replica.py_func(*s, *end) for s in starts])
     return sum(map(scalar.simulated_events, counts)), seconds
 

@@ -33,8 +33,8 @@ def check_rates(scene, seed, blocks, duration=None):
 
     This holds for events with a thousand expected counts; impossible events have no count.
     """
-    duration = duration or find_engine(scene).replica_duration(scene)
-    sums, products = find_engine(scene).run_blocks(scene, EVENTS, seed, 0, blocks, duration)
+    duration = duration or find_engine(scene).rates.replica_duration(scene)
+    sums, products = find_engine(scene).counts.run_blocks(scene, EVENTS, seed, 0, blocks, duration)
     errors = relative_errors(sums, products, blocks * REPLICAS)
     for event, total, error in zip(EVENTS, sums, errors, strict=True):
         time = mean_times(scene)[event]

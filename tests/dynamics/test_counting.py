@@ -12,7 +12,6 @@ from effect_scenes import ALL, PAPER, SCENES
 from marks import slow
 
 from twodiscs.dynamics import runs
-from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import WALL_X1, WALL_X2, WALL_Y1, WALL_Y2
 from twodiscs.dynamics.two import event_counts
@@ -69,7 +68,7 @@ def test_what_is_not_watched_is_not_detected():
     """With all events, with collisions, with the walls of rough discs; any wall is a sum."""
     rough = SCENES["rough"]
     everything, bare, walls = (
-        dict(zip(EVENTS, find_engine(s).run_blocks(s, events, 7, 0, 1, 32.0)[0], strict=True))
+        dict(zip(EVENTS, event_counts.run_blocks(s, events, 7, 0, 1, 32.0)[0], strict=True))
         for s, events in ((PAPER, EVENTS), (PAPER, EVENTS[2:3]), (rough, ("right_wall",)))
     )
     assert bare["disc_collision"] == everything["disc_collision"]

@@ -104,7 +104,7 @@ def test_kicks_have_other_random_numbers_than_initial_states():
 @pytest.mark.parametrize("discs", [2, 3])
 def test_states_of_two_blocks_are_kicked_as_those_of_one_that_is_twice_as_large(discs):
     scene = td.Scene(1.5, 1.0, 0.1, discs=discs, friction=2.0)
-    new = find_engine(scene).new_kicks
+    new = find_engine(scene).paths.new_kicks
     whole = open_block_kicks(new(scene, 8), 3).waits
     assert np.array_equal(open_block_kicks(new(scene, 4), 3, first=4).waits, whole[4:])
     assert len({*whole}) == 8

@@ -49,10 +49,9 @@ def test_squares_are_those_of_the_counts_of_each_chain():
     wide = np.full(65, 65 + edges.size)
     wide[: edges[-1]] = 65 + np.searchsorted(edges, np.arange(edges[-1]), side="right") - 1
     for first, stop in (*((i, i + 1) for i in range(8)), (0, 8)):
-        sums = np.zeros((2, 66 + edges.size), np.int64)
         how = {"returns": 32, "lanes": 1 if stop - first == 1 else 5}
-        returns.record_intervals(
-            PAPER, "vertical_hop", 3, first, stop, 1, (0.25, None, wide), sums, going, **how
+        _, sums = returns.record_intervals(
+            PAPER, "vertical_hop", 3, first, stop, 1, (0.25, None, wide), going, **how
         )
         found.append(sums)
     chains = np.array([counts for counts, _ in found[:-1]])
@@ -116,10 +115,9 @@ def test_intervals_of_many_are_those_of_trajectories(scene, event, monkeypatch):
     if scene.discs == 20:
         window *= many_intervals.mean_interval(scene, event)
     width = window / 128
-    wide, sums = np.full(65, 65), np.zeros((3, 66), np.int64)
-    going = np.ones(1, np.bool_)
-    times, numbers = many_intervals.record_within(
-        window, scene, event, 7, 3, 4, replicas, (width, None, wide), sums, going
+    wide, going = np.full(65, 65), np.ones(1, np.bool_)
+    (times, numbers), sums = many_intervals.record_intervals(
+        scene, event, 7, 3, 4, replicas, (width, None, wide), going, window=window
     )
     due = np.zeros((3, 66), np.int64)
     for k, state in enumerate(many_initial_states.states(scene, replicas, 7, 3).T):

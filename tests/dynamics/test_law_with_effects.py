@@ -22,9 +22,8 @@ from mpmath import mp, mpf
 
 from twodiscs.dynamics import law as event_law
 from twodiscs.dynamics import paths
-from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.law import DISC, END_OF_TIME, fall_quotient, two_disc_law
-from twodiscs.dynamics.two import follow
+from twodiscs.dynamics.two import event_counts, follow
 from twodiscs.model.events import DECLARED_EVENTS, EVENT_AXES, EVENTS, HOPS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.initial_states import STATE_ROWS, components, states
@@ -178,7 +177,7 @@ def test_a_trajectory_tells_the_same_events_as_the_ensemble(scene):
             for disc in discs
         )
     seen["any_wall"] = sum(n for name, n in names.items() if name.startswith("wall"))
-    sums, _ = find_engine(scene).run_blocks(scene, EVENTS, 3, 0, 1, 64.0, replicas=1, lanes=1)
+    sums, _ = event_counts.run_blocks(scene, EVENTS, 3, 0, 1, 64.0, replicas=1, lanes=1)
     counts = dict(zip(EVENTS, sums.tolist(), strict=True))
     assert {event: counts[event] for event in scene.events} == {
         event: seen[event] for event in scene.events

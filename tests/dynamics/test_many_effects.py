@@ -185,8 +185,7 @@ def test_chains_have_the_kicks_of_their_numbers(monkeypatch):
     opened, chains = [], LANES + 2
     monkeypatch.setattr(ensemble, "open_kicks", lambda *given: opened.append(given[:3]))
     monkeypatch.setattr(all_pairs, "record_intervals", all_pairs.record_intervals.py_func)
-    bins, sums = (0.1, None, np.full(65, 65)), np.zeros((3, 66), np.int64)
-    ended = np.zeros(1, np.bool_)
-    many_intervals.record_within(8.0, FEW, "vertical_hop", 3, 2, 4, chains, bins, sums, ended)
+    bins, ended = (0.1, None, np.full(65, 65)), np.zeros(1, np.bool_)
+    many_intervals.record_intervals(FEW, "vertical_hop", 3, 2, 4, chains, bins, ended, window=8.0)
     due = [(chain % chains % LANES, 3, chain) for chain in range(2 * chains, 4 * chains)]
     assert opened == due

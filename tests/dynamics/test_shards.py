@@ -36,7 +36,7 @@ SCENES_BY_NAME = {
 
 def counts(scene):
     how = {"replicas": 100 if scene.discs < CELL_DISCS else 20}
-    return lambda first, stop, **lanes: find_engine(scene).run_blocks(
+    return lambda first, stop, **lanes: find_engine(scene).counts.run_blocks(
         scene, EVENTS, 3, first, stop, 8.0, **how, **lanes
     )
 

@@ -3,14 +3,16 @@
 Without these tests an input that is accepted could never end, because its work has no bound.
 """
 
+import inspect
 import math
+import re
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from twodiscs.dynamics import paths, runs
-from twodiscs.dynamics.engine import find_engine
+from twodiscs.dynamics.engine import Engine, find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.two import strip, two_rates
 from twodiscs.model.checks import LONGEST_LENGTH, SHORTEST_LENGTH, InputError
@@ -68,7 +70,7 @@ def test_the_work_of_a_replica_is_bounded(width, height, effects, share):
     except InputError:
         return
     # The events, and how often discs leave a cell at most. A duration is rounded to a power of two.
-    most = 2**0.5 * two_rates.EVENTS_PER_REPLICA / find_engine(scene).replica_duration(scene)
+    most = 2**0.5 * two_rates.EVENTS_PER_REPLICA / two_rates.replica_duration(scene)
     assert exact.event_rate(scene) <= most
     leaves = sum(math.sqrt(1 + 1 / scene.mass_ratio) / scene.side(a) for a in scene.periodic)
     assert leaves <= most * CROSSINGS_PER_EVENT
@@ -136,3 +138,15 @@ def test_a_strip_is_no_longer_than_its_events_allow():
     ).scene(0.041694469802592275)  # fmt: skip
     found = strip.choose_strip(scene, "vertical_hop")
     assert 2 * found.time * exact.event_rate(scene) <= strip.EVENTS_PER_PATH
+
+
+@pytest.mark.parametrize("discs", [2, 3])
+def test_an_engine_has_the_functions_that_are_declared(discs):
+    """With these parameters, in this order."""
+    engine = find_engine(Box(1.5, 1.0, discs=discs).scene(0.1))
+    declared = dict(re.findall(r"``(\w+)``: .*\n\n((?: +- .*\n)+)", Engine.__doc__))
+    assert (*declared,) == Engine._fields
+    for module, functions in declared.items():
+        for name, named in re.findall(r"- ``(\w+)\((.*)\)``", functions):
+            _, *parameters = inspect.signature(getattr(getattr(engine, module), name)).parameters
+            assert ", ".join(parameters).startswith(named), name

@@ -14,6 +14,7 @@ from twodiscs.analysis.tables import shortfall
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.runs import DAY_OF_EVENTS, DynamicsRun
+from twodiscs.dynamics.two import two_rates
 from twodiscs.measure import cost
 from twodiscs.model.formats import format_seconds
 from twodiscs.model.seeds import job_seed
@@ -60,7 +61,7 @@ def test_a_pilot_has_the_replicas_of_the_budget(blocks):
     """A small budget has shorter replicas, and here 108 of them in a block in place of 25."""
     run = new_run(td.Scene(9.2, 9.2, 0.5, discs=64), 1.0, 1)
     pilot = cost.pilots(run)["all"]
-    events = find_engine(run.scene).expected_event_rate(run.scene) * run.replica_duration
+    events = find_engine(run.scene).rates.expected_event_rate(run.scene) * run.replica_duration
     assert pilot.events / pilot.replicas == pytest.approx(events, rel=0.1)
 
 
@@ -69,12 +70,12 @@ def test_a_rare_hop_has_a_price_from_ordinary_states_too(blocks):
     strips, ordinary = (found["horizontal_hop_time", m] for m in ("strips", "dynamics"))
     assert ordinary.c > 1e4 * strips.c
     # Few counts do not tell their variance; it then follows from the exact rate.
-    block = td.rate(NEAR, "horizontal_hop") * find_engine(NEAR).replica_duration(NEAR) * REPLICAS
+    block = td.rate(NEAR, "horizontal_hop") * two_rates.replica_duration(NEAR) * REPLICAS
     assert ordinary.c == pytest.approx(cost.CLUSTER_VARIANCE / block * 1e-3)
     # 144 are expected in 32 blocks, where 200 would tell.
     some = SCENE.with_radius(0.2485)
     error = cost.pilots(new_run(some, 1.0))["all"].errors["horizontal_hop"]
-    block = td.rate(some, "horizontal_hop") * find_engine(some).replica_duration(some) * REPLICAS
+    block = td.rate(some, "horizontal_hop") * two_rates.replica_duration(some) * REPLICAS
     assert error == pytest.approx(math.sqrt(cost.CLUSTER_VARIANCE / block))
 
 

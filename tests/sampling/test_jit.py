@@ -124,7 +124,7 @@ import sys
 from twodiscs.model.scene import Box
 from twodiscs.dynamics.engine import find_engine
 scene = Box(1.5, 1.0).scene(0.2)
-find_engine(scene).run_blocks(scene, ("any_wall",), 1, 0, 0, 1.0)
+find_engine(scene).counts.run_blocks(scene, ("any_wall",), 1, 0, 0, 1.0)
 print("scipy.linalg" in sys.modules)
 import numpy as np
 import scipy.linalg.cython_blas

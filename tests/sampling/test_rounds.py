@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 
 import twodiscs as td
 from twodiscs.dynamics import runs
-from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
+from twodiscs.dynamics.two import event_counts
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Box
 from twodiscs.points.base import reached
@@ -217,7 +217,7 @@ def test_counts_in_pieces_are_those_of_their_blocks_and_reach_what_is_asked():
     assert found[0] == found[1]
     blocks = found[0].replicas // REPLICAS
     assert blocks == run.components["all"].planned
-    sums, _ = find_engine(scene).run_blocks(scene, [*TARGET], 3, 0, blocks, found[0].duration)
+    sums, _ = event_counts.run_blocks(scene, [*TARGET], 3, 0, blocks, found[0].duration)
     assert [*found[0].counts.values()] == [sums[EVENTS.index(event)] for event in found[0].counts]
     assert all_reached(found[0])
     for hop, one in found[0].strips.items():

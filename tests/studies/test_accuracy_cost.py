@@ -123,10 +123,10 @@ def test_the_scalar_engine_counts_the_same(radius):
     Chaos would turn a difference in the last bit into other counts after some tens of events.
     """
     scene = PAPER.with_radius(radius)
-    duration = find_engine(scene).replica_duration(scene)
+    duration = find_engine(scene).rates.replica_duration(scene)
     arguments = duration, scene.contact_distance, conditioned_sampler(scene)
     usual = scalar.count_blocks(np.uint64(3), 0, 1, 1024, *arguments)
-    sums, products = find_engine(scene).run_blocks(scene, EVENTS, 3, 0, 1, duration)[:2]
+    sums, products = find_engine(scene).counts.run_blocks(scene, EVENTS, 3, 0, 1, duration)[:2]
     at = [EVENTS.index(event) for event in scalar.COUNTED]
     np.testing.assert_array_equal(usual[0], sums[at])
     np.testing.assert_array_equal(usual[1], products[np.ix_(at, at)])

@@ -180,13 +180,13 @@ class ObserveRun(Run):
 
     @property
     def _rate(self):
-        return find_engine(self.scene).expected_event_rate(self.scene) + self.scene.friction
+        return find_engine(self.scene).rates.expected_event_rate(self.scene) + self.scene.friction
 
     @property
     def _each(self):
         """The number of replicas of a block."""
         few, engine = self.scene.discs < CELL_DISCS, find_engine(self.scene)
-        return BLOCK_STATES if few else engine.block_replicas(self.scene)
+        return BLOCK_STATES if few else engine.rates.block_replicas(self.scene)
 
     @cached_property
     def _forms(self):
@@ -197,7 +197,7 @@ class ObserveRun(Run):
     def components(self):
         """The ``SequentialRun`` of all blocks, {"all": run}."""
         blocks, events = -(-self.replicas // self._each), self._each * self._rate * self.times[-1]
-        ratio = find_engine(self.scene).cost_ratio(self.scene)
+        ratio = find_engine(self.scene).rates.cost_ratio(self.scene)
         return {"all": fixed(self._work, blocks, max(events, 1.0), ratio, join)}
 
     def _number(self, block):
@@ -215,14 +215,14 @@ class ObserveRun(Run):
             filled = np.zeros((max(STATE_ROWS, len(names)), number))
             filled[: len(names)] = self.starts[:, first : first + number]
             shifts = move_into_cell(scene, dict(zip(names, filled, strict=False)))
-        wraps = engine.new_wraps(scene, number)
-        kicks = open_block_kicks(engine.new_kicks(scene, number), self.seed, first)
+        wraps = engine.paths.new_wraps(scene, number)
+        kicks = open_block_kicks(engine.paths.new_kicks(scene, number), self.seed, first)
         for step in (0.0, *np.diff(self.times, prepend=0.0)):
             if step:
-                engine.advance_all(scene, filled, wraps, step, kicks)
+                engine.paths.advance_all(scene, filled, wraps, step, kicks)
             now = filled[: len(names)].copy()
             rows = dict(zip(names, now, strict=True))
-            engine.unwrap(scene, rows, wraps)
+            engine.paths.unwrap(scene, rows, wraps)
             for name, shift in shifts.items():
                 rows[name] += shift
             yield now

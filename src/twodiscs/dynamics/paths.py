@@ -33,7 +33,7 @@ def path_events(scene, state, duration, seed=0):
     friction "kick" is an event, because a path turns there; kicks come from the streams of
     ``seed``.
     """
-    for rows in find_engine(scene).path_rows(scene, state, duration, seed):
+    for rows in find_engine(scene).paths.path_rows(scene, state, duration, seed):
         yield from rows.events()
 
 
@@ -141,7 +141,7 @@ def follow_trajectory(scene, seed, start=None, duration=None, progress=None, hop
     time that it has reached, and the ``duration``.
     """
     engine, most = find_engine(scene), most_rows(scene)
-    rate = engine.trajectory_rate(scene, hops)
+    rate = engine.paths.trajectory_rate(scene, hops)
 
     def too_long(time, due):
         return InputError(
@@ -151,7 +151,7 @@ def follow_trajectory(scene, seed, start=None, duration=None, progress=None, hop
         )
 
     if duration is None:
-        duration = engine.usual_duration(scene)
+        duration = engine.paths.usual_duration(scene)
     elif check_length("duration", duration) * rate > most and start is None:
         raise too_long(most / rate, "are due")
     if start is None:
@@ -159,7 +159,7 @@ def follow_trajectory(scene, seed, start=None, duration=None, progress=None, hop
         start = tuple(map(float, drawn))
     else:
         start, left = check_start(scene, start), int(most)
-    found, rows = [], engine.path_rows(scene, start, float(duration), seed, hops)
+    found, rows = [], engine.paths.path_rows(scene, start, float(duration), seed, hops)
     for some in map_in_threads(lambda: next(rows, None), repeat(())):
         if some is None:
             return Rows.joined(found)

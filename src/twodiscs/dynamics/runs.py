@@ -83,12 +83,12 @@ class DynamicsRun(Run):
     @property
     def most_events(self):
         """The budget, or without one the number of events of a day, roughly."""
-        return self.budget or DAY_OF_EVENTS / find_engine(self.scene).cost_ratio(self.scene)
+        return self.budget or DAY_OF_EVENTS / find_engine(self.scene).rates.cost_ratio(self.scene)
 
     @cached_property
     def replica_duration(self):
         """The time T of a replica."""
-        return find_engine(self.scene).replica_duration(self.scene, self.budget)
+        return find_engine(self.scene).rates.replica_duration(self.scene, self.budget)
 
     @property
     def _events(self):
@@ -111,7 +111,7 @@ class DynamicsRun(Run):
         for all of them, each has the same fraction of its events. Without a budget, this is true of
         the work of a day.
         """
-        each = find_engine(self.scene).work_per_event(self.scene)
+        each = find_engine(self.scene).rates.work_per_event(self.scene)
         budget = max(1, int(self.most_events / each))
         runs = {"all": self._everything(budget)}
         for hop in self._rare:
@@ -134,19 +134,19 @@ class DynamicsRun(Run):
     def _everything(self, budget):
         scene, engine = self.scene, find_engine(self.scene)
         duration = self.replica_duration
-        each = engine.block_replicas(scene, duration)
+        each = engine.rates.block_replicas(scene, duration)
         index = [EVENTS.index(event) for event in self._ordinary_events]
         goals = np.array([self.target[event] for event in self._ordinary_events])
         replicas = (
-            relative_variance(engine.expected_rate(scene, event) * duration)
+            relative_variance(engine.rates.expected_rate(scene, event) * duration)
             / self.target[event] ** 2
             for event in self._ordinary_events
         )
 
         def work(first, stop):
-            return engine.run_blocks(scene, self._events, self.seed, first, stop, duration)
+            return engine.counts.run_blocks(scene, self._events, self.seed, first, stop, duration)
 
-        block_events = each * engine.expected_event_rate(scene) * duration
+        block_events = each * engine.rates.expected_event_rate(scene) * duration
         # Errors of bursts that the budget cannot reach are ignored.
         needed = [replicas_needed(scene, e, self.target[e]) for e in self._ordinary_events]
         needed = np.array(needed) / each
@@ -168,7 +168,7 @@ class DynamicsRun(Run):
             block_events,
             budget,
             round_up_blocks(planned),
-            engine.cost_ratio(scene),
+            engine.rates.cost_ratio(scene),
         )
 
     def run(self, progress=None, cores=1, resume_from=None):
@@ -183,7 +183,7 @@ class DynamicsRun(Run):
         engine = find_engine(self.scene)
         constants = {
             "duration": self.replica_duration,
-            "replicas": engine.block_replicas(self.scene, self.replica_duration),
+            "replicas": engine.rates.block_replicas(self.scene, self.replica_duration),
             "target": self._target,
         }
         components = {"all": constants | {"sums": ranges["all"]}}
@@ -222,7 +222,7 @@ class TimedRun(DynamicsRun):
 
     def __post_init__(self):
         super().__post_init__()
-        rate = find_engine(self.scene).expected_event_rate(self.scene)
+        rate = find_engine(self.scene).rates.expected_event_rate(self.scene)
         if self.duration * rate > self.most_events:
             raise InputError(
                 f"duration must be below {format_number(self.most_events / rate, '.3g')}, where "
@@ -241,8 +241,8 @@ class TimedRun(DynamicsRun):
     @cached_property
     def components(self):
         """The ``SequentialRun`` of all blocks, {"all": run}."""
-        engine = find_engine(self.scene)
-        each = engine.block_replicas(self.scene, self.replica_duration) * self.replica_duration
+        duration = self.replica_duration
+        each = find_engine(self.scene).rates.block_replicas(self.scene, duration) * duration
         blocks, run = max(1, math.ceil(self.duration / each)), self._everything(self.most_events)
         return {"all": fixed(run.work, blocks, run.block_events, run.cost_ratio)}
 
@@ -264,11 +264,9 @@ def record_blocks(scene, event, seed, first, stop, going, edges=None):
     wide[: unions[-1]] = n + np.repeat(np.arange(1, len(unions)), np.diff(unions))
     edges = None if edges is None else np.array(edges)
     engine, bins = find_engine(scene), (_width(scene, event), edges, wide)
-    sums = np.zeros((engine.interval_sums, last + 1), np.int64)
-    totals = engine.record_intervals(
-        scene, event, seed, first, stop, CHAINS_PER_BLOCK, bins, sums, going
+    return engine.intervals.record_intervals(
+        scene, event, seed, first, stop, CHAINS_PER_BLOCK, bins, going
     )
-    return totals, sums
 
 
 @dataclass(frozen=True)
@@ -319,12 +317,13 @@ class IntervalsRun(Run):
 
     @property
     def _events(self):
-        return find_engine(self.scene).events_per_interval(self.scene, self.event)
+        return find_engine(self.scene).intervals.events_per_interval(self.scene, self.event)
 
     @property
     def _each(self):
         """The number of intervals of a block."""
-        return CHAINS_PER_BLOCK * find_engine(self.scene).intervals_of_chain(self.scene, self.event)
+        intervals = find_engine(self.scene).intervals
+        return CHAINS_PER_BLOCK * intervals.per_chain(self.scene, self.event)
 
     @property
     def _blocks(self):
@@ -363,7 +362,7 @@ class IntervalsRun(Run):
             found = self.point({"all": {(0, blocks): sums}})
             return np.array([found.stderr / found.mean / self.error])
 
-        ratio = find_engine(self.scene).chain_cost_ratio(self.scene)
+        ratio = find_engine(self.scene).rates.chain_cost_ratio(self.scene)
         run = fixed(work, self._blocks, self._each * self._events, ratio)
         if self.error is not None:
             run = replace(run, error_over_target=error_over_target, budget=self.budget)
@@ -392,4 +391,4 @@ class IntervalsRun(Run):
 
 
 def _width(scene, event):
-    return nearest_power_of_two(find_engine(scene).mean_interval(scene, event) / 16)
+    return nearest_power_of_two(find_engine(scene).intervals.mean_interval(scene, event) / 16)

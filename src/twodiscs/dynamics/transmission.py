@@ -156,11 +156,11 @@ class TransmissionRun(Run):
     name: str | None
 
     def __post_init__(self):
-        find_engine(self.scene).require_coefficient(self.scene, self.hop)
+        find_engine(self.scene).clusters.require_coefficient(self.scene, self.hop)
 
     @cached_property
     def _neighbours(self):
-        return find_engine(self.scene).neighbours(self.scene, self.hop)
+        return find_engine(self.scene).clusters.neighbours(self.scene, self.hop)
 
     @property
     def _gap(self):
@@ -177,15 +177,17 @@ class TransmissionRun(Run):
         given = scene, hop, stream_name(scene, self.name), self.seed
         clusters_seed, times_seed = (hop_seed(*given, what) for what in ("clusters", "times"))
         blocks = -(-self.hops // HOPS_PER_BLOCK)
-        events = HOPS_PER_BLOCK * engine.expected_event_rate(scene)
-        work = engine.work_per_event(scene) * engine.chain_cost_ratio(scene)
+        events = HOPS_PER_BLOCK * engine.rates.expected_event_rate(scene)
+        work = engine.rates.work_per_event(scene) * engine.rates.chain_cost_ratio(scene)
 
         def clusters(first, stop):
             given = self._gap, stop - first, clusters_seed, first
-            return engine.cluster_sizes(scene, hop, *given)[:1]
+            return engine.clusters.cluster_sizes(scene, hop, *given)[:1]
 
         def curve(first, stop):
-            sums, _ = engine.hop_sums(scene, hop, self._times, stop - first, times_seed, first)
+            sums, _ = engine.clusters.hop_sums(
+                scene, hop, self._times, stop - first, times_seed, first
+            )
             return (sums.sum(axis=0),)
 
         runs = {"times": fixed(curve, blocks, self._times[-1] * events, work)}

@@ -109,7 +109,7 @@ def _pilot(run, name, seconds):
 
     scene, engine, one = run.scene, find_engine(run.scene), run.components[name]
     duration = run.replica_duration
-    replicas = engine.block_replicas(scene, duration)
+    replicas = engine.rates.block_replicas(scene, duration)
     sums, blocks, each = timed(one.work, seconds, -(-PILOT_REPLICAS // replicas))
     if name == "all":
         number, errors = blocks * replicas, {}
@@ -117,7 +117,7 @@ def _pilot(run, name, seconds):
         measured = relative_errors(*sums, number, burst_variance).tolist()
         for event, count, error in zip(EVENTS, sums[0].tolist(), measured, strict=True):
             if event in run.target and scene.is_possible(event):
-                expected = engine.expected_rate(scene, event) * duration
+                expected = engine.rates.expected_rate(scene, event) * duration
                 few = count < VARIANCE_COUNTS and expected
                 errors[event] = math.sqrt(CLUSTER_VARIANCE / (expected * number)) if few else error
     else:
@@ -299,10 +299,10 @@ def _price_of_trajectory(scene):
     from twodiscs.sampling.initial_states import components, states
 
     engine, start = find_engine(scene), states(scene, 1, 0)[: len(components(scene)), 0]
-    duration = PILOT_ROWS / engine.trajectory_rate(scene)
+    duration = PILOT_ROWS / engine.paths.trajectory_rate(scene)
 
     def work(first, stop):
-        rows = engine.path_rows(scene, start, duration * (stop - first), 0)
+        rows = engine.paths.path_rows(scene, start, duration * (stop - first), 0)
         return len(trajectory_table(scene, Rows.joined([*rows])))
 
     made, blocks, each = timed(work, SPEED_SECONDS)

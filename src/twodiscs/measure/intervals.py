@@ -168,14 +168,14 @@ def resolved_width(scene):
     """Return the width of a bin in which a pair of discs has ``RESOLVED_EVENTS`` on average."""
     from twodiscs.dynamics.engine import find_engine
 
-    return RESOLVED_EVENTS * scene.discs / 2 / find_engine(scene).expected_event_rate(scene)
+    return RESOLVED_EVENTS * scene.discs / 2 / find_engine(scene).rates.expected_event_rate(scene)
 
 
 def resolving_edges(scene, hop):
     """Return edges of bins that resolve the start and widen in proportion to time, to 32 τ."""
     from twodiscs.dynamics.engine import find_engine
 
-    mean = find_engine(scene).mean_interval(scene, hop)
+    mean = find_engine(scene).intervals.mean_interval(scene, hop)
     width = 2.0 ** math.floor(math.log2(min(mean / 16, resolved_width(scene))))
     return [width * edge for edge in wide_edges(32 * mean / width)]
 

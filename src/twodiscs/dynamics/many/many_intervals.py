@@ -14,9 +14,6 @@ from twodiscs.sampling.many import many_initial_states
 from twodiscs.sampling.many.many_initial_states import block_states, large_grid, make_initial
 from twodiscs.sampling.streams import open_stream
 
-#: Numbers that are summed in each bin of intervals: Σ c, Σ c² and Σ c n.
-SUMS_WITH_COUNTS = 3
-
 
 def mean_interval(scene, hop):
     """Return the mean time between two hops of any pair, maybe within a few per cent only."""
@@ -40,7 +37,7 @@ def _window(scene, hop):
     return min(max(window, many_rates.replica_duration(scene)), 64 * window)
 
 
-def intervals_of_chain(scene, hop):
+def per_chain(scene, hop):
     """Return the least number of intervals of a chain; its window has up to twice as many."""
     return max(ensemble.CHAIN_HOPS, int(_window(scene, hop) / mean_interval(scene, hop) / 2))
 
@@ -49,17 +46,16 @@ def events_per_interval(scene, hop):
     """Return the most wall and disc events per interval, with their work."""
     window = _window(scene, hop)
     events = window * many_rates.expected_event_rate(scene) * many_rates.work_per_event(scene)
-    return events / intervals_of_chain(scene, hop)
+    return events / per_chain(scene, hop)
 
 
-def record_intervals(scene, hop, seed, first, stop, chains, bins, sums, going):
-    """Add the intervals between hops to ``sums`` and return the times of the chains."""
-    window = _window(scene, hop)
-    return record_within(window, scene, hop, seed, first, stop, chains, bins, sums, going)
+def record_intervals(scene, hop, seed, first, stop, chains, bins, going, *, window=None):
+    """Return ((times, intervals) of chains, Σ c, Σ c² and Σ c n of each bin) of some blocks.
 
-
-def record_within(window, scene, hop, seed, first, stop, chains, bins, sums, going):
-    """Add the intervals that begin within a ``window`` of time, see ``all_pairs``."""
+    Intervals that begin within the ``window`` of time are counted, see ``all_pairs``.
+    """
+    (width, edges, wide), window = bins, window or _window(scene, hop)
+    sums = np.zeros((3, wide.max() + 1), np.int64)
     if large_grid(scene) is None:
         hops_x, kicks = True if hop == "horizontal_hop" else None, new_kicks(scene, ensemble.LANES)
         given = window, many_disc_law(scene), hops_x, bins, sums, going, kicks
@@ -68,8 +64,8 @@ def record_within(window, scene, hop, seed, first, stop, chains, bins, sums, goi
             states = block_states(initial, chains, seed, block)
             seeds = np.uint64(seed), block * chains
             totals.append(all_pairs.record_intervals(states, *seeds, *given))
-        return np.hstack(totals)
-    (width, edges, wide), path, initial = bins, Followed(scene, (hop,)), make_initial(scene)
+        return np.hstack(totals), sums
+    path, initial = Followed(scene, (hop,)), make_initial(scene)
     totals, state = np.zeros((2, (stop - first) * chains)), np.zeros((initial.rows, 1))
     for chain in range(totals.shape[1]):
         if chain % chains == 0:
@@ -81,7 +77,7 @@ def record_within(window, scene, hop, seed, first, stop, chains, bins, sums, goi
         while step == window or (times.size and times[-1] < window):
             for log, order in path.go_on(step):
                 if not going[0]:
-                    return totals
+                    return totals, sums
                 hops = order[log.classes[order] < COLLISIONS]
                 times = np.append(times, log.times[hops])
             step = window / ensemble.CHAIN_HOPS
@@ -91,4 +87,4 @@ def record_within(window, scene, hop, seed, first, stop, chains, bins, sums, goi
         counts = np.bincount(np.append(index, wide[index]), minlength=sums.shape[1])
         totals[:, chain] = intervals.sum(), intervals.size
         sums += counts, counts**2, counts * intervals.size
-    return totals
+    return totals, sums

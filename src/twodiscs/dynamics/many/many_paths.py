@@ -21,15 +21,20 @@ LOG_ENTRIES = 2**14
 MANY_DISC_PATH_EVENTS, MOST_ROWS = 1500, 2**13
 
 
-def advance_all(scene, states, laps, time, kicks, hops=None):
+def new_wraps(scene, number):
+    """Return no rounds of the discs along x and y, for a ``number`` of states."""
+    return np.zeros((2 * scene.discs, number))
+
+
+def advance_all(scene, states, wraps, time, kicks, hops=None):
     """Advance the columns of ``states`` (rows, replicas), see ``Engine``.
 
     The hops in x are added to ``hops`` (replicas,) unless it is None.
     """
     law, grid = many_disc_law(scene), large_grid(scene)
     if grid is None:
-        return all_pairs.advance_states(states, laps, time, law, kicks, hops)
-    return cell_list.advance_all(states, laps, time, usual_epoch(scene), law, grid, kicks, hops)
+        return all_pairs.advance_states(states, wraps, time, law, kicks, hops)
+    return cell_list.advance_all(states, wraps, time, usual_epoch(scene), law, grid, kicks, hops)
 
 
 class Followed:

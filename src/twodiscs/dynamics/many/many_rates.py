@@ -168,3 +168,6 @@ def cost_ratio(scene):
         return EVENT_COST + DISC_COST * scene.discs
     pair = PAIR_COST if scene.moment_of_inertia is None else ROUGH_PAIR_COST
     return 1 + pair * scene.discs * (scene.discs - 1) / 2
+
+
+chain_cost_ratio = cost_ratio

@@ -43,6 +43,7 @@ from twodiscs.model.scene import hopping_along
 from twodiscs.sampling.initial_states import StartSampler, require_initial_states
 from twodiscs.sampling.jit import inlined
 from twodiscs.sampling.rejection import rejection_sampler
+from twodiscs.theory import exact
 
 #: Clusters of this many hops, or more, are in one class. It counts as even, which makes κ too small
 #: by less than the fraction of hops in it over their number.
@@ -170,6 +171,11 @@ def require_coefficient(scene, hop):
         raise InputError(
             f"hop {hop!r} must be open for passages, but is blocked at radius {scene.radius!r}"
         )
+
+
+def neighbours(scene, hop):
+    """Return the mean time between two hops, and that no other pair shares a disc."""
+    return exact.mean_times(scene)[hop], 0
 
 
 def _axis(hop):

@@ -66,6 +66,11 @@ def advance_states(states, wraps, time, law, kicks):
         put_state(states, i, state, law)
 
 
+def new_wraps(scene, number):
+    """Return no jumps of the three separations, for a ``number`` of states."""
+    return np.zeros((3, number))
+
+
 def advance_all(scene, states, wraps, time, kicks):
     """Advance the columns of ``states``, see ``Engine``."""
     advance_states(states, wraps, time, two_disc_law(scene), kicks)

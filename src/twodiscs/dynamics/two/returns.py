@@ -9,9 +9,7 @@ from twodiscs.dynamics.law import crosses, crossing_time
 from twodiscs.dynamics.two.follow import follow, relative_motion
 from twodiscs.model.scene import hopping_along
 from twodiscs.sampling.initial_states import start_sampler
-
-#: Numbers that are summed in each bin: Σ c and Σ c².
-INTERVAL_SUMS = 2
+from twodiscs.theory import exact
 
 
 class Returns(NamedTuple):
@@ -84,15 +82,31 @@ class Returns(NamedTuple):
         return 0.0
 
 
+def mean_interval(scene, hop):
+    """Return the exact mean time between two hops."""
+    return exact.mean_times(scene)[hop]
+
+
+def per_chain(scene, hop):
+    """Return the number of intervals of a chain."""
+    return CHAIN_HOPS
+
+
+def events_per_interval(scene, hop):
+    """Return the exact wall and disc events per interval, with their work."""
+    return exact.events_per_interval(scene, hop)
+
+
 def record_intervals(
-    scene, hop, seed, first, stop, chains, bins, sums, going, *, returns=CHAIN_HOPS, lanes=LANES
+    scene, hop, seed, first, stop, chains, bins, going, *, returns=CHAIN_HOPS, lanes=LANES
 ):
-    """Add the intervals of the blocks ``first`` … ``stop`` − 1 to ``sums``, as in ``Returns``.
+    """Return (the time of each chain, Σ c and Σ c² of each bin) of some blocks, see ``Returns``.
 
     Each block has ``chains`` chains of as many intervals as ``returns``; ``bins`` are (width,
-    edges, wide). ``going`` is an array to stop it with. Returns the total time of each chain.
+    edges, wide). ``going`` is an array to stop it with.
     """
     width, edges, wide = bins
+    sums = np.zeros((2, wide.max() + 1), np.int64)
     if scene.is_plain:  # initial states are drawn on the surface of vertical hops only
         scene, hop = hopping_along(scene, hop, "y")
     horizontal = True if hop == "horizontal_hop" else None
@@ -105,4 +119,4 @@ def record_intervals(
     )  # fmt: skip
     sampler = start_sampler(scene, surface=1 if horizontal is None else 0)
     follow(recorded, scene, sampler, seed, first, stop, chains, lanes, SWEEPS, going)
-    return totals
+    return totals, sums

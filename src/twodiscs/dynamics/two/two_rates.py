@@ -1,6 +1,6 @@
 """Two discs: expected rates, the durations of replicas and what an event costs."""
 
-from twodiscs.dynamics.ensemble import nearest_power_of_two
+from twodiscs.dynamics.ensemble import REPLICAS, nearest_power_of_two
 from twodiscs.dynamics.two import strip
 from twodiscs.model.events import HOPS
 from twodiscs.theory import exact
@@ -12,12 +12,17 @@ HOPS_PER_REPLICA = 4
 EVENTS_BETWEEN_RARE_HOPS = 64
 
 
+def expected_event_rate(scene):
+    """Return the exact wall hits and collisions per time."""
+    return exact.event_rate(scene)
+
+
 def expected_rate(scene, event):
     """Return the exact rate of all events that count as ``event``."""
     return exact.rate(scene, event) * scene.copies(event)
 
 
-def replica_duration(scene):
+def replica_duration(scene, budget=None):
     """Return the time T of one replica, a power of two: some ``EVENTS_PER_REPLICA`` events.
 
     T is so long that the draw of a start costs little. If an open hop happens less than
@@ -32,9 +37,19 @@ def replica_duration(scene):
     return duration
 
 
+def block_replicas(scene, duration=None):
+    """Return the number of replicas of a block, for any ``duration``."""
+    return REPLICAS
+
+
 def cost_ratio(scene):
     """Return the time of an event, with the draws of starts, over its time in the plain scene."""
     return 1 + strip.PROPOSAL_COST * proposals_per_event(scene)
+
+
+def chain_cost_ratio(scene):
+    """Return the time of an event of a chain, over its time in the plain scene."""
+    return 1.0
 
 
 def proposals_per_event(scene):

@@ -20,9 +20,8 @@ import numpy as np
 from mpmath import mp
 
 import twodiscs
-from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import LANES, REPLICAS
-from twodiscs.dynamics.two import strip
+from twodiscs.dynamics.two import event_counts, strip, two_rates
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import stratified_mean
@@ -87,7 +86,7 @@ class Method(NamedTuple):
 def _by_counts(name, scene, events, replicas, block, **more):
     """Return the ``Method`` whose ``block`` counts ``events`` of a number of ``replicas``."""
     hop = events.index(TIMED_HOP)
-    expected = exact.rate(scene, TIMED_HOP) * find_engine(scene).replica_duration(scene) * replicas
+    expected = exact.rate(scene, TIMED_HOP) * two_rates.replica_duration(scene) * replicas
 
     def estimate(sums, blocks):
         return sums[hop] / (blocks * expected)
@@ -97,18 +96,18 @@ def _by_counts(name, scene, events, replicas, block, **more):
 
 def lockstep_method(scene, seed, blocks=1):
     """Return the ``Method`` of the engine: all events, ``blocks`` blocks as one."""
-    duration = find_engine(scene).replica_duration(scene)
+    duration = two_rates.replica_duration(scene)
 
     def block(i):
         first, stop = i * blocks, (i + 1) * blocks
-        return find_engine(scene).run_blocks(scene, EVENTS, seed, first, stop, duration)[0]
+        return event_counts.run_blocks(scene, EVENTS, seed, first, stop, duration)[0]
 
     return _by_counts("lockstep", scene, EVENTS, blocks * REPLICAS, block)
 
 
 def scalar_method(scene, seed):
     """Return the ``Method`` of one trajectory after the other."""
-    given = FEW_REPLICAS, find_engine(scene).replica_duration(scene), scene.contact_distance
+    given = FEW_REPLICAS, two_rates.replica_duration(scene), scene.contact_distance
     given += (conditioned_sampler(scene),)
 
     def block(i):
@@ -119,7 +118,7 @@ def scalar_method(scene, seed):
 
 def steps_method(scene, seed, step):
     """Return the ``Method`` of looking for overlaps every ``step``, a power of two."""
-    steps = round(find_engine(scene).replica_duration(scene) / step)
+    steps = round(two_rates.replica_duration(scene) / step)
     given = FEW_REPLICAS, LANES, steps, step, scene.contact_distance, conditioned_sampler(scene)
 
     def block(i):

@@ -62,8 +62,8 @@ def interleaved(variants, repetitions=REPETITIONS):
 def lockstep(blocks=PRICE_BLOCKS, scene=SCENE, events=EVENTS):
     """Count ``events``, by default all, up to a fixed end time, with statistics by replica."""
     engine = find_engine(scene)
-    duration = engine.replica_duration(scene)
-    run = partial(engine.run_blocks, scene, events, 1, 0, duration=duration)
+    duration = engine.rates.replica_duration(scene)
+    run = partial(engine.counts.run_blocks, scene, events, 1, 0, duration=duration)
     run(0)  # compiles
     counted, seconds = timed(lambda: run(blocks))
     return runs.simulated_events(counted[0]), seconds
