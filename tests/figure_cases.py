@@ -198,22 +198,20 @@ QUANTITY = re.compile(r"(?<!\\)\b(times?|radius|area|volume|distance|interval)\b
 def unclear(figure):
     """Return the faults of a figure, each as its kind and what has it.
 
-    A label of an axis has no "unit". A text is "beyond" the figure, "pale" on white, on an "other"
-    text, or on a "line", an edge or a symbol, if no white box or rim of the text covers them.
-    Symbols are "unnamed" if no legend has their colour, marker and filling. Each may stand in
-    another entry, and a filling in a grey one.
+    An axis with numbers has "no label". A label has no "unit". A text is "beyond" the figure,
+    "pale" on white, on an "other" text, or on a "line", an edge or a symbol, if no white box or rim
+    of the text covers them. Symbols are "unnamed" if no legend has their colour, marker and
+    filling. Each may stand in another entry, and a filling in a grey one.
     """
     texts = shown_texts(figure)
     (width, height), named = figure.bbox.size, [(t.get_text(), b) for t, b in texts]
     edges = [edge for axes in figure.axes for edge in edges_of(axes)]
     bare = [(t, b) for t, b in texts if t.get_bbox_patch() is None and not t.get_path_effects()]
-    labels = [
-        one.get_label_text()
-        for axes in figure.axes
-        if axes.axison
-        for one in (axes.xaxis, axes.yaxis)
-    ]
+    shown = [one for a in figure.axes if a.axison for one in (a.xaxis, a.yaxis)]
+    labels = [one.get_label_text() for one in shown]
+    nameless = [one for one, label in zip(shown, labels, strict=True) if not label]
     return [
+        *(("no label", one.axes.get_label()) for one in nameless if has_numbers(one)),
         *(("unit", label) for label in labels if lacks_unit(label)),
         *(("beyond", t) for t, b in named if min(b.p0) < 0 or b.x1 > width or b.y1 > height),
         *(("pale", t.get_text()) for t, _ in texts if contrast(t.get_color()) < CONTRAST),
@@ -221,6 +219,12 @@ def unclear(figure):
         *(("line", t.get_text()) for t, b in bare if any(on(shared(b, c), e) for e, c in edges)),
         *(("unnamed", *one) for one in sorted(unnamed_looks(figure))),
     ]
+
+
+def has_numbers(axis):
+    """Return whether numbers stand beside an ``axis``, and not names or nothing."""
+    texts = [one.get_text() for one in axis.get_ticklabels() if one.get_visible()]
+    return any(re.fullmatch(r"[^a-zA-Z]*\d[^a-zA-Z]*", re.sub(r"\\[a-z]+", "", t)) for t in texts)
 
 
 def lacks_unit(label):
