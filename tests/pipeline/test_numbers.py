@@ -223,16 +223,6 @@ def expected(results):
     }
 
 
-def exponent(tables):
-    """Return the slope of ln(1 − κ) against ln δ by the normal equations."""
-    rows = tables["passages"].query(
-        "scene == 'paper' and event == 'horizontal_hop' and quantity == 'coefficient'"
-        " and moment_of_inertia.isna() and friction.isna()"
-    )
-    x, kappa, error = rows[["distance", "estimate", "stderr"]].to_numpy(float)[-5:].T
-    return np.polyfit(np.log(x), np.log(1 - kappa), 1, w=(1 - kappa) / error)[0]
-
-
 def reach(tables):
     """Return the last time over the one at which 2Dt of hops, with friction, is as large as F√t."""
     rows = tables["long_displacements"].query("distance == 2**-5 and friction.notna()")
@@ -256,7 +246,6 @@ BY_HAND = {
     "never_met_rough": lambda t: (
         t["effects"].query("quantity == 'never_met_share' and duration == 1e4").estimate.max()
     ),
-    "passages_exponent": exponent,
     "long_files_law_error": lambda t: (
         t["long_displacements"].query(SINGLE).eval("100 * stderr / estimate").max()
     ),
@@ -290,13 +279,7 @@ def test_the_long_run_is_what_its_shards_counted_and_agrees():
     request = load(read(folder / "config.yaml")).scenes[0]
     job = STAGES["dynamics"], request.box.scene(request.radii[0])
     point = read_point(folder / "dynamics.json", *job, request.arguments("dynamics"))
-    made = MeanTimesTable.rows([point])
-    kept = MeanTimesTable.read(folder / "mean_times.csv")
-    assert [row["event"] for row in made] == [row["event"] for row in kept]
-    for ours, theirs in zip(made, kept, strict=True):
-        assert ours["count"] == theirs["count"]
-        assert ours["estimate"] == pytest.approx(theirs["estimate"], rel=1e-12)
-        assert abs(ours["z"]) < 5  # ten scores: a false alarm in 2e5 seeds
+    assert all(abs(row["z"]) < 5 for row in MeanTimesTable.rows([point]))  # a false alarm in 2e5 seeds
     settings = request.shard_arguments("dynamics")
     ranges = read_shards(folder.glob("shards/*.json"), *job, settings)
     (counts, _), blocks = reached(ranges["all"], point.replicas // REPLICAS)

@@ -19,8 +19,6 @@ from twodiscs.figures.style import EVENT_LOOKS
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.conditioned import conditioned_sampler
-from twodiscs.sampling.initial_states import draw_starts
-from twodiscs.sampling.streams import open_stream
 from twodiscs_paper import benchmark
 from twodiscs_paper.studies.accuracy_cost import figure, figure_by_radius, scalar, timestepping
 from twodiscs_paper.studies.accuracy_cost import measure as costs
@@ -81,39 +79,15 @@ def test_quadrature_falls_off_a_cliff(radius, quantity):
 # Other programs -----------------------------------------------------------------------------------
 
 
-def plain(scene, start, steps, step):
-    """Return the counts of one trajectory, with vectors and branches."""
-    x, v = np.array(start[:4]).reshape(2, 2), np.array(start[4:]).reshape(2, 2)
-    half = np.array([scene.range_x, scene.range_y]) / 2
-    walls, hops, collisions = np.zeros(2, int), np.zeros(2, int), 0
-    for _ in range(steps):
-        before = x[0] - x[1]
-        x = x + v * step
-        beyond = (np.abs(x) > half) & (x * v > 0)
-        walls += beyond.sum(axis=0)
-        v = np.where(beyond, -v, v)
-        apart = x[0] - x[1]
-        hops += (before < 0) != (apart < 0)
-        approach = apart @ (v[0] - v[1])
-        if apart @ apart < scene.contact_distance**2 and approach < 0:
-            collisions += 1
-            kick = approach / (apart @ apart) * apart
-            v = v + np.array([-kick, kick])
-    return [hops[1], hops[0], collisions, *walls, walls.sum()]  # in the order of scalar.COUNTED
-
-
-@pytest.mark.parametrize(("radius", "step"), [(0.2, 0.05), (0.24, 0.01), (0.3, 0.02)])
-def test_it_is_the_plain_simulation(radius, step):
-    """Short enough that chaos has not made a last digit into another count."""
-    scene, replicas, steps = PAPER.with_radius(radius), 16, 150
-    draw, starts = conditioned_sampler(scene), np.zeros((8, 16))
-    sums = timestepping.step_blocks(
-        np.uint64(4), 0, 1, replicas, 8, steps, step, scene.contact_distance, draw
-    )
-    draw_starts(open_stream(np.uint64(4), 0), draw, starts)
-    expected = np.sum([plain(scene, start, steps, step) for start in starts.T], axis=0)
-    assert sums.tolist() == expected.tolist()
-    assert sums[-1] > 50
+@pytest.mark.parametrize("radius", [0.2, 0.24, 0.3])
+def test_short_steps_count_what_the_scalar_engine_counts(radius):
+    """From the same starts, up to the events of the last step and of grazing discs."""
+    scene, step, steps = PAPER.with_radius(radius), 2.0**-14, 2**15
+    shared = scene.contact_distance, conditioned_sampler(scene)
+    sums = timestepping.step_blocks(np.uint64(4), 0, 1, 256, 8, steps, step, *shared)
+    due, _ = scalar.count_blocks(np.uint64(4), 0, 1, 256, steps * step, *shared)
+    assert sum(due) > 3000
+    assert np.abs(sums - due).max() <= 5
 
 
 @pytest.mark.parametrize("radius", [0.05, 0.2, 0.24, 0.3, 0.38])

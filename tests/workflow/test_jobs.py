@@ -62,18 +62,6 @@ NO_CODE = {"__init__", "__main__", "catalogue", "cli", "configuration"}
 #: The modules that a job runs in another process.
 SPAWNED = {"src/twodiscs_paper/studies/effects/engine_without_effects.py"}
 
-#: The sources that no job with a group of code imports; ``needless`` and ``lacking`` are the proof.
-NO_JOB = {
-    *(
-        f"twodiscs/measure/{name}.py"
-        for name in ("intervals", "load", "observe", "pressure", "scan", "transmission")
-    ),
-    "twodiscs/dynamics/averages.py",
-    "twodiscs/figures/plot.py",
-    "twodiscs_paper/pipeline/build.py",
-    "twodiscs_paper/pipeline/results/verify.py",
-}
-
 #: Modules that are imported without an effect on a table: the start of a job, titles and captions.
 NO_NUMBER = {"src/twodiscs_paper/pipeline/job.py"}
 NO_NUMBER |= {f"src/twodiscs/figures/{name}.py" for name in ("scene_figures", "curves")}
@@ -102,16 +90,11 @@ def groups(planned_files):
     return {output: inputs for rule, inputs, output in planned_files if rule == "code"}
 
 
-def test_the_checksums_are_those_of_all_sources(unbuilt, groups):
-    """A folder or module that is added belongs to a group, or to ``NO_CODE``."""
-    source = unbuilt.path / "src"
-    kinds = (".py", ".mplstyle", ".html")
-    paths = {path.relative_to(source) for path in source.rglob("*") if path.suffix in kinds}
-    counted = {path.as_posix() for path in paths if path.with_suffix("").parts[1] not in NO_CODE}
-    # Those that draw a figure of a study are inputs of its jobs; the folder of studies has no code.
-    drawing = {path for path in counted if re.search("twodiscs_paper/studies/.*/figure", path)}
-    counted -= drawing | NO_JOB | {"twodiscs_paper/studies/__init__.py"}
-    assert set().union(*groups.values()) == {f"src/{path}" for path in counted}
+def test_the_checksums_are_also_those_of_files_that_no_job_imports(groups):
+    """Styles, templates, and a module that runs in another process."""
+    paths = [*(REPOSITORY / "src").rglob("*.mplstyle"), *(REPOSITORY / "src").rglob("*.html")]
+    files = {path.relative_to(REPOSITORY).as_posix() for path in paths}
+    assert SPAWNED | files <= set().union(*groups.values())
 
 
 def test_a_job_has_the_code_that_its_script_imports(planned_files, groups):

@@ -4,9 +4,7 @@ Without these tests shards could be done twice, be lost, or have the numbers of 
 """
 
 import re
-import shutil
 
-import pytest
 from checkout import folder, one_scene
 
 from twodiscs.model.scene import Scene
@@ -25,20 +23,8 @@ TABLE = "results/tiny/mean_times.csv"
 
 
 def place_at(path, home, **keys):
-    """Return a folder with a configuration in which ``keys`` differ, of all or of the scene."""
-    top = {name: keys.pop(name) for name in TINY.keys() & keys.keys()}
-    return folder(path, home, TINY | top | {"scenes": [TINY["scenes"][0] | keys]})
-
-
-def build(place):
-    """Build the mean times; return them."""
-    place.snakemake("--cores", "2", "--", TABLE)
-    return (place.path / TABLE).read_bytes()
-
-
-def shards(place):
-    """Return the files of the shards, sorted."""
-    return sorted(place.path.glob("results/tiny/shards/**/*.json"))
+    """Return a folder with a configuration in which ``keys`` of the scene differ."""
+    return folder(path, home, TINY | {"scenes": [TINY["scenes"][0] | keys]})
 
 
 def test_shards_are_jobs_of_a_dry_run_and_one_of_another_scene_is_refused(unbuilt, tmp_path):
@@ -80,23 +66,3 @@ def test_shards_are_jobs_of_a_dry_run_and_one_of_another_scene_is_refused(unbuil
     place_at(place.path, unbuilt, accuracy=5e-4)
     assert planned()
     assert not planned() & first
-
-
-@pytest.mark.slow
-def test_neither_the_size_nor_the_site_of_shards_is_of_consequence(unbuilt, tmp_path):
-    """One site does the first shards, another one the rest; a third one joins them."""
-    whole, small = (place_at(tmp_path / f"{n}", unbuilt, shard_events=n) for n in (1e7, 3e7))
-    table = build(whole)
-    assert table.count(b",0.001,reached,") == 2
-    assert build(small) == table
-    assert len(shards(whole)) > len(shards(small)) > 0
-    files = [path.relative_to(whole.path) for path in shards(whole)]
-    joined = place_at(tmp_path / "joined", unbuilt)
-    for i in (0, 1):
-        site = place_at(tmp_path / f"site-{i}", unbuilt)
-        site.snakemake("--cores", "2", "--", *map(str, files[i::2]))
-        shutil.copytree(site.path / "results", joined.path / "results", dirs_exist_ok=True)
-    # The copies of the second site may be newer than the shards of the first.
-    joined.snakemake("--cores", "1", "--touch", "--", *map(str, files))
-    assert "shard" not in {rule for rule, _ in joined.jobs(TABLE)}
-    assert build(joined) == table
