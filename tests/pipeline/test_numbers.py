@@ -279,7 +279,8 @@ def test_the_long_run_is_what_its_shards_counted_and_agrees():
     request = load(read(folder / "config.yaml")).scenes[0]
     job = STAGES["dynamics"], request.box.scene(request.radii[0])
     point = read_point(folder / "dynamics.json", *job, request.arguments("dynamics"))
-    assert all(abs(row["z"]) < 5 for row in MeanTimesTable.rows([point]))  # a false alarm in 2e5 seeds
+    # Six scores: a false alarm in 3e5 seeds.
+    assert all(abs(row["z"]) < 5 for row in MeanTimesTable.rows([point]))
     settings = request.shard_arguments("dynamics")
     ranges = read_shards(folder.glob("shards/*.json"), *job, settings)
     (counts, _), blocks = reached(ranges["all"], point.replicas // REPLICAS)
