@@ -5,16 +5,14 @@ import math
 from contextlib import contextmanager
 from functools import cached_property
 from itertools import combinations_with_replacement
-from types import MappingProxyType
 from unittest.mock import patch
 
 import numpy as np
 
 from twodiscs.analysis import tables
-from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.events import EVENT_AXES, EVENTS, HOPS, SHELL_EVENTS, WALLS
 from twodiscs.model.scene import Box
-from twodiscs.points.base import file_content, restore_arrays, write_json
+from twodiscs.points.base import file_content, restore_arrays
 from twodiscs.points.dynamics_point import DynamicsPoint
 from twodiscs.points.intervals_point import Bins, IntervalsPoint
 from twodiscs.points.monte_carlo_point import Hits, MonteCarloPoint
@@ -117,28 +115,6 @@ def through_json(ranges):
     """Return the sums of ``ranges`` of blocks as they come back from a file."""
     content = file_content("simulate", {}, {}, {"all": {"sums": ranges}})
     return restore_arrays(json.loads(json.dumps(content))["parts"])["all"]["sums"]
-
-
-def write(point, path, settings=MappingProxyType({})):
-    """Write the file of a job with the sums of a fabricated ``point`` of one block."""
-    if point.stage == "dynamics":
-        sums, products = np.zeros(len(EVENTS), int), np.zeros((len(EVENTS), len(EVENTS)), int)
-        for event, count in point.counts.items():
-            sums[EVENTS.index(event)] = count
-        for pair, product in point.products.items():
-            products[tuple(EVENTS.index(event) for event in pair.split("*"))] = product
-        part = {"duration": point.duration, "replicas": point.replicas, "target": point.target}
-        part["sums"] = {(0, 1): [sums, products]}
-    else:
-        quantities = {
-            name: {"place": place, "measure": hits.measure, "epsilon": hits.epsilon}
-            for place, (name, hits) in enumerate(point.quantities.items())
-        }
-        hits = [hits.hits for hits in point.quantities.values()]
-        part = {"method": point.method, "samples": point.samples, "quantities": quantities}
-        part |= {"right_and_top": len(hits), "sums": {(0, 1): [[*hits, point.right_and_top]]}}
-    call = STAGES[point.stage].call
-    write_json(path, file_content(call, point.scene.parameters(), dict(settings), {"all": part}))
 
 
 # By laws ----------------------------------------------------------------------------------------

@@ -6,13 +6,13 @@ Without these tests a job could be killed at its limit, or blocks be counted twi
 from dataclasses import replace
 from itertools import pairwise
 
-import numpy as np
 import pytest
-from factory import Laws, write, write_rows
+from factory import write_rows
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from twodiscs.analysis.tables import CostTable, MeanTimesTable
+from twodiscs.points.base import file_content, write_json
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.yaml_files import load
 from twodiscs_paper.pipeline import job_cost
@@ -149,11 +149,12 @@ def test_a_dry_run_says_which_accuracies_are_not_reached(blocks, monkeypatch, tm
     more = "1 more radii may stop early: see the target forecast"
     assert job_cost.shortfalls(configuration) == [lines[0], more]
     for radius, error in ((0.2, 1e-5), (0.3, 1e-2)):
-        point = Laws(short.box.scene(radius)).dynamics(np.random.default_rng(1), relative=1e-3)
+        point = job_cost.run_at(scene(accuracy=1e-2), "dynamics", radius).run()
+        parts = {"all": point.components["all"] | {"target": dict.fromkeys(point.target, error)}}
         path = tmp_path / f"results/a/points/dynamics/{radius}.json"
         path.parent.mkdir(parents=True, exist_ok=True)
-        point = replace(point, target=dict.fromkeys(point.target, error))
-        write(point, path, short.arguments("dynamics"))
+        settings = short.arguments("dynamics")
+        write_json(path, file_content("simulate", point.scene.parameters(), settings, parts))
     changed = scene(accuracy=2e-5, event_budget=2e9, radii=[0.2])
     (line,) = job_cost.shortfalls(replace(configuration, scenes=(changed,)))
     assert "of 2e-5, but the budget of 2e9 events ends the run" in line

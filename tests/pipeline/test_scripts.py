@@ -10,36 +10,34 @@ import runpy
 from pathlib import Path
 from types import MappingProxyType, SimpleNamespace
 
-import numpy as np
 import pytest
-from factory import BOX, Laws, write
+from checkout import one_scene
 from snakemake.iocontainers import Namedlist
 
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.checks import InputError
 from twodiscs.points.base import digest, read_json, write_json
+from twodiscs_paper.configuration.yaml_files import load
 from twodiscs_paper.pipeline import job
 from twodiscs_paper.pipeline.points import read_point
 
 gc.enable()  # a job begins without
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "workflow" / "scripts"
-PARAMETERS = BOX.parameters()
-NAMED = {"seed": 7, "name": "a"}
-SAMPLED = {"quantities": ["volume", "top_wall_area"], "samples": 3 * 10**6, "shell": 0.1}
-WORK = {
-    "monte_carlo": NAMED | SAMPLED,
-    "dynamics": NAMED | {"error": {"vertical_hop": 0.01, "top_wall": 0.1}, "budget": 10**7},
-    "intervals": NAMED | {"hop": "vertical_hop", "number": 3 << 16, "budget": 10**9},
-}
-
-#: The arguments of a shard: it does not depend on accuracy or budget.
-SHARD = {
-    "monte_carlo": {"samples": 1},
-    "dynamics": {"error": {"vertical_hop": 0.5, "top_wall": 0.5}, "budget": 1},
-    "intervals": {"number": 1, "budget": 10**15},
-}
+WATCHED = {"volume": True, "areas": ["top_wall"], "mean_times": ["vertical_hop", "top_wall"]}
+REQUEST = load(
+    {"seed": 7}
+    | one_scene(
+        "a",
+        radii=[0.2],
+        watch=WATCHED | {"hop_histogram": {"radii": [0.2], "intervals": 3 << 16}},
+        accuracy={"vertical_hop": 0.01, "top_wall": 0.1},
+        event_budget=1e7,
+        monte_carlo={"samples": 3e6, "shell": 0.1},
+    )
+).scenes[0]
+BOX, WORK = REQUEST.box, {stage: REQUEST.arguments(stage) for stage in STAGES}
 
 
 #: Neither wildcards nor files.
@@ -63,12 +61,13 @@ def run(monkeypatch, tmp_path):
     return run
 
 
-def point(run, stage, output, shards=()):
+def point(run, stage, output, shards=(), radius=0.2):
     """Make a point, of ``shards`` if there are any."""
-    params = {"box": PARAMETERS, "work": WORK[stage], "shard_work": WORK[stage] | SHARD[stage]}
-    where = {"stage": stage, "radius": "0.2"}
+    params = {"box": BOX.parameters(), "work": WORK[stage]}
+    params["shard_work"] = REQUEST.shard_arguments(stage)
+    where = {"stage": stage, "radius": f"{radius}"}
     run("point", params, where, {"shards": [*shards]}, point=output)
-    return read_point(output, STAGES[stage], BOX.scene(0.2), WORK[stage])
+    return read_point(output, STAGES[stage], BOX.scene(radius), WORK[stage])
 
 
 def shards(run, stage, ranges):
@@ -77,7 +76,7 @@ def shards(run, stage, ranges):
     for first, stop in ranges:
         files.append(f"all-{first}-{stop}.json")
         where = {"stage": stage, "radius": "0.2", "component": "all", "first": first, "stop": stop}
-        params = {"box": PARAMETERS, "work": WORK[stage] | SHARD[stage]}
+        params = {"box": BOX.parameters(), "work": REQUEST.shard_arguments(stage)}
         run("point", params, where, point=files[-1])
     return files
 
@@ -124,19 +123,18 @@ def test_a_part_of_a_point_that_is_missing_is_named(run):
 
 
 @pytest.fixture
-def points(run, tmp_path):
-    """The files of fabricated points at three radii."""
-    files, rng = {"intervals": []}, np.random.default_rng(1)
-    for stage, samples in {"monte_carlo": {"samples": 10**7}, "dynamics": {}}.items():
-        (tmp_path / stage).mkdir()
-        files[stage] = [tmp_path / stage / f"{radius}.json" for radius in (0.1, 0.2, 0.3)]
+def points(run):
+    """The files of points at three radii."""
+    files = {"intervals": []}
+    for stage in ("monte_carlo", "dynamics"):
+        Path(stage).mkdir()
+        files[stage] = [f"{stage}/{radius}.json" for radius in (0.1, 0.2, 0.3)]
         for path in files[stage]:
-            laws = Laws(BOX.scene(float(path.stem)))
-            write(getattr(laws, stage)(rng, **samples), path)
+            point(run, stage, path, radius=float(Path(path).stem))
     return files
 
 
-MADE = {"box": PARAMETERS, "given": {}, "work": {stage: {} for stage in STAGES}}
+MADE = {"box": BOX.parameters(), "given": {}, "work": WORK}
 
 
 def test_cost_is_the_time_of_the_jobs_and_may_be_missing(run, points):
@@ -149,13 +147,13 @@ def test_cost_is_the_time_of_the_jobs_and_may_be_missing(run, points):
     run("table", MADE, files=points, table="cost.csv")
     rows = {(r["stage"], r["radius"]): r for r in SCENE_TABLES["cost"].read("cost.csv")}
     assert [rows["dynamics", radius]["seconds"] for radius in (0.1, 0.2, 0.3)] == [2.5, 4.5, None]
-    assert rows["monte_carlo", 0.1]["events"] == 10**7
+    assert rows["monte_carlo", 0.1]["events"] == 3 * 2**20
 
 
 def test_a_figure_names_its_code_and_its_tables(run, points, tmp_path):
     run("table", MADE, files=points, table="volume.csv")
     Path("sums").write_text("the code\n")
-    params = {"box": PARAMETERS, "names": ["volume"], "radius": None, "seed": 1}
+    params = {"box": BOX.parameters(), "names": ["volume"], "radius": None, "seed": 1}
     files = {"tables": ["volume.csv"], "code": ["figure.py", "sums"], "own_code": []}
     run("figure", params, {"scene": "a", "figure": "volume"}, files, png="a.png")
     origin = f"twodiscs: scene a, seed 1, code {digest('sums')[:16]}, tables "
