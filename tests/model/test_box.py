@@ -11,6 +11,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from twodiscs.model.checks import InputError
 from twodiscs.model.effects import ABSENT_VALUES
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.scene import Box, Scene
@@ -203,3 +204,5 @@ def test_even_radii_are_even(smallest, ratio, count):
         assert abs(radius - (smallest + i * step)) < 0.2500001 * step
         assert radius < 1.0100001 * largest
     assert even_radii(smallest, largest, 1) == (smallest,)
+    with pytest.raises(InputError, match="smallest must be below"):
+        even_radii(largest, largest, count)

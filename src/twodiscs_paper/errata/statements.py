@@ -145,9 +145,8 @@ class Statement:
     ``label`` is its label there or a short name, ``place`` the section or appendix. ``where`` names
     the regimes or limits for which it is stated; without ``where`` the radius does not matter.
     ``printed`` returns the printed value for a ``MpScene``; for a claim, it returns whether the
-    claim holds. ``quantity`` is the measured quantity in which the formula enters ``share`` times;
-    unless given, ``truth`` is this quantity over ``share``. ``correction`` is the right formula or
-    a remark, with formulas between backticks. ``number`` is the number of the equation in the PDF
+    claim holds. ``quantity`` is the measured quantity in which the formula enters; ``truth`` is this
+    quantity over ``share`` unless it is given. ``correction`` is the right formula or a remark, with formulas between backticks. ``number`` is the number of the equation in the PDF
     of arXiv. ``severity`` is major (numbers are wrong), minor (a range or a part is wrong) or slip
     (nothing else becomes wrong by it).
     """
@@ -222,11 +221,11 @@ STATEMENTS = (
     Statement("integraltotal", "IV A", ANY, published.volume_separations, "volume", number="7"),
     Statement("V_free, X and Y done", "IV A", ANY, published.volume_quadrant, "volume", number="9"),
     Statement(
-        "I_1", "IV A", ALL, published.volume_i1, "volume", share=16, truth=reference.beside_volume,
+        "I_1", "IV A", ALL, published.volume_i1, "volume", truth=reference.beside_volume,
         number="11",
     ),
     Statement(
-        "I_2", "IV A", ALL, published.volume_i2, "volume", share=16,
+        "I_2", "IV A", ALL, published.volume_i2, "volume",
         truth=reference.volume_beyond_contact, number="13",
     ),
     Statement("volumeabd", "IV A", ALL, published.volume_abd, "volume", number="14"),
@@ -327,7 +326,7 @@ STATEMENTS = (
         "avoid them; beyond, some look exponential as far as is seen", severity="major",
     ),
     Statement(
-        "VolumenGeneral", "A 1", ANY, published.excluded_volume, "volume", share=-16,
+        "VolumenGeneral", "A 1", ANY, published.excluded_volume, "volume",
         truth=_scaled(reference.excluded_volume, mpf(1) / 16), number="A1",
     ),
     Statement("list of regimes", "A 1", (), regimes_are_as_listed),
@@ -336,23 +335,23 @@ STATEMENTS = (
         truth=largest_radius,
     ),
     Statement(
-        "app:volcyl", "A 1", ANY, published.sector_polar, "volume", share=-16,
+        "app:volcyl", "A 1", ANY, published.sector_polar, "volume",
         truth=_scaled(reference.sector_volume, mpf(1) / 16), number="A2",
     ),
     Statement(
-        "V_h, ρ done", "A 1", ANY, published.sector_angle, "volume", share=-16,
+        "V_h, ρ done", "A 1", ANY, published.sector_angle, "volume",
         truth=_scaled(reference.sector_volume, mpf(1) / 16), number="A3",
     ),
     Statement(
-        "Volrtheta", "A 1", ANY, published.sector_volume, "volume", share=-16,
+        "Volrtheta", "A 1", ANY, published.sector_volume, "volume",
         truth=_scaled(reference.sector_volume, mpf(1) / 16), number="A4",
     ),
     Statement(
-        "app:voldot", "A 1", BLOCKED, published.upper_volume, "volume", share=-1,
+        "app:voldot", "A 1", BLOCKED, published.upper_volume, "volume",
         truth=reference.upper_volume, number="A5",
     ),
     Statement(
-        "V_l", "A 1", NONE, published.lower_volume, "volume", share=-1,
+        "V_l", "A 1", NONE, published.lower_volume, "volume",
         truth=reference.lower_volume, number="A6",
     ),
     Statement(
@@ -457,16 +456,16 @@ STATEMENTS = (
         severity="minor",
     ),
     Statement(
-        "A_sector", "A 2 c", ANY, published.wall_sector, "right_wall_area", share=-1,
+        "A_sector", "A 2 c", ANY, published.wall_sector, "right_wall_area",
         truth=reference.sector_wall, number="A28",
     ),
     Statement(
-        "A_u", "A 2 c", BLOCKED, published.wall_upper, "right_wall_area", share=-1,
+        "A_u", "A 2 c", BLOCKED, published.wall_upper, "right_wall_area",
         truth=reference.upper_wall, number="A29",
     ),
     Statement(
         "lower triangle of the wall", "A 2 c", NONE, published.wall_lower, "right_wall_area",
-        "`8ab√(r² − a²) − (8/3)a(r² − a²)`: the weight is not symmetric in `x` and `y`", share=-1,
+        "`8ab√(r² − a²) − (8/3)a(r² − a²)`: the weight is not symmetric in `x` and `y`",
         truth=reference.lower_wall, severity="major",
     ),
     Statement(
