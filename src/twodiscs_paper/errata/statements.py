@@ -145,9 +145,10 @@ class Statement:
     ``label`` is its label there or a short name, ``place`` the section or appendix. ``where`` names
     the regimes or limits for which it is stated; without ``where`` the radius does not matter.
     ``printed`` returns the printed value for a ``MpScene``; for a claim, it returns whether the
-    claim holds. ``quantity`` is the measured quantity in which the formula enters; ``truth`` is this
-    quantity over ``share`` unless it is given. ``correction`` is the right formula or a remark, with formulas between backticks. ``number`` is the number of the equation in the PDF
-    of arXiv. ``severity`` is major (numbers are wrong), minor (a range or a part is wrong) or slip
+    claim holds. ``quantity`` is the measured quantity in which the formula enters; ``truth`` is
+    this quantity over ``share`` unless it is given. ``correction`` is the right formula or a
+    remark, with formulas between backticks. ``number`` is the number of the equation in the PDF of
+    arXiv. ``severity`` is major (numbers are wrong), minor (a range or a part is wrong) or slip
     (nothing else becomes wrong by it).
     """
 
