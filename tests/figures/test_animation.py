@@ -201,6 +201,11 @@ def test_what_leaves_a_ring_comes_in_at_the_other_end():
             for (x1, _), (x2, _) in others[f"trace {disc}"][0].get_segments():
                 assert abs(x1 - x2) < 0.5
     assert beyond
+    (strip,) = (axes for axes in circle.figure.axes if axes.get_ylabel().startswith("$x$"))
+    low, high = strip.get_ylim()
+    paths = [line.get_ydata() for line in strip.lines if len(line.get_ydata()) > 2]
+    assert len(paths) == 4
+    assert all(low <= path.min() <= path.max() <= high for path in paths)
 
 
 # Effects and other files --------------------------------------------------------------------------

@@ -171,6 +171,7 @@ def test_the_histogram_has_the_densities_of_its_bins(box):
             ]
             shown = np.array(bars(axes, *style.SERIES[i]))
             assert len(shown) > 5
+            assert axes.get_ylim()[0] <= shown[:, 1].min()
             for point in shown:
                 assert np.isclose(due, point, rtol=1e-9).all(axis=1).any()
     marked = [line.get_ydata()[0] for line in short.lines if not line.get_clip_on()]

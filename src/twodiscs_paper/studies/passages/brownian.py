@@ -170,7 +170,7 @@ def passage_counts(seed, program, step, halvings, pairs):
     columns = dict(zip(("first", "passage", "crossings"), found.T.tolist(), strict=True))
     sums = {name: [sum(own), sum(n * n for n in own)] for name, own in columns.items()}
     both = sum(map(operator.mul, columns["passage"], columns["crossings"]))
-    return {"pairs": pairs, **sums, "passage*crossings": both}
+    return {"pairs": len(found), **sums, "passage*crossings": both}
 
 
 def _stream(seed, what, program, step, halvings):
