@@ -27,7 +27,7 @@ def wide_edges(bins=N_BINS):
     They begin at zero, and each is one bin wide or wider than ``BIN_GROWTH`` times its left edge.
     """
     edges = [0, 1]
-    while (edge := max(edges[-1] + 1, math.ceil((1 + BIN_GROWTH) * edges[-1]))) <= bins:
+    while (edge := math.ceil((1 + BIN_GROWTH) * edges[-1])) <= bins:
         edges.append(edge)
     return edges
 
