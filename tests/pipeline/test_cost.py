@@ -48,14 +48,6 @@ def test_a_limit_is_above_the_price():
                     assert limit > 2 * job_cost.seconds(request, "dynamics", radius)
 
 
-def test_ten_times_the_accuracy_takes_a_hundred_times_the_work():
-    coarse, fine = (scene(accuracy=error, event_budget=1e15) for error in (1e-3, 1e-4))
-    ratio = job_cost.seconds(fine, "dynamics", 0.3) / job_cost.seconds(coarse, "dynamics", 0.3)
-    assert ratio == pytest.approx(100, rel=0.1)
-    budget = job_cost.seconds(scene(accuracy=1e-5, event_budget=1e9), "dynamics", 0.3)
-    assert budget == pytest.approx(10, rel=0.1)
-
-
 def test_days_are_those_of_the_jobs_of_all_radii_or_of_some_times_their_number(monkeypatch):
     radii = [round(0.1 + 0.001 * i, 3) for i in range(21)]
     request = scene(accuracy=1e-7, event_budget=1e15, radii=radii, watch={"mean_times": True})

@@ -114,16 +114,6 @@ def test_sampling_and_estimates_hold(box, monkeypatch):
     assert all(0 < row["value"] < math.inf for row in of(estimates, quantity="volume"))
 
 
-# The conditioned sampler ------------------------------------------------------------------------
-
-
-def test_the_better_sampler_is_chosen():
-    """Rejection while one in 64 of the prism is free, the other one up to the largest radius."""
-    for radius, method, samples in ((0.3, "monte_carlo", 2**22), (0.38, "conditioned", 2**16)):
-        point = montecarlo.MonteCarloRun(PAPER.scene(radius), ["volume"], 2**22, 0.02, 1).run()
-        assert (point.method, point.samples) == (method, samples)
-
-
 # Times of events ----------------------------------------------------------------------------------
 
 

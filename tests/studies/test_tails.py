@@ -81,23 +81,17 @@ def test_a_stratum_without_a_longer_interval_adds_its_bound():
     assert found.stderr == pytest.approx(math.hypot(spread.stderr, *bounds))
 
 
-@pytest.mark.parametrize(
-    ("radius", "event", "late", "approach"),
-    [(0.24, "disc_collision", 300, 4), (0.1, "vertical_hop", 1000, 40)],
-)
-def test_tails_are_cubic(radius, event, late, approach):
-    """P(T > t) t³ has come to C at 300 mean times and more, where e^(−t/τ) is 1e-130 and less.
+def test_tails_are_cubic():
+    """P(T > t) t³ of collisions has come to C at 300 mean times, where e^(−t/τ) is 1e-130.
 
-    The difference falls as τ/t, with coefficients measured at 20 to 300 mean times as about 2
-    for these collisions and 25 for these hops; less than twice that is added to five standard
-    errors.
+    The difference falls as τ/t, with a coefficient of about 2 at 20 to 300 mean times; twice that
+    is added to five standard errors.
     """
-    scene = PAPER.with_radius(radius)
-    times = in_mean_times(scene, event, (late,))
-    estimate = tails.tail(scene, event, times, 20, 4)[0]
-    law = tail_constant(scene, event) / times[0] ** 3
+    (time,) = times = in_mean_times(PAPER, "disc_collision", (300,))
+    (estimate,) = tails.tail(PAPER, "disc_collision", times, 20, 4)
+    law = tail_constant(PAPER, "disc_collision") / time**3
     assert estimate.relative_stderr < 0.05
-    assert abs(estimate.value - law) <= 5 * estimate.stderr + approach / late * law
+    assert abs(estimate.value - law) <= 5 * estimate.stderr + 4 / 300 * law
 
 
 def test_drifts_cover_the_sphere_evenly():
