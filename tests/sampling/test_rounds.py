@@ -246,7 +246,7 @@ def test_planned_events_follow_the_errors_asked_for_as_far_as_the_budget_goes(bu
 #: {what is counted: (number in a block, run of at least a number)}
 WHOLE = {
     "intervals": (2**16, lambda n: runs.IntervalsRun(PAPER.scene(0.1), "vertical_hop", n, 5)),
-    "time": (2.0**16, lambda t: runs.TimedRun(PAPER.scene(0.2), {"any_wall": 1.0}, None, 1, t)),
+    "time": (2.0**16, lambda t: timed(PAPER.scene(0.2), t)),
     "samples": (montecarlo.SAMPLES_PER_BLOCK, lambda n: sampling(PAPER.scene(0.2), n)),
     "conditioned": (64 * montecarlo.PROPOSALS_PER_BLOCK, lambda n: sampling(PAPER.scene(0.38), n)),
     "weighted": (montecarlo.SAMPLES_PER_BLOCK, lambda n: sampling(SCENES["field"], n)),
@@ -255,6 +255,10 @@ WHOLE = {
         lambda n: sampling(td.Scene(1.5, 1.0, 0.1, discs=3), n),
     ),
 }
+
+
+def timed(scene, duration):
+    return runs.DynamicsRun(scene, {"any_wall": 1.0}, None, 1, duration=duration)
 
 
 def sampling(scene, number):

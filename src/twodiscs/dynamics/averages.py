@@ -9,7 +9,7 @@ import numpy as np
 
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import MOST_RUN_EVENTS, open_block_kicks
-from twodiscs.dynamics.paths import MOST_PATH_EVENTS, check_states, move_into_cell
+from twodiscs.dynamics.paths import MOST_PATH_EVENTS, check_states
 from twodiscs.model.checks import InputError, check_numbers, has_units
 from twodiscs.model.formats import format_number, quote
 from twodiscs.model.many_geometry import CELL_DISCS
@@ -20,6 +20,7 @@ from twodiscs.sampling.initial_states import (
     components,
     disc_fields,
     make_records,
+    move_into_cell,
     states,
 )
 from twodiscs.sampling.rounds import Run, fixed

@@ -84,10 +84,16 @@ class Kicks(NamedTuple):
     sampler: tuple | None = None
 
 
-def idle_kicks(lanes, rate, direction, velocity, sampler=None):
-    """Return the ``Kicks`` of some ``lanes``. A lane has none before ``open_kicks`` begins them."""
-    streams, stream = np.zeros((lanes, 4), np.uint64), np.zeros(4, np.uint64)
-    return Kicks(rate, np.full(lanes, np.inf), streams, stream, direction, velocity, sampler)
+def idle_kicks(scene, lanes, direction, velocity, sampler=None):
+    """Return the ``Kicks`` of some ``lanes``, which ``open_kicks`` begins; None without friction.
+
+    The last arguments are the memory and the constants with which velocities are drawn.
+    """
+    if not scene.friction:
+        return None
+    waits, streams = np.full(lanes, np.inf), np.zeros((lanes, 4), np.uint64)
+    stream = np.zeros(4, np.uint64)
+    return Kicks(scene.friction, waits, streams, stream, direction, velocity, sampler)
 
 
 @optional(lambda i, seed, replica, kicks: None)

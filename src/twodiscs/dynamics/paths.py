@@ -96,21 +96,6 @@ def check_states(scene, states, name="start"):
         )
 
 
-def move_into_cell(scene, columns):
-    """Move centres, {name: array}, along periodic axes to images; return {name: how far}.
-
-    Kernels take N discs in the cell, and of two discs the image of disc 2 nearest to disc 1.
-    """
-    shifts = {}
-    for axis in scene.periodic:
-        near = columns[f"{axis}1"].copy() if scene.discs == 2 else 0.0
-        for name in [f"{axis}{disc}" for disc in range(1, scene.discs + 1)]:
-            side = scene.side(axis)
-            shifts[name] = side * np.round((columns[name] - near) / side)
-            columns[name] -= shifts[name]
-    return shifts
-
-
 def require_bounces(scene, rows):
     """Raise ``InputError`` if a disc in a field lies on the floor in one of the ``Rows``.
 
@@ -164,7 +149,7 @@ def follow_trajectory(scene, seed, start=None, duration=None, progress=None, hop
         if some is None:
             return Rows.joined(found)
         require_bounces(scene, some)
-        found.append(some.copy())
+        found.append(Rows(*map(np.copy, some)))  # without the memory of rows that are not filled
         left -= some.times.size
         if left < 0:
             # Rounded down: a user who types the number has fewer rows.

@@ -43,10 +43,6 @@ class Rows(NamedTuple):
         """Return the first rows."""
         return Rows(*(array[..., :number] for array in self))
 
-    def copy(self):
-        """Return a copy, without the memory of arrays of which these are the first rows."""
-        return Rows(*(array.copy() for array in self))
-
     def events(self):
         """Yield (time, name of the event, first disc, second disc, state) of each row."""
         names, states = event_names(self.states.shape[0]), zip(*self.states.tolist(), strict=True)

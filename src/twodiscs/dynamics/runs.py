@@ -14,7 +14,7 @@ mean interval.
 """
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -56,29 +56,42 @@ class DynamicsRun(Run):
     Hops that are rare because of a neck are also counted in strips (``strip``), unless the
     ``method`` is "dynamics". The budget is divided in proportion to the events that each error
     needs.
+
+    With a ``duration`` there are whole blocks of replicas, at least one, until all replicas
+    together have it, whatever their errors. All events are then counted in the same replicas. Rare
+    hops have no strips, because trajectories in a strip have another duration. Raises
+    ``InputError`` for a duration with more than ``budget`` expected events.
     """
 
     scene: Scene
     target: dict
     budget: int | None
     seed: int
-    method: str | None = field(default=None, kw_only=True)
+    method: str | None = None
+    duration: float | None = None
 
     @classmethod
     def of(cls, scene, settings):
-        """Return the run of ``settings`` of ``simulate``, a ``TimedRun`` for a duration."""
+        """Return the run of ``settings`` of ``simulate``."""
         seed = job_seed(scene, DynamicsPoint.stage, settings["seed"], settings["name"])
-        error, budget, method = settings["error"], settings["budget"], settings.get("method")
-        if error is None:  # 1 is the largest error that a run takes
-            target = dict.fromkeys(settings["events"], 1.0)
-            return TimedRun(scene, target, budget, seed, settings["duration"], method=method)
-        target = error if isinstance(error, dict) else dict.fromkeys(settings["events"], error)
-        return cls(scene, target, budget, seed, method=method)
+        error, budget = settings["error"], settings["budget"]
+        # With a duration there is no error; 1 is the largest one that a run takes.
+        own = error if isinstance(error, dict) else dict.fromkeys(settings["events"], error or 1.0)
+        return cls(scene, own, budget, seed, settings.get("method"), settings.get("duration"))
 
     def __post_init__(self):
         require_initial_states(self.scene)
         if self.method is not None:
             check_choice("method", self.method, ["dynamics", *["strips"] * bool(self._rare)])
+        if self.duration is None:
+            return
+        rate = find_engine(self.scene).rates.expected_event_rate(self.scene)
+        if self.duration * rate > self.most_events:
+            raise InputError(
+                f"duration must be below {format_number(self.most_events / rate, '.3g')}, where "
+                f"the budget of {format_number(self.most_events, 'g')} events is spent, not "
+                f"{format_number(self.duration, 'g')}"
+            )
 
     @property
     def most_events(self):
@@ -96,7 +109,8 @@ class DynamicsRun(Run):
 
     @cached_property
     def _rare(self):
-        rare = () if self.method == "dynamics" else strip.rare_hops(self.scene)
+        ordinary = self.method == "dynamics" or self.duration
+        rare = () if ordinary else strip.rare_hops(self.scene)
         return [hop for hop in rare if hop in self.target]
 
     @property
@@ -111,6 +125,11 @@ class DynamicsRun(Run):
         for all of them, each has the same fraction of its events. Without a budget, this is true of
         the work of a day.
         """
+        if self.duration:
+            run, time = self._everything(self.most_events), self.replica_duration
+            replicas = find_engine(self.scene).rates.block_replicas(self.scene, time)
+            blocks = max(1, math.ceil(self.duration / (replicas * time)))
+            return {"all": fixed(run.work, blocks, run.block_events, run.cost_ratio)}
         each = find_engine(self.scene).rates.work_per_event(self.scene)
         budget = max(1, int(self.most_events / each))
         runs = {"all": self._everything(budget)}
@@ -184,16 +203,12 @@ class DynamicsRun(Run):
         constants = {
             "duration": self.replica_duration,
             "replicas": engine.rates.block_replicas(self.scene, self.replica_duration),
-            "target": self._target,
+            "target": {e: None if self.duration else self.target[e] for e in self._events},
         }
         components = {"all": constants | {"sums": ranges["all"]}}
         for hop in self._rare:
             components[hop] = strip.constants(self.scene, hop) | {"sums": ranges[hop]}
         return DynamicsPoint.of(self.scene, components)
-
-    @property
-    def _target(self):
-        return {event: self.target[event] for event in self._events}
 
 
 def relative_errors(sums, products, replicas, burst_variance=0.0):
@@ -207,44 +222,6 @@ def relative_errors(sums, products, replicas, burst_variance=0.0):
         variance = np.maximum(np.diag(products) / replicas - mean**2, 0.0) + burst_variance
         errors = np.sqrt(variance / replicas) / mean
     return np.where(sums > 0, errors, np.inf)
-
-
-@dataclass(frozen=True)
-class TimedRun(DynamicsRun):
-    """Blocks of replicas, at least one, until all replicas together have a ``duration``.
-
-    All events are counted in the same replicas. Rare hops have no strips, because trajectories in a
-    strip have another duration. Raises ``InputError`` for a duration with more than ``budget``
-    expected events.
-    """
-
-    duration: float
-
-    def __post_init__(self):
-        super().__post_init__()
-        rate = find_engine(self.scene).rates.expected_event_rate(self.scene)
-        if self.duration * rate > self.most_events:
-            raise InputError(
-                f"duration must be below {format_number(self.most_events / rate, '.3g')}, where "
-                f"the budget of {format_number(self.most_events, 'g')} events is spent, not "
-                f"{format_number(self.duration, 'g')}"
-            )
-
-    @cached_property
-    def _rare(self):
-        return []
-
-    @property
-    def _target(self):
-        return dict.fromkeys(self._events)
-
-    @cached_property
-    def components(self):
-        """The ``SequentialRun`` of all blocks, {"all": run}."""
-        duration = self.replica_duration
-        each = find_engine(self.scene).rates.block_replicas(self.scene, duration) * duration
-        blocks, run = max(1, math.ceil(self.duration / each)), self._everything(self.most_events)
-        return {"all": fixed(run.work, blocks, run.block_events, run.cost_ratio)}
 
 
 # Intervals --------------------------------------------------------------------------------------

@@ -85,6 +85,21 @@ def disc_fields(scene):
     return tuple(dict.fromkeys(name[0] for name in components(scene)))
 
 
+def move_into_cell(scene, columns):
+    """Move centres, {name: array}, along periodic axes to images; return {name: how far}.
+
+    Kernels take N discs in the cell, and of two discs the image of disc 2 nearest to disc 1.
+    """
+    shifts, two = {}, scene.discs == 2
+    for axis in scene.periodic:
+        near = columns[f"{axis}1"] if two else 0.0
+        for name in [f"{axis}{disc}" for disc in range(2 if two else 1, scene.discs + 1)]:
+            side = scene.side(axis)
+            shifts[name] = side * np.round((columns[name] - near) / side)
+            columns[name] -= shifts[name]
+    return shifts
+
+
 def labels_of(start):
     """Return the names in a record, a namedtuple, a dict or a ``Series``, [] for anything else."""
     names = getattr(getattr(start, "dtype", None), "names", None) or getattr(start, "_fields", None)

@@ -121,10 +121,8 @@ def new_kicks(scene, lanes):
 
     The working memory of a draw has the form that ``draw_velocities`` takes.
     """
-    if not scene.friction:
-        return None
     velocities, cuts = many_initial_states.velocity_memory(scene.discs, scene.moment_of_inertia)
-    return ensemble.idle_kicks(lanes, scene.friction, cuts, velocities)
+    return ensemble.idle_kicks(scene, lanes, cuts, velocities)
 
 
 @optional(lambda u, l, spin, ring: 0.0)

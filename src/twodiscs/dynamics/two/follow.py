@@ -265,9 +265,7 @@ def new_kicks(scene, lanes):
 
     A lane that never begins has no kick.
     """
-    if not scene.friction:
-        return None
-    return idle_kicks(lanes, scene.friction, np.zeros(6), np.zeros(8), kick_sampler(scene))
+    return idle_kicks(scene, lanes, np.zeros(6), np.zeros(8), kick_sampler(scene))
 
 
 @optional(lambda state, i, time, law, kicks: state)

@@ -12,7 +12,7 @@ from twodiscs.dynamics.law import after_event, crosses, crossing_time, next_even
 from twodiscs.dynamics.rows import new_rows, put_event, start_row
 from twodiscs.dynamics.two.follow import kicked, new_kicks, put_state, relative_motion, state_at
 from twodiscs.model.events import HOPS
-from twodiscs.sampling.initial_states import STATE_ROWS, components
+from twodiscs.sampling.initial_states import STATE_ROWS, components, move_into_cell
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.theory import exact
 
@@ -85,19 +85,6 @@ def unwrap(scene, columns, wraps):
             columns[f"{axis}2"] -= wrap[2] * jumps
 
 
-def nearest_image(scene, state):
-    """Return ``state`` with the image of disc 2 that is nearest to disc 1, and the way to it.
-
-    That is the number of periods between the image and disc 2, by axis.
-    """
-    columns, periods = dict(zip(components(scene), state, strict=True)), {}
-    for axis in scene.periodic:
-        side, apart = scene.side(axis), columns[f"{axis}1"] - columns[f"{axis}2"]
-        periods[axis] = round((apart - math.remainder(apart, side)) / side)
-        columns[f"{axis}2"] += periods[axis] * side
-    return tuple(columns.values()), periods
-
-
 @inlined
 def put_row(rows, jumps, n, time, kind, discs, state, wraps, law):
     """Set row ``n``, and column ``n`` of ``jumps`` (3, n) to the ``wraps`` so far."""
@@ -159,8 +146,8 @@ def path_rows(scene, state, duration, seed=0, hops=True):
     names, law = components(scene), two_disc_law(scene)
     kicks = open_block_kicks(new_kicks(scene, 1), seed)
     now, clock, wraps = np.zeros((STATE_ROWS, 1)), np.zeros(1), np.zeros((3, 1))
-    image, periods = nearest_image(scene, state)
-    now[: len(names), 0] = image
+    now[: len(names), 0] = state
+    shifts = move_into_cell(scene, dict(zip(names, now, strict=False)))
     hops, rows = tuple(hops and hop in scene.events for hop in HOPS), None
     while rows is None or rows.kinds[-1] != kinds.END:
         rows = new_rows(len(names))
@@ -168,8 +155,8 @@ def path_rows(scene, state, duration, seed=0, hops=True):
         number = record_rows(now, clock, duration, law, kicks, hops, wraps, jumps, rows)
         columns = dict(zip(names, rows.states[:, :number], strict=True))
         unwrap(scene, columns, jumps[:, :number])
-        for axis, period in periods.items():
-            columns[f"{axis}2"] -= period * scene.side(axis)
+        for name, shift in shifts.items():
+            columns[name] += shift
         rows = rows.first(number)
         yield rows
 
