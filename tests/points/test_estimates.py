@@ -164,15 +164,6 @@ def test_weights_below_their_resolution_have_no_error():
     assert estimates.effective_misses(some, some, unit, samples) == unit / 2
 
 
-def test_bound_from_no_event_holds_for_clusters():
-    replicas, duration = 400, 7.0
-    bound = estimates.mean_time_bound(replicas, duration)
-    for cluster in (1, 2, 4):
-        seen = duration / bound / cluster
-        assert (1 - seen) ** replicas <= 0.05 + 1e-12
-    assert (1 - duration / bound / 4) ** replicas == pytest.approx(0.05, rel=0.02)
-
-
 def test_the_density_at_zero_of_chains_is_that_of_counts_with_other_errors():
     counts, intervals, width = [5200, 4900], 10**6, 0.125
     independent = density_at_zero(counts, intervals, width)

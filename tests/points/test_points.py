@@ -17,7 +17,6 @@ import twodiscs as td
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.checks import InputError
 from twodiscs.points.base import digest_line, file_content, read_json, require_logged, write_json
-from twodiscs.points.dynamics_point import StripCount
 from twodiscs.points.intervals_point import Bins
 from twodiscs.points.monte_carlo_point import Hits, InsertionPoint, MonteCarloPoint, Weights
 from twodiscs.theory.clusters import corner_variance
@@ -25,13 +24,6 @@ from twodiscs_paper.pipeline.points import read_point
 
 LAW = Laws(BOX.scene(0.1))
 RNG = np.random.default_rng(6)
-STRIP = StripCount(
-    duration=0.1, share=0.5, replicas=18, count=3, squares=5, events=9,
-    strata=([[0.5, 0.5]], [[9, 9]], [[1, 2]], [[1, 4]]),
-)  # fmt: skip
-COUNTED = replace(
-    LAW.dynamics(RNG, 256, 1e-2, ("vertical_hop", "any_wall")), strips={"vertical_hop": STRIP}
-)
 NEAR, THREE = td.Scene(1.5, 1.0, 0.249), td.Scene(1.5, 1.0, 0.2, discs=3)
 
 
@@ -76,23 +68,6 @@ def inserted(samples, unit, weights, products):
     """Return the point of insertions with ``weights``, {quantity: (Σ w, Σ w², factor)}."""
     quantities = {name: Weights(*sums) for name, sums in weights.items()}
     return InsertionPoint(THREE, "insertion", samples, unit, quantities, products)
-
-
-def test_a_point_gives_estimates_by_name():
-    hits = hits_point(samples=1000, volume=250, top_wall_area=0)
-    assert hits.sampled("volume").estimate.value == 0.25
-    assert hits.sampled("top_wall_area").estimate is None
-    weights = inserted(10**6, 2**20, {"volume": (10**12, 2 * 10**12, 3.0)}, {})
-    assert weights.sampled("volume").estimate.value == 3.0 * 10**6 / 2**20
-    counts = counts_point(total=400, squares=800)
-    assert counts.count("vertical_hop").estimate().value == 2048 * 10.0 / 400
-    assert counts.count("vertical_hop").estimate(copies=2).value == 2 * 2048 * 10.0 / 400
-    assert counts_point().count("vertical_hop").estimate() is None
-    assert COUNTED.count("vertical_hop").estimate() == STRIP.estimate()
-    assert STRIP.estimate().value == pytest.approx(0.1 / 0.5 / (3 / 18))
-    bins = bins_point(counts=(7, 5, 0))
-    assert bins.stderr == 0.1
-    assert bins.density_at_zero.value == pytest.approx((7 * 7 - 5) / 6 / 12 / 0.125)
 
 
 def test_the_error_of_a_density_is_that_of_a_ratio_of_two_numbers_of_each_chain():

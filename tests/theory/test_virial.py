@@ -50,17 +50,6 @@ def test_the_pressure_of_points_is_that_of_an_ideal_gas(name):
     assert pressure == pytest.approx(1, abs=1e-7)
 
 
-@pytest.mark.parametrize("inertia", [None, 0.5])
-@pytest.mark.parametrize("radius", [0.01, 0.24, 0.3, 0.38])
-def test_weights_make_the_rates_add_up_to_one(radius, inertia):
-    scene = Scene(1.5, 1.0, radius, moment_of_inertia=inertia)
-    terms = [w * exact.rate(scene, event) for event, w in virial.weights(scene).items()]
-    assert math.fsum(terms) == pytest.approx(1, rel=1e-13)
-    others = SCENES.keys() - {"rough", "friction"}
-    assert all(virial.weights(SCENES[name]) is None for name in others)
-    assert virial.weights(replace(scene, friction=2.0)) == virial.weights(scene)
-
-
 KNOWN = [
     Scene(1.5, 1.0, 0.2), Scene(1.5, 1.0, 0.38),
     *(Scene(*sides, discs=3) for sides in ((1.5, 1.0, 0.05), (1.5, 1.0, 0.28), (1.0, 1.5, 0.2))),
