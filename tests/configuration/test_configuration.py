@@ -97,8 +97,6 @@ def test_what_is_false_is_off():
 
 
 def test_hop_histograms_have_three_forms():
-    request = one(watch={"hop_histogram": True})
-    assert request.quantities.hop_histogram == (0.0375, 0.112, 0.188, 0.262)
     request = one(watch={"hop_histogram": [0.2, 0.1]})
     assert request.quantities.hop_histogram == (0.1, 0.2)
     numbers = {"event_budget": 10**11, "intervals": 10**6}

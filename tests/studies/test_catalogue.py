@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from twodiscs.model.effects import EFFECTS
-from twodiscs_paper.catalogue import STUDIES, STUDY_TABLES
+from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.yaml_files import load, read
 from twodiscs_paper.draw import DRAW
 
@@ -49,17 +49,6 @@ def test_parameters_are_plain_values_that_its_table_takes(study, default):
     handed = {name: value for name, value in HANDED.items() if name in signature.parameters}
     signature.bind(**given, **handed)
     assert bool(study.reads(default) or study.parts(default)) == ("tables" in handed)
-
-
-@every_study
-def test_what_is_read_is_a_table_of_a_scene_or_of_a_study_before(study, default):
-    assert list(STUDIES) == sorted(STUDIES, key=lambda name: STUDIES[name].order)
-    before = list(STUDY_TABLES)[: list(STUDY_TABLES).index(study.name)]
-    for name, (scene, table) in study.reads(default).items():
-        assert name.endswith(table)
-        scenes = {scene.name: scene for scene in default.scenes}
-        scenes |= {f"effects/{scene.name}": scene for scene in default.effect_scenes}
-        assert table in (scenes[scene].tables if scene else before)
 
 
 def test_studies_read_only_what_there_is(default):

@@ -13,7 +13,7 @@ from itertools import pairwise
 import mpmath
 import numpy as np
 import pytest
-from factory import of, written
+from factory import empty, of, written
 
 from twodiscs.analysis.scores import student_deviate
 from twodiscs.model.events import HOPS
@@ -25,11 +25,6 @@ from twodiscs_paper.studies.single import tail_constant
 
 BOX = Box(1.5, 1.0)
 PAPER = BOX.scene(0.24)
-
-
-def complete(rows):
-    """Return rows with their empty cells."""
-    return [dict.fromkeys(DistributionsTable.columns) | row for row in rows]
 
 
 def bins_of(edges, chances, intervals):
@@ -109,7 +104,8 @@ def test_bins_of_a_hazard_follow_one_another():
 def test_what_is_measured_meets_what_is_exact(box, radius, hop):
     """The mean interval, the density at 0, and Palm's relation between intervals and passages."""
     scene = Scene(*box, radius)
-    rows = complete(distributions.measured({}, scene, hop, 4, 2**20))
+    rows = distributions.measured({}, scene, hop, 4, 2**20)
+    rows = [empty(DistributionsTable, **row) for row in rows]
     by_name = {(row["quantity"], row["last"] is None): row for row in rows}
     assert abs(by_name["mean", True]["z"]) < 5
     room = min(box) - 4 * radius if hop == "horizontal_hop" and box[0] > box[1] else 1
@@ -148,7 +144,7 @@ def test_the_table_is_written(tmp_path):
     near = [("paper", hop, r) for hop in HOPS for r in distributions.near_threshold(BOX, hop)]
     assert [*cases] == [("paper", "vertical_hop", 0.2), *near, ("other", "vertical_hop", 0.2)]
     # A case does not depend on the others.
-    alone = complete(DistributionsTable.rows([scene], 9, 2**16))
+    alone = [empty(DistributionsTable, **row) for row in DistributionsTable.rows([scene], 9, 2**16)]
     assert alone == of(rows, scene="paper")
 
 

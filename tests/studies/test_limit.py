@@ -25,14 +25,6 @@ def states():
     return np.array([a / 8, b / 8, *(8 * stream.normal(size=(2, 200)))])
 
 
-@pytest.mark.parametrize(("rate", "end"), [(0.7, 3.0), (-0.9, 0.2)])
-def test_slacks_stay_in_the_room(states, rate, end):
-    for state in states.T.copy():
-        assert limit.fly(state, 0.5, rate, end, math.inf)
-        assert min(state[:2]) >= 0
-        assert state[0] + state[1] <= end**2 / 2 * (1 + 1e-12)
-
-
 def test_reversed_velocities_retrace_the_motion(states):
     for start in states.T:
         state = start.copy()
