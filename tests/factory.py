@@ -40,16 +40,12 @@ def of(rows, **where):
     return [row for row in rows if where.items() <= row.items()]
 
 
-def drawn(sampler, samples):
-    """Return the point of a ``Sampler`` from at least this number of samples, whole blocks."""
+def sample_point(scene, quantities, samples, shell, seed):
+    """Return the point of at least so many samples of the prism of two discs, whole blocks."""
+    made = montecarlo.prism_sampler if scene.is_plain else montecarlo.weighted
+    sampler = made(scene, quantities, shell, seed)
     blocks = -(-samples // sampler.block)
     return sampler.point({(0, blocks): [sampler.count(0, blocks)]})
-
-
-def sample_point(scene, quantities, samples, shell, seed):
-    """Return the point of samples of the prism of two discs."""
-    sampler = montecarlo.prism_sampler if scene.is_plain else montecarlo.weighted
-    return drawn(sampler(scene, quantities, shell, seed), samples)
 
 
 def scenes(radii=RADII):

@@ -243,9 +243,6 @@ BY_HAND = {
     "tail_hops_probability": lambda t: (
         t["tails"].query("event == 'vertical_hop' and method == 'weighted'").estimate.iloc[-1]
     ),
-    "never_met_rough": lambda t: (
-        t["effects"].query("quantity == 'never_met_share' and duration == 1e4").estimate.max()
-    ),
     "long_files_law_error": lambda t: (
         t["long_displacements"].query(SINGLE).eval("100 * stderr / estimate").max()
     ),

@@ -41,13 +41,6 @@ def test_volume_resistance_and_first_passage_are_integrals_of_the_density():
         assert study.first_passage(0.1, room) == pytest.approx(100 * time, rel=1e-6)
 
 
-def test_a_separation_that_diffuses_has_the_limit_of_long_necks():
-    # The next term is of the order of ε.
-    for n in (12, 16):
-        limit = math.sqrt(2 / math.pi) / study.neck(0.001, n)
-        assert study.diffusive(0.001, 2.0**-n) == pytest.approx(limit, rel=2 * 2.0**-n)
-
-
 def times_of_a_walk(length):
     """Return the mean numbers of steps of a walk from H to the first u < 0, and to u ≤ −H.
 

@@ -66,28 +66,26 @@ else:
 table.write_and_log(snakemake.output.table, rows)
 """
 
-#: Edits of a checkout that make its build quick, and the tests that see what such a build hides:
-#: {file: (text, its text in a checkout, tests)}.
+#: Edits of a checkout that make its build quick: {file: (text, its text in a checkout)}.
 QUICKER = {
-    "workflow/scripts/study.py": (  # rows of studies
-        "table.write_and_log(snakemake.output.table, work(**given))", KEPT, "tests/studies",
+    # Rows of studies, see tests/studies.
+    "workflow/scripts/study.py": (
+        "table.write_and_log(snakemake.output.table, work(**given))", KEPT,
     ),
-    "workflow/scripts/figure.py": (  # all figures except ``volume`` are drawn, but saved empty
+    # All figures except ``volume`` are drawn, but saved empty, see tests/figures.
+    "workflow/scripts/figure.py": (
         "style.save(figure, path",
         'style.save(figure if name == "volume" else style.new_figure(1), path',
-        "tests/figures/test_figures.py",
     ),
 }  # fmt: skip
 
 #: The same for the one complete build. Other tests compile the engine of its scene with effects.
 ONE_SCENE = {
-    "src/twodiscs_paper/studies/effects/study.py": (  # five scenes of six
+    # Five scenes of six, and six radii of seven, see test_jobs.py and test_scenes.py.
+    "src/twodiscs_paper/studies/effects/study.py": (
         '("balls", "channel", "field", "rough", "torus", "unequal")', '("field",)',
-        "tests/workflow/test_jobs.py",
     ),
-    "config/scenes/field.yaml": (  # six radii of seven
-        "[0.02, 0.1, 0.15, 0.2, 0.3, 0.34, 0.36]", "[0.3]", "tests/workflow/test_scenes.py",
-    ),
+    "config/scenes/field.yaml": ("[0.02, 0.1, 0.15, 0.2, 0.3, 0.34, 0.36]", "[0.3]"),
 }  # fmt: skip
 
 #: The rules that build nothing but lists of files: targets, and checksums of sources.
@@ -207,8 +205,7 @@ def fresh(path, edits=QUICKER):
             shutil.copy2(source, target)
     shutil.copy(Path(__file__).with_name("small.yaml"), path / "config" / "config.yaml")
     checkout = Checkout(path)
-    for file, (old, new, tests) in edits.items():
-        assert (REPOSITORY / tests).exists()
+    for file, (old, new) in edits.items():
         checkout.replace(file, old, new)
     return checkout
 
