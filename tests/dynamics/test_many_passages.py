@@ -84,8 +84,8 @@ def test_relative_speeds_on_the_surface_have_the_law_of_the_flux(periodic, compo
 def test_the_sampled_rate_of_hops_is_the_exact_one(monkeypatch):
     """Its error is that of 2¹⁴ accepted proposals, and the smaller one of the volume."""
     scene = Scene(2.25, 1.0, 0.2499, discs=3)
-    due = n_discs.event_rates(scene)[HOP]
-    monkeypatch.setattr(n_discs, "event_rates", lambda scene: {HOP: None})
+    due = n_discs.rate(scene, HOP)
+    monkeypatch.setattr(n_discs, "rate", lambda scene, hop: None)
     many_hop_clusters.hop_rate.cache_clear()
     found = many_hop_clusters.hop_rate(scene, HOP)
     many_hop_clusters.hop_rate.cache_clear()

@@ -12,7 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from twodiscs.model.checks import InputError
-from twodiscs.model.effects import ABSENT_VALUES
+from twodiscs.model.effects import EFFECTS as DECLARED
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.scene import Box, Scene
 from twodiscs.model.seeds import key, seed_text, stream_seed
@@ -36,7 +36,7 @@ sides = st.floats(-6, 6).map(lambda x: 10**x)
 @pytest.mark.parametrize("effects", EFFECTS, ids=str)
 def test_the_same_box_is_equal_and_has_the_same_hash_and_parameters(effects):
     """Jobs are named by their parameters: order and spelling of the effects must not matter."""
-    usual = ABSENT_VALUES | {"discs": 2}
+    usual = {effect.name: effect.default for effect in DECLARED.values()} | {"discs": 2}
     spelled = dict(reversed((usual | effects).items()))
     spelled = {k: int(v) if v in (1.0, 2.0) else v for k, v in spelled.items()}
     if "periodic" in effects:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from twodiscs.model import checks
-from twodiscs.model.effects import ABSENT_VALUES
+from twodiscs.model.effects import EFFECTS
 from twodiscs.model.scene import Box, Scene
 from twodiscs.model.seeds import stream_seed
 
@@ -50,8 +50,8 @@ def test_odd_values_are_named_in_a_short_sentence(value):
         lambda: box.scene(value),
         lambda: Box(value, 1.0),
         lambda: Box(1.5, value),
-        *(lambda name=name: Box(1.5, 1.0, **{name: value}) for name in ABSENT_VALUES),
-        *(lambda name=name: Scene(1.5, 1.0, 0.2, **{name: value}) for name in ABSENT_VALUES),
+        *(lambda name=name: Box(1.5, 1.0, **{name: value}) for name in EFFECTS),
+        *(lambda name=name: Scene(1.5, 1.0, 0.2, **{name: value}) for name in EFFECTS),
         lambda: box.scene(0.2).is_possible(value),
         lambda: checks.check_fraction("x", value),
         lambda: checks.check_choice("x", value, ["a"]),

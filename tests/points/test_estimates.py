@@ -125,15 +125,15 @@ def test_the_law_of_a_test_does_not_depend_on_what_was_counted():
         for count in (1800, 2100, 2400):  # of 1 expected in a replica
             sums = count, 2 * count, replicas
             assert scores.mean_time_z(*sums, 1.0, 1.0)[1] == due
-    assert estimates.has_error_bar(80, 90, 1000, expected=1.0)
-    assert not estimates.has_error_bar(400, 500, 1000, expected=0.1)
+    assert estimates.is_enough(80, 90, 1000, expected=1.0)
+    assert not estimates.is_enough(400, 500, 1000, expected=0.1)
 
 
 def test_no_event_and_no_spread_divide_by_nothing():
     assert estimates.mean_time(0, 0, 1000, 10.0) is None
     assert estimates.effective_count(0, 0, 1000) == 0
     assert estimates.effective_count(3000, 9000, 1000) == 0
-    assert not estimates.has_error_bar(3000, 9000, 1000)
+    assert not estimates.is_enough(3000, 9000, 1000)
     z, test = scores.mean_time_z(0, 0, 1000, 10.0, 1e6)
     assert test == "cluster-bound"
     assert 0 <= z < 1

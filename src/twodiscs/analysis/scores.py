@@ -133,7 +133,7 @@ def mean_time_z(total, squares, replicas, duration, exact, mean=None):
     if exact is None:
         return None, None
     expected = duration / exact
-    if is_enough(NORMAL_EVENTS, total, squares, replicas, expected):
+    if is_enough(total, squares, replicas, expected, NORMAL_EVENTS):
         error = math.sqrt((replicas * squares - total**2) / (replicas - 1)) / replicas
         count, error = mean or (total / replicas, error)
         return student_deviate((expected - count) / error, replicas - 1), "normal"

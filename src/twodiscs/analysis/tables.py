@@ -23,7 +23,7 @@ from twodiscs.analysis.columns import (
 )
 from twodiscs.model.events import EVENTS
 from twodiscs.model.formats import format_number, format_seconds, round_up
-from twodiscs.points.estimates import LEAST_EVENTS, has_error_bar, why_no_error
+from twodiscs.points.estimates import LEAST_EVENTS, is_enough, why_no_error
 from twodiscs.theory import exact as theory
 
 #: A run that reaches an error below this one has the 100 effective events of an error bar.
@@ -336,7 +336,7 @@ def _mean_time_row(point, event, count):
         estimate, status = None, "impossible"
     elif estimate is None:
         status, bound = "none-seen", count.bound()
-    elif not has_error_bar(*count.sums, exact and count.time(copies) / exact):
+    elif not is_enough(*count.sums, exact and count.time(copies) / exact):
         status = "too-few"
     if count.share == 1 and scene.is_possible(event):
         errors = [target or 1.0, estimate.relative_stderr if estimate else 1.0]

@@ -113,14 +113,9 @@ def exact_curves(box, others=(), rows=()):
 
 @cache
 def _values_along(box, regimes):
-    radii, values = [], []
-    for regime in regimes:
-        for radius in map(float, regime):
-            radii.append(radius)
-            exact = TheoryTable.rows(box, [radius])
-            values.append({row["quantity"]: row["exact"] for row in exact})
-        radii.append(np.nan)
-        values.append({})
+    rows = TheoryTable.rows(box, [float(radius) for regime in regimes for radius in regime])
+    known = {(row["radius"], row["quantity"]): row["exact"] for row in rows}
+    radii = [radius for regime in regimes for radius in (*regime, np.nan)]
     names = ["volume", *(f"{event}_{kind}" for kind in ("area", "time") for event in EVENTS)]
-    columns = {name: np.array([row.get(name) for row in values], float) for name in names}
+    columns = {name: np.array([known.get((r, name)) for r in radii], float) for name in names}
     return np.array(radii), columns

@@ -97,6 +97,3 @@ EFFECTS = {
         ),
     )
 }  # fmt: skip
-
-#: {name: value of its absence}, in the order of the declarations.
-ABSENT_VALUES = {effect.name: effect.default for effect in EFFECTS.values()}

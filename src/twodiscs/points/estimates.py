@@ -168,8 +168,8 @@ def relative_variance(count):
     return 2 / count + 1 / 6 if count else math.inf
 
 
-def is_enough(least, total, squares, replicas, expected=None):
-    """Return whether there are 100 replicas and at least a number of effective events.
+def is_enough(total, squares, replicas, expected=None, least=LEAST_EVENTS):
+    """Return whether there are 100 replicas and the effective events of an error bar, or ``least``.
 
     If the ``expected`` count of a replica is known, it decides, not the counts: otherwise runs with
     more events than expected would be judged by another law than those with fewer. Clusters that
@@ -185,18 +185,13 @@ def is_enough(least, total, squares, replicas, expected=None):
     )
 
 
-def has_error_bar(total, squares, replicas, expected=None):
-    """Return whether there is an error bar: from 100 replicas and 100 effective events on."""
-    return is_enough(LEAST_EVENTS, total, squares, replicas, expected)
-
-
 def mean_time(total, squares, replicas, duration, mean=None):
     """Return the mean time T/⟨N⟩ as an ``Estimate``, ``None`` if nothing was counted.
 
     ``total`` and ``squares`` are Σ N and Σ N² over the replicas that can have the event, each of
     length ``duration`` = T. By the delta method the time and the mean count have the same relative
     error. ``mean``, if given, is a better estimate (count, error) than these sums. The caller shows
-    the error only if ``has_error_bar`` is true.
+    the error only if ``is_enough`` is true.
     """
     if not total:
         return None

@@ -64,23 +64,6 @@ def known_derivatives(scene, hops=True):
     return None
 
 
-@lru_cache(maxsize=1024)
-def volume_and_areas(scene):
-    """Return (volume, {event: area}) of a ``Scene`` of N > 2 discs, as ``theory.exact`` does.
-
-    The volume is in length^2N. Areas are for an event of any pair, or of one disc at one wall. An
-    area is 0.0 if the event is impossible or does not exist in the scene. If no exact value is
-    known, an area and the volume are None. Both are None without ``has_volume``.
-    """
-    areas = {event: None if scene.is_possible(event) else 0.0 for event in EVENTS}
-    if not has_volume(scene) or (known := known_derivatives(scene)) is None:
-        return None, areas
-    volume = math.exp(known.log_volume)
-    over_volume = surfaces(scene, known)
-    areas |= {e: volume * part for e, part in over_volume.items() if scene.is_possible(e)}
-    return volume, areas
-
-
 def surfaces(scene, known):
     """Return {event: area over volume} of a ``Scene``, given its ``Derivatives``.
 
@@ -99,33 +82,37 @@ def surfaces(scene, known):
     return by_kind("theory/n_discs.py", over)
 
 
-@lru_cache(maxsize=1024)
-def event_rates(scene):
-    """Return {event: rate} of a ``Scene`` of more than two discs; 0.0 if never, None if not known.
-
-    Rates are for a collision or a hop of any pair, for one disc at one wall, and for any disc at
-    any wall. They need only the logarithm of the volume, because the volume may underflow.
-    """
-    known = known_derivatives(scene)
-    if known is None:
-        return {event: None if scene.is_possible(event) else 0.0 for event in EVENTS}
-    c = flux_constant(scene.velocity_components)
-    return {
-        event: EVENT_WAYS[event] / 2 * c * part if scene.is_possible(event) else 0.0
-        for event, part in surfaces(scene, known).items()
-    }
-
-
 def volume(scene):
-    """Return the volume of a ``Scene``, None if no exact value is known."""
-    return volume_and_areas(scene)[0]
+    """Return the volume of a ``Scene`` of N > 2 discs, in length^2N.
+
+    It is None if no exact value is known, and without ``has_volume``.
+    """
+    known = known_derivatives(scene) if has_volume(scene) else None
+    return None if known is None else math.exp(known.log_volume)
 
 
 def areas(scene):
-    """Return {event: area} of a ``Scene``, values None if not known."""
-    return volume_and_areas(scene)[1]
+    """Return {event: area} of a ``Scene``, for an event of any pair, or of one disc at one wall.
+
+    An area is 0.0 if the event is impossible or does not exist in the scene. Otherwise it is None
+    if the ``volume`` is.
+    """
+    whole, found = volume(scene), {e: None if scene.is_possible(e) else 0.0 for e in EVENTS}
+    if whole is None:
+        return found
+    over = surfaces(scene, known_derivatives(scene))
+    return found | {e: whole * part for e, part in over.items() if scene.is_possible(e)}
 
 
 def rate(scene, event):
-    """Return the rate of ``event``, None if no exact value is known."""
-    return event_rates(scene)[event]
+    """Return the rate of ``event`` in a ``Scene``; 0.0 if it never happens, None if not known.
+
+    It is that of a collision or a hop of any pair, of one disc at one wall, or of any disc at any
+    wall. It needs only the logarithm of the volume, because the volume may underflow.
+    """
+    if not scene.is_possible(event):
+        return 0.0
+    if (known := known_derivatives(scene)) is None:
+        return None
+    c = flux_constant(scene.velocity_components)
+    return EVENT_WAYS[event] / 2 * c * surfaces(scene, known)[event]

@@ -17,7 +17,6 @@ difference that cancels is computed from exact fractions of the given doubles an
 import math
 from fractions import Fraction
 from functools import lru_cache
-from typing import NamedTuple
 
 from twodiscs.model.events import EVENT_WAYS, SHELL_EVENTS, by_kind
 from twodiscs.theory.quadrature import gauss_legendre
@@ -91,17 +90,8 @@ class Arc:
             )
 
 
-class VolumeAndAreas(NamedTuple):
-    """Volume of configuration space and the areas that are integrals."""
-
-    volume: float
-    disc_collision: float
-    right_wall: float
-    top_wall: float
-
-
 def arc_integrals(arc):
-    """Return the ``VolumeAndAreas`` of an arc."""
+    """Return (volume, areas of disc collisions, of the right wall, of the top wall) of an arc."""
     volume, disc = arc.range_x**2 * arc.beyond_y**2, 0.0
     right, top = arc.range_x * arc.beyond_y**2, arc.range_y * arc.beyond_x**2
     for weight, x, y, cos, sin in arc.nodes(arc.start, arc.stop):
@@ -110,7 +100,7 @@ def arc_integrals(arc):
         volume += area * x * cos
         right += area * cos
         top += area * sin
-    return VolumeAndAreas(volume, 2 * math.sqrt(2) * disc, right, top)
+    return volume, 2 * math.sqrt(2) * disc, right, top
 
 
 @lru_cache(maxsize=1024)
@@ -152,12 +142,12 @@ def _wall_shell(arc, epsilon):
     range_x, range_y, sigma = arc.exact
     thick = Fraction(epsilon)
     if thick >= range_x:
-        return arc_integrals(arc).volume / epsilon
+        return arc_integrals(arc)[0] / epsilon
     flat, near = arc.beyond_x, min(max((range_x - thick) ** 2, arc.stop), arc.start)
     total = arc.range_y**2 * (flat**2 / (2 * epsilon) if flat < epsilon else flat - epsilon / 2)
     total += sum(w * y * y * sin * x / epsilon for w, x, y, _, sin in arc.nodes(arc.start, near))
     total += sum(w * y * y * sin for w, _, y, _, sin in arc.nodes(near, arc.stop))
-    return total + arc_integrals(Arc(thick, range_y, sigma)).volume / (2 * epsilon)
+    return total + arc_integrals(Arc(thick, range_y, sigma))[0] / (2 * epsilon)
 
 
 def _collision_shell(arc, epsilon):

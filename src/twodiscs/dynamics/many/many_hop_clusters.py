@@ -237,7 +237,7 @@ def neighbours(scene, hop):
 @lru_cache(maxsize=64)
 def hop_rate(scene, hop):
     """Return the rate of hops of any pair, from samples if it is not known exactly."""
-    if rate := n_discs.event_rates(scene)[hop]:
+    if rate := n_discs.rate(scene, hop):
         return rate
     scene, hop = hopping_along(scene, hop, "x")
     accepted, proposals = surface_fraction(scene, hop)
