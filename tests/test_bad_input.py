@@ -36,6 +36,7 @@ BOX = Box(1.5, 1.0)
 PAPER = BOX.scene(0.2)
 RING, FIELD = Scene(1.5, 1.0, 0.2, periodic="x"), Scene(1.5, 1.0, 0.2, field=0.4)
 FOUR = Scene(6.0, 1.0, 0.2, discs=4, periodic="x")
+ROUGH, CENTRES = Scene(1.5, 1.0, 0.2, moment_of_inertia=0.4), [[0.3, 0.5], [1.2, 0.5]]
 NAN, INF = math.nan, math.inf
 #: Disc 2 is where the next image of disc 1 is.
 ROUND_THE_RING = [-0.5, 0.0, 1.0, 0.1, 1.0, 0.0, 0.0, 0.0]
@@ -55,6 +56,12 @@ def start(**changes):
 def fall(**changes):
     """Return the trajectory from a state in a field, in which disc 1 lies on the floor."""
     return td.trajectory(FIELD, start=START | LYING | changes)
+
+
+def from_file(scene):
+    """Return the trajectory of a ``scene`` from a file of two discs of radius 0.2."""
+    td.trajectory(PAPER, 1).to_xyz("src/a.xyz")
+    return td.trajectory(scene, start="src/a.xyz")
 
 
 def observe(function=x1, times=(1,)):
@@ -114,6 +121,8 @@ td.sample(PAPER, quantities='any_wall') → did you mean any_wall_area?
 td.sample(PAPER, 1).save('\\0') → path must be a file to write, not '\\x00': it has a
 td.sample(PAPER, 1).save('no/a.json') → path must be a file to write, not 'no/a.json'
 td.load_result('absent.json') → path must be a file to read
+td.load(3) → folder must be the path of a folder, not 3
+td.load_result(3) → path must be the path of a file, not 3
 td.load('nothere') → tables of results, but 'nothere' does not exist
 td.load('src') → folder must hold tables of results, but 'src' has none
 Scene(1.5, 1, r=0.1) → argument 'r'; did you mean radius?
@@ -160,6 +169,14 @@ td.pressure(FIELD) → field must be 0 for a pressure
 td.pressure(Scene(1, 1, 0.1, radius_ratio=2)) → radius_ratio must be 1 for a pressure
 td.pressure(Scene(1, 1, 0.1, depth=1, periodic='xy')) → must have walls along x or y for a pressure
 td.pressure(td.sample(PAPER, 1)) → a Scene or a result of simulate, not a result of sample
+td.free_energy(FIELD) → field must be 0 for the free energy of hard discs, not 0.4
+td.sample(Scene(9, 9, 0.1, discs=65)) → discs must be at most 64 for Monte Carlo by insertion, not
+td.transmission(RING, 'horizontal_hop') → hop 'horizontal_hop' must be between walls for a trans…
+td.transmission(BOX.scene(0.3), 'horizontal_hop') → must be open for passages, but is blocked at
+td.trajectory(ROUGH, start=[CENTRES, CENTRES]) → must have the spins of rough discs, s of each disc
+from_file(BOX.scene(0.21)) → must have the box and the discs of the scene, not 2 discs of the rad…
+td.simulate(Scene(1, 9, 0.24999999, discs=20, periodic='x'), 1) → not exceed 0.249999… for 20 discs
+td.plot(td.trajectory(PAPER)[['time']]) → must have at least two rows and the column event, but has
 td.free_energy('a') → of must be a Scene or a result of sample, not 'a'
 td.diffusion(PAPER, [1]) → axis must be periodic in the scene for diffusion
 td.diffusion(RING, [1], axis='y') → axis must be one of x for

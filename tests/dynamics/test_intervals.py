@@ -95,7 +95,7 @@ CELLS = td.Scene(4.0, 2.0, 0.15, discs=20, periodic="x", friction=4.0)
         (RARE, "vertical_hop"),
         slow(THREE, "horizontal_hop"),
         slow(RING, "vertical_hop"),
-        slow(CELLS, "vertical_hop"),
+        (CELLS, "vertical_hop"),
         slow(td.Scene(4.0, 2.0, 0.2, discs=20), "horizontal_hop"),
     ],
     ids=repr,
