@@ -202,6 +202,7 @@ def test_what_leaves_a_ring_comes_in_at_the_other_end():
                 assert abs(x1 - x2) < 0.5
     assert beyond
     (strip,) = (axes for axes in circle.figure.axes if axes.get_ylabel().startswith("$x$"))
+    assert strip.get_xlim() == (motion.frames[0], motion.frames[-1])
     low, high = strip.get_ylim()
     paths = [line.get_ydata() for line in strip.lines if len(line.get_ydata()) > 2]
     assert len(paths) == 4
