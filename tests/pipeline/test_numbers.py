@@ -237,9 +237,6 @@ SINGLE = "quantity == 'single_file'"
 BY_HAND = {
     "tests": lambda t: t["check"].query("independent").passed.count(),
     "tests_largest": lambda t: t["check"].query("independent").z.abs().max(),
-    "decay_rate": lambda t: (
-        t["tails"].query("quantity == 'rate'").eval("estimate * exact_mean").iloc[0]
-    ),
     "tail_hops_probability": lambda t: (
         t["tails"].query("event == 'vertical_hop' and method == 'weighted'").estimate.iloc[-1]
     ),

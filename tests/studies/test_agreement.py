@@ -96,7 +96,6 @@ def test_rows_are_as_by_hand(rows):
     assert one(rows, quantity="density_at_zero", scene="a") == pytest.approx((2, 1.35, error))
     assert one(rows, quantity="effects") == (2, 1.5, None)
     assert measure.error_ratio([])["estimate"] == 1
-    assert not [*measure.tests_of_effects([])]
 
 
 def test_a_count_from_a_strip_is_no_part_of_a_sum():

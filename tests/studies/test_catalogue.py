@@ -56,6 +56,8 @@ def test_studies_read_only_what_there_is(default):
     scene = {"name": "paper", "box": {"width": 1.5, "height": 1}, "watch": {"volume": True}}
     little = load({"scenes": [scene | {"radii": [0.1]}]})
     assert STUDIES["thresholds"].reads(little) == {"distributions": (None, "distributions")}
+    checked = {"paper/check": ("paper", "check"), "effects": (None, "effects")}
+    assert STUDIES["agreement"].reads(little) == checked
     found = STUDIES["thresholds"].reads(default)
     assert found["paper/mean_times"] == ("paper", "mean_times")
 
