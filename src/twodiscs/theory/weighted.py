@@ -356,14 +356,15 @@ class _Space:
         return _sum_of_orders(self.axes(), _near_contact, self.sigma, Fraction(thickness))
 
     def passing(self, axis):
-        """Return the measure of the separation 0 along ``axis``, per length."""
+        """Return the measure of the separation 0 along ``axis``, per length.
+
+        The branch begins at 0: discs that fit can be beside each other, also in a field.
+        """
         others = [self.axis(other) for other in self.order if other != axis]
         if axis in self.scene.periodic:
             density = float(self.scene.side(axis))
         else:
             level = _branch(*self.intervals(axis), self.power)
-            if level is None or level.start > 0:
-                return 0.0
             density = float(level.density(np.array(float(level.reach))))
         return density * _sum_of_orders(others, _beyond_contact, self.sigma)
 
