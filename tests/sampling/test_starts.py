@@ -231,6 +231,8 @@ def accepted(state, prism, proposals):
         # Wide necks: some proposals have the opposite order.
         (Scene(1.5, 1.0, 0.1, mass_ratio=2.0), "horizontal_hop"),
         (Scene(1.5, 1.0, 0.05, radius_ratio=2.0), "vertical_hop"),
+        # A periodic axis that is not that of the neck.
+        (Scene(1.0, 1.5, 0.24, periodic="x", mass_ratio=2.0), "vertical_hop"),
         # A disc has less room in depth than their separation.
         *(
             slow(Scene(1.5, 1.0, radius, field=0.3, depth=depth, radius_ratio=r), HOPS[1])
