@@ -7,17 +7,23 @@ from itertools import islice
 import mpmath
 from mpmath import mpf
 
-from twodiscs.dynamics.paths import path_events
+from twodiscs.dynamics.engine import find_engine
 from twodiscs.theory.exact import event_rate
 
 WALLS = ("wall_x1", "wall_y1", "wall_x2", "wall_y2")
+
+
+def path_events(scene, state, duration, seed=0):
+    """Yield (time, event, first, second, state) of each row of the engine within ``duration``."""
+    for rows in find_engine(scene).paths.path_rows(scene, state, duration, seed):
+        yield from rows.events()
 
 
 def exact_path(scene, state):
     """Yield (time, name) of all events, hops included, for ever.
 
     ``state`` is (x1, y1, x2, y2, u1, v1, u2, v2); it and the ranges of the centres are doubles,
-    taken without rounding. Names are as in ``paths.path_events``. If events have the same time,
+    taken without rounding. Names are as in ``path_events``. If events have the same time,
     walls come first. Call it under ``mpmath.workdps``.
     """
     x, v = [mpf(float(q)) for q in state[:4]], [mpf(float(q)) for q in state[4:]]

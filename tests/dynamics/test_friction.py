@@ -13,11 +13,12 @@ import numpy as np
 import pytest
 from dynamics.rates import check_rates
 from effect_scenes import ALL, SCENES
+from exact_motion import path_events
 from marks import slow
 from sampling.uniformity import assert_uniform_on_sphere, parts, scaled_components
 
 import twodiscs as td
-from twodiscs.dynamics import law, paths
+from twodiscs.dynamics import law
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import open_block_kicks, open_kicks
 from twodiscs.dynamics.two.follow import new_kicks
@@ -115,7 +116,7 @@ def test_a_trajectory_is_kicked_at_random_times(scene):
     """Its other events are compared with the ensemble beside those of scenes without friction."""
     scene, time = replace(scene, friction=4.0), 256.0
     start = tuple(map(float, states(scene, 1, 3)[: len(components(scene)), 0]))
-    rows = list(paths.path_events(scene, start, time, seed=3))
+    rows = list(path_events(scene, start, time, seed=3))
     kicks = sum(row[1] == "kick" for row in rows)
     assert abs(kicks - 4 * time) <= 5 * math.sqrt(4 * time)
     velocities = [i for i, name in enumerate(components(scene)) if name[0] in "uvs"]
@@ -124,7 +125,7 @@ def test_a_trajectory_is_kicked_at_random_times(scene):
             assert all(old[i] != new[i] for i in velocities)
             assert at > before
     # Another seed has the same start and other kicks.
-    other = list(paths.path_events(scene, start, time, seed=4))
+    other = list(path_events(scene, start, time, seed=4))
     assert other[0] == rows[0]
     assert other[-1][-1] != rows[-1][-1]
 

@@ -6,12 +6,11 @@ Without these tests roundings could add, lose or repeat an event where arithmeti
 import math
 
 import pytest
-from exact_motion import compare
+from exact_motion import compare, path_events
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from twodiscs.dynamics.law import two_disc_law
-from twodiscs.dynamics.paths import path_events
 from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling.initial_states import states
 from twodiscs_paper.studies.single import advance

@@ -9,10 +9,11 @@ import math
 import numpy as np
 import pytest
 from effect_scenes import PAPER, SCENES
+from exact_motion import path_events
 from marks import slow
 
 import twodiscs as td
-from twodiscs.dynamics import ensemble, paths, runs
+from twodiscs.dynamics import ensemble, runs
 from twodiscs.dynamics.many import many_intervals, many_paths
 from twodiscs.dynamics.two import returns
 from twodiscs.measure.intervals import make_intervals
@@ -121,7 +122,7 @@ def test_intervals_of_many_are_those_of_trajectories(scene, event, monkeypatch):
     )
     due = np.zeros((3, 66), np.int64)
     for k, state in enumerate(many_initial_states.states(scene, replicas, 7, 3).T):
-        rows = paths.path_events(scene, state, 4 * window, seed=7)
+        rows = path_events(scene, state, 4 * window, seed=7)
         at = np.array([time for time, name, *_ in rows if name == event])
         own = np.diff(at)[at[:-1] < window]
         assert (numbers[k], times[k]) == (own.size, pytest.approx(own.sum(), rel=1e-9))

@@ -15,13 +15,13 @@ import mpmath
 import numpy as np
 import pytest
 from effect_scenes import exchanged
+from exact_motion import path_events
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from marks import slow
 from mpmath import mp, mpf
 
 from twodiscs.dynamics import law as event_law
-from twodiscs.dynamics import paths
 from twodiscs.dynamics.law import DISC, END_OF_TIME, fall_quotient, two_disc_law
 from twodiscs.dynamics.two import event_counts, follow
 from twodiscs.model.events import DECLARED_EVENTS, EVENT_AXES, EVENTS, HOPS, WALLS
@@ -163,7 +163,7 @@ COUNTED = [SCENES["combination"], SCENES["friction"], slow(replace(SCENES["all"]
 
 @pytest.mark.parametrize("scene", COUNTED, ids=repr)
 def test_a_trajectory_tells_the_same_events_as_the_ensemble(scene):
-    rows = list(paths.path_events(scene, start(scene, 3), 64.0, seed=3))
+    rows = list(path_events(scene, start(scene, 3), 64.0, seed=3))
     names = Counter(row[1] for row in rows)
     seen = {event: names[event] for event in (*HOPS, "disc_collision")}
     discs = (1, 2) if scene.identical else (1,)

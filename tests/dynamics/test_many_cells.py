@@ -10,10 +10,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from exact_motion import path_events
 from marks import slow
 
 import twodiscs as td
-from twodiscs.dynamics import paths
 from twodiscs.dynamics.many import all_pairs as many
 from twodiscs.dynamics.many import cell_list as many_cells
 from twodiscs.dynamics.many import class_counts, many_paths, many_rates
@@ -139,10 +139,10 @@ def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
     short = scene in KICKED[1:]
     duration = many_rates.expected_duration(scene, (10 if short else 5) * scene.discs)
     monkeypatch.setattr(many_paths, "LOG_ENTRIES", 50)
-    found = [*paths.path_events(scene, state, duration)]
+    found = [*path_events(scene, state, duration)]
     monkeypatch.setattr(many_paths, "large_grid", lambda scene: None)
     monkeypatch.setattr(many_paths, "record_rows", many_paths.record_rows.py_func)
-    other = [*paths.path_events(scene, state, duration)]
+    other = [*path_events(scene, state, duration)]
     assert len(found) > (2 if short or not scene.walled else 5) * scene.discs
     assert short or bool(scene.friction) == any(row[1] == "kick" for row in found)
     assert [row[1:4] for row in found] == [row[1:4] for row in other]

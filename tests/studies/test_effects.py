@@ -10,12 +10,12 @@ from subprocess import CalledProcessError
 
 import numpy as np
 import pytest
+from exact_motion import path_events
 from factory import Laws, empty, of, written
 from marks import slow
 
 from twodiscs.analysis.tables import MeanTimesTable
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.paths import path_events
 from twodiscs.figures import style
 from twodiscs.model.events import EVENTS, WALLS
 from twodiscs.model.scene import Box, Scene

@@ -25,20 +25,8 @@ from twodiscs.sampling.threads import map_in_threads
 MOST_PATH_EVENTS = 1e7
 
 
-def path_events(scene, state, duration, seed=0):
-    """Yield (time, event, first, second, state) of each event within ``duration``.
-
-    ``state`` is one of ``initial_states.states`` as a tuple or column. The first event is "start",
-    the last one "end"; hops are events, walls are named by axis and disc, "wall_x1" say. With
-    friction "kick" is an event, because a path turns there; kicks come from the streams of
-    ``seed``.
-    """
-    for rows in find_engine(scene).paths.path_rows(scene, state, duration, seed):
-        yield from rows.events()
-
-
 def check_start(scene, start):
-    """Return ``start`` as a state of the ``Scene``, in the form that ``path_events`` takes.
+    """Return ``start`` as a state of the ``Scene``, in the form that engines take.
 
     ``start`` is one of ``initial_states.make_records``, or as many numbers. On periodic axes any
     image serves, and it stays. Raises ``InputError`` for anything else, for discs that overlap or

@@ -121,8 +121,9 @@ class Log(NamedTuple):
     pending: np.ndarray
 
 
-def new_log(entries, components=4):
-    """Return an empty ``Log`` for a number of ``entries``, with ``components`` of a disc."""
+def new_log(entries, rough=None):
+    """Return an empty ``Log`` for a number of ``entries`` of discs, smooth or ``rough``."""
+    components = 4 if rough is None else 5
     return Log(
         np.empty(entries), np.empty(entries, np.int64), np.empty((entries, 2), np.int64),
         np.empty((entries, 2, components)), np.zeros(1, np.int64), np.zeros(1),

@@ -47,16 +47,13 @@ class Followed:
         self.scene, self.law, self.grid = scene, many_disc_law(scene), make_grid(scene)
         self.epoch, self.laps = usual_epoch(scene), np.zeros((2, scene.discs))
         self.motion = cell_list.new_motion(scene.discs, self.grid, self.law.rough)
-        self.log = self._new_log(LOG_ENTRIES)
+        self.log = cell_list.new_log(LOG_ENTRIES, self.law.rough)
         self.counts = np.zeros(N_CLASSES, np.int64)
         axes = ("vertical_hop", self.grid.y), ("horizontal_hop", self.grid.x)
         self.bands = [
             cell_list.new_bands(scene.discs, borders, True if hop in counted else None)
             for hop, borders in axes
         ]
-
-    def _new_log(self, entries):
-        return cell_list.new_log(entries, 4 if self.law.rough is None else 5)
 
     def start(self, state, seed, replica=0):
         """Begin a path with a ``state``, a column of numbers, and the kicks of its stream."""
@@ -72,8 +69,8 @@ class Followed:
             self.log.size[0] = 0
             entries = LOG_ENTRIES + 2 * (int(self.log.pending[0]) + self.scene.discs)
             if entries > self.log.times.size:
-                old = self.log
-                self.log = self._new_log(entries)._replace(origin=old.origin, pending=old.pending)
+                kept = {"origin": self.log.origin, "pending": self.log.pending}
+                self.log = cell_list.new_log(entries, self.law.rough)._replace(**kept)
             duration = cell_list.follow_discs(
                 duration, self.epoch, self.motion, self.laps, self.grid, self.law, self.counts,
                 0, self.kicks, self.log, *self.bands,
@@ -111,7 +108,7 @@ def usual_duration(scene):
 
 
 def path_rows(scene, state, duration, seed=0, hops=True):
-    """Yield the ``Rows`` of a trajectory of more than two discs, see ``paths.path_events``."""
+    """Yield the ``Rows`` of a trajectory of more than two discs, see ``Engine``."""
     follow = _follow_few if large_grid(scene) is None else _follow_large
     yield from follow(scene, np.array(state), float(duration), seed, scene.events if hops else ())
 

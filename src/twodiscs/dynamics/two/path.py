@@ -138,7 +138,7 @@ def record_rows(now, clock, duration, law, kicks, hops, wraps, jumps, rows):
 
 
 def path_rows(scene, state, duration, seed=0, hops=True):
-    """Yield the ``Rows`` of a trajectory, see ``paths.path_events``.
+    """Yield the ``Rows`` of a trajectory, see ``Engine``.
 
     Hops are at their times within a flight. Along periodic axes centres go on beyond the cell.
     """
