@@ -184,6 +184,9 @@ def test_a_small_budget_has_an_error_bar(discs, packing):
     assert 100 <= md.point.replicas < 300
     assert md.point.events < 1.1 * budget
     assert all(one.stderr for one in md.values())
+    # Replicas of another duration are done again.
+    with pytest.warns(td.AccuracyWarning):
+        assert td.simulate(scene, budget=1e5, seed=1).more(budget=budget) == md
 
 
 @pytest.mark.parametrize("budget", [1e6, 1.2e6, 1.6e6, 4e6, 1e8])
