@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from figure_cases import BOXES, PAPER, draw
+from figure_cases import BOXES, PAPER, draw, shown_texts
 from matplotlib.patches import Arc, Circle, Wedge
 
 from twodiscs.figures import configuration_space, style
@@ -100,3 +100,22 @@ def test_the_page_is_at_right_angles_to_the_view():
     assert configuration_space._seen(0.7 * sight) == pytest.approx((0, 0), abs=1e-12)
     across = np.cross(sight, [0.3, -0.2, 0.9])
     assert math.hypot(*configuration_space._seen(across)) == pytest.approx(np.linalg.norm(across))
+
+
+#: {drawing: what it names}, numbers of a scale and letters of panels left out.
+NAMED = {
+    "model": r"0 \mathbf{v}_1 \mathbf{v}_2 \mathbf{x}_1 \mathbf{x}_2 a=w/2-r b=h/2-r h r w x y",
+    "configuration_space": r"-a -b X Y \times a b x x_1 x_2 y y_1 y_2"
+    r" |x|<\sqrt{2r^2-y^2} |y|<\sqrt{2r^2-x^2}",
+    "largest_radius": r"2r h-2r r r/h r=h/4 r=w/4 r_{\mathrm{max}}=h/2 w-2r w/h",
+    "integration_regimes": r"0 A B \alpha \beta \sigma u v",
+    "surface_shell": r"-b 0 \sqrt{2}\,\varepsilon \sqrt{2}\,a \sqrt{2}\,b \sqrt{2}\,r"
+    r" \varepsilon b x x^2+y^2=2r^2 y y_1 y_1=y_2 y_2",
+}
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_a_drawing_names_its_lengths(name):
+    texts = {text.get_text() for text, _ in shown_texts(draw(name, PAPER, {}))}
+    formulas = {t for t in texts if t.startswith("$") and not t.startswith(r"$\mathdefault")}
+    assert formulas == {f"${formula}$" for formula in NAMED[name].split()}
