@@ -82,12 +82,6 @@ def test_ase_reads_it(path, tmp_path):
         assert np.allclose([*state], [*path.states_at(2.5)[0]], atol=1e-15)
 
 
-def test_a_trajectory_is_a_table_as_before(path):
-    assert isinstance(path[path["event"] != "end"], td.Trajectory)
-    assert isinstance(path["time"], pd.Series)
-    assert [*path[["time", "u1"]]] == ["time", "u1"]
-
-
 def test_hops_of_one_flight_in_the_wrong_order_are_refused():
     """The discs would fly back from one to the other."""
     path = td.trajectory(td.Scene(1.5, 1.0, 0.05), duration=30)

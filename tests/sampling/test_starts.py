@@ -5,20 +5,16 @@ a surface.
 """
 
 import math
-from itertools import pairwise
 
-import mpmath
 import numpy as np
 import pytest
 from effect_scenes import SCENES
 from marks import slow
 from sampling import uniformity
-from scipy.stats import chisquare
 
 from twodiscs.dynamics.two import strip
 from twodiscs.model.events import HOPS
-from twodiscs.model.scene import Box, Scene
-from twodiscs.sampling.conditioned import conditioned_sampler, draw_separation
+from twodiscs.model.scene import Scene
 from twodiscs.sampling.initial_states import STATE_ROWS, draw_states, start_sampler, states
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.rejection import fraction_if_accepted, propose_anywhere, rejection_sampler
@@ -134,73 +130,6 @@ def test_states_are_the_first_ones_of_their_stream(scene):
     assert np.array_equal(states(scene, 7, 3, 1), many[:, :7])
     for other in (states(scene, 20, 3, 2), states(scene, 20, 4, 1)):
         assert not np.any(other[:8] == many[:8])
-
-
-# Separations of plain scenes -------------------------------------------------------------------
-
-
-JAM = Box(1.5, 1.0).largest_radius
-
-#: Boxes and radii in every regime, next to the thresholds and where the discs hardly fit.
-CASES = [
-    (1.5, 1.0, r)
-    for r in (1e-9, 0.01, 0.2, 0.25, 0.25 + 1e-12, 0.3, 0.374999, 0.375001, 0.38,
-              JAM * (1 - 1e-4), JAM * (1 - 1e-9))
-] + [
-    (1.0, 1.0, 0.2499), (1.0, 1.0, 0.25), (1.0, 1.0, 0.2501), (1.0, 1.0, 0.2928932),
-    (2.0, 1.0, 0.49), (2.0, 1.0, 0.5 * (1 - 1e-9)), (1.0, 2.0, 0.3), (1.0, 1.5, 0.38),
-    (3.0, 1.0, 0.4), (3.0, 1.0, 0.499999), (1.0, 3.0, 0.4), (1e6, 1.0, 0.3), (1e-6, 1.0, 2e-7),
-]  # fmt: skip
-
-
-@compiled
-def separations(seed, draw, n):
-    state = open_stream(seed, 0)
-    found = np.empty((2, n))
-    for i in range(n):
-        found[0, i], found[1, i], _ = draw_separation(state, draw)
-    return found
-
-
-@mpmath.workdps(40)
-def slack_law(width, height, radius, slack_x):
-    """Return the law of p = A − |x1 − x2| by quadrature, and the largest slack along y.
-
-    These are 65 edges, the probabilities between them, and B − k at each of ``slack_x``.
-    """
-    sigma = 2 * mpmath.mpf(radius)
-    a, b = width - sigma, height - sigma
-
-    def room(slack):
-        u = a - slack
-        return b - (mpmath.sqrt(sigma**2 - u**2) if u < sigma else 0)
-
-    top = a - mpmath.sqrt(max(sigma**2 - b**2, 0))
-    edges, kink = [top * i / 64 for i in range(65)], a - sigma
-    masses = []
-    for low, high in pairwise(edges):
-        points = [low, kink, high] if low < kink < high else [low, high]
-        # To 2e-11 of the scatter of a single draw.
-        masses.append(mpmath.quad(lambda p: p * max(room(p), 0) ** 2, points, maxdegree=2))
-    total, rooms = sum(masses), [room(p) for p in slack_x]
-    return [np.array(row, float) for row in (edges, [m / total for m in masses], rooms)]
-
-
-@pytest.mark.parametrize(("width", "height", "radius"), CASES)
-def test_separations_have_the_invariant_law(width, height, radius):
-    """Cells of the slack along x with fewer than ten draws are taken together with another one."""
-    draw, n = conditioned_sampler(Scene(width, height, radius)), 40_000
-    slack_x, slack_y = separations(np.uint64(11), draw, n)
-    assert np.all((slack_x >= 0) & (slack_y >= 0))
-    edges, masses, rooms = slack_law(width, height, radius, slack_x[:2000].tolist())
-    counts, _ = np.histogram(slack_x, bins=edges)
-    assert counts.sum() == n
-    order = np.argsort(masses)
-    cells = [0, *range(1 + np.count_nonzero(n * masses < 10), masses.size)]
-    seen, expected = (np.add.reduceat(of[order], cells) for of in (counts, n * masses))
-    assert chisquare(seen, expected).pvalue > uniformity.FALSE_ALARM
-    # Given u, the slack in y is (B − k)√U.
-    uniformity.assert_uniform((slack_y[:2000] / rooms) ** 2)
 
 
 # Proposals in the neck of a hop -----------------------------------------------------------------
