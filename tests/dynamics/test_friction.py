@@ -7,13 +7,11 @@ Statistical comparisons allow five standard errors, some 40 of them.
 
 import math
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
 from dynamics.rates import check_rates
 from effect_scenes import ALL, SCENES
-from exact_motion import path_events
 from marks import slow
 from sampling.uniformity import assert_uniform_on_sphere, parts, scaled_components
 
@@ -109,25 +107,6 @@ def test_states_of_two_blocks_are_kicked_as_those_of_one_that_is_twice_as_large(
     whole = open_block_kicks(new(scene, 8), 3).waits
     assert np.array_equal(open_block_kicks(new(scene, 4), 3, first=4).waits, whole[4:])
     assert len({*whole}) == 8
-
-
-@BOTH
-def test_a_trajectory_is_kicked_at_random_times(scene):
-    """Its other events are compared with the ensemble beside those of scenes without friction."""
-    scene, time = replace(scene, friction=4.0), 256.0
-    start = tuple(map(float, states(scene, 1, 3)[: len(components(scene)), 0]))
-    rows = list(path_events(scene, start, time, seed=3))
-    kicks = sum(row[1] == "kick" for row in rows)
-    assert abs(kicks - 4 * time) <= 5 * math.sqrt(4 * time)
-    velocities = [i for i, name in enumerate(components(scene)) if name[0] in "uvs"]
-    for (before, *_, old), (at, event, *_, new) in pairwise(rows):
-        if event == "kick":
-            assert all(old[i] != new[i] for i in velocities)
-            assert at > before
-    # Another seed has the same start and other kicks.
-    other = list(path_events(scene, start, time, seed=4))
-    assert other[0] == rows[0]
-    assert other[-1][-1] != rows[-1][-1]
 
 
 def test_velocities_forget_at_the_rate_of_kicks():

@@ -183,6 +183,7 @@ def test_a_trajectory_tells_the_same_events_as_the_ensemble(scene):
         event: seen[event] for event in scene.events
     }
     assert seen["any_wall"] > 10
+    assert ("kick" in names) == bool(scene.friction)
 
 
 # Falling ----------------------------------------------------------------------------------------

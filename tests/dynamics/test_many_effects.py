@@ -97,15 +97,6 @@ def test_bursts_in_a_neck_need_initial_states_in_it():
     assert found["right_wall_time"].status == "reached"
 
 
-@pytest.mark.usefixtures("in_python")
-def test_a_start_needs_the_energy_of_its_spins():
-    (start,) = td.starts(BOX, 1, seed=1)
-    assert len(td.trajectory(BOX, 2.0, start=start)) > 2
-    start["s3"] *= 2
-    with pytest.raises(td.InputError, match=r"^start must have a total energy of 0.5, not "):
-        td.trajectory(BOX, 2.0, start=start)
-
-
 FEW = Scene(1.5, 1.0, 0.15, discs=3, friction=4.0)
 KICKED = Scene(3.0, 1.0, 0.15, discs=3, periodic="x", friction=4.0)
 

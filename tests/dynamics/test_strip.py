@@ -9,7 +9,6 @@ from itertools import product
 
 import numpy as np
 import pytest
-from factory import all_reached
 from marks import slow
 
 from twodiscs.dynamics import runs
@@ -184,16 +183,6 @@ def test_only_rare_hops_of_a_neck_have_strips():
         (2.851903922399709, 0.045663183366862564, 5.474870133112426),
     ):
         assert strip.rare_hops(Scene(width, 1.0, radius, field=field)) == ()
-
-
-@pytest.mark.parametrize(("hop", "distance"), [("vertical_hop", 1e-4), ("horizontal_hop", 1e-9)])
-def test_the_target_is_reached_at_any_distance_from_a_threshold(hop, distance):
-    scene = PAPER.with_radius((0.375 if hop == "vertical_hop" else 0.25) * (1 - distance))
-    point = runs.DynamicsRun(scene, {hop: 0.01}, 10**8, 1).run()
-    assert all_reached(point)
-    assert point.strips[hop].events < 100 * point.strips[hop].replicas
-    time = point.count(hop).estimate()
-    assert abs(time.value / exact.mean_times(scene)[hop] - 1) < 5 * time.relative_stderr
 
 
 ROUGH = {"moment_of_inertia": 0.1}

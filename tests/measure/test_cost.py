@@ -20,7 +20,7 @@ from twodiscs.model.formats import format_seconds
 from twodiscs.model.seeds import job_seed
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.many import insertions
-from twodiscs.sampling.rounds import ROUND_MARGIN
+from twodiscs.sampling.rounds import PLAN_STEPS, ROUND_MARGIN
 from twodiscs.theory import exact
 from twodiscs_paper.pipeline.forecast import forecast_dynamics
 
@@ -140,10 +140,15 @@ def test_ten_times_the_accuracy_takes_a_hundred_times_as_long(blocks):
 def test_without_a_budget_a_run_has_a_day():
     easy = new_run(NEAR, 1e-3).components
     assert all(one.budget > 100 * one.planned * one.block_events for one in easy.values())
+    for name, fine in new_run(NEAR, 2e-4).components.items():
+        assert fine.planned == pytest.approx(25 * easy[name].planned, rel=1 / PLAN_STEPS)
     hard = new_run(NEAR, 1e-9)
     work = sum(component.budget * component.cost_ratio for component in hard.components.values())
     assert work == pytest.approx(DAY_OF_EVENTS)
     assert hard.most_events == DAY_OF_EVENTS
+    for component in hard.components.values():  # as many blocks, on the grid of planned ones
+        events = component.planned * component.block_events
+        assert 0.999 < events / component.budget < 1 + 1 / PLAN_STEPS
     # All components have the same fraction of their events.
     far = new_run(NEAR, 1e-9, 10**18).components
     shares = [component.budget / far[name].budget for name, component in hard.components.items()]

@@ -224,25 +224,6 @@ def test_counts_in_pieces_are_those_of_their_blocks_and_reach_what_is_asked():
         assert one.estimate().relative_stderr <= TARGET[hop]
 
 
-@pytest.mark.parametrize("budget", [10**12, 10**7, 4 * 10**6])
-def test_planned_events_follow_the_errors_asked_for_as_far_as_the_budget_goes(budget):
-    """Each component has what its own events need; too small a budget shortens all equally."""
-    scene = PAPER.scene(0.24)
-    coarse, fine = (
-        runs.DynamicsRun(scene, {"horizontal_hop": error, "any_wall": 0.001}, budget, 1).components
-        for error in (2e-3, 1e-3)
-    )
-    ratio = fine["horizontal_hop"].planned / fine["all"].planned
-    ratio /= coarse["horizontal_hop"].planned / coarse["all"].planned
-    assert 4 / (1 + 1 / 16) ** 2 < ratio < 4 * (1 + 1 / 16) ** 2
-    if budget == 10**12:
-        assert fine["all"].planned == coarse["all"].planned
-    else:
-        for components in (coarse, fine):
-            events = sum(one.planned * one.block_events for one in components.values())
-            assert 0.9 * budget < events < (1 + 1 / 16) * 1.05 * budget
-
-
 #: {what is counted: (number in a block, run of at least a number)}
 WHOLE = {
     "intervals": (2**16, lambda n: runs.IntervalsRun(PAPER.scene(0.1), "vertical_hop", n, 5)),

@@ -11,7 +11,7 @@ from theory.antiderivatives import reference, reference_times, relative_error
 
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Box, Scene
-from twodiscs_paper.reference import QUANTITIES, MpScene, exact_numbers
+from twodiscs_paper.reference import exact_numbers
 
 BOXES = [(1.5, 1.0), (1.0, 1.0), (2.0, 1.0), (1.0, 2.0), (3.0, 1.0), (1.0, 1.7), (1e6, 1), (1, 1e6)]
 
@@ -34,12 +34,3 @@ def test_exact_numbers_have_the_digits_of_the_antiderivatives(box):
         for some, values in ((found, expected), (times, due)):
             for name, value in values.items():
                 assert relative_error(some[name], value) < 1e-50, (scene, name)
-
-
-def test_every_number_has_the_name_that_tables_give_it():
-    scene = Scene(1.5, 1.0, 0.2)
-    volume, areas, times = exact_numbers(scene)
-    expected = {f"{event}_area": area for event, area in areas.items()} | volume
-    expected |= {f"{event}_time": time for event, time in times.items()}
-    q = MpScene.of(scene.width, scene.height, scene.radius)
-    assert {name: quantity(q) for name, quantity in QUANTITIES.items()} == expected

@@ -113,7 +113,7 @@ def ergodic_components(scene):
     if Fraction(scene.width) > n * sigma if ring else a > (n - 1) * sigma:
         return 1 if b > sigma else math.factorial(n - ring)
     if b > (n - 1) * sigma:
-        return 1 if ring or a > sigma else math.factorial(n)
+        return 1 if a > sigma else math.factorial(n)
     if is_ordered(scene):
         return math.factorial(n) * _zigzags(scene)
     return None if ring or not is_ordered(scene.turned()) else ergodic_components(scene.turned())
