@@ -72,21 +72,6 @@ def test_each_disc_may_start_at_its_own_walls_and_not_beyond(disc, axis, ratio):
             paths.check_start(scene, state)
 
 
-@pytest.mark.parametrize("scene", GIVEN[:2], ids=repr)
-def test_an_image_of_disc_2_moves_as_disc_2_does(scene):
-    """Three periods away along each periodic axis, all rows are three periods away."""
-    start = follow(scene, 7, None, 1.0)[0][4]
-    moved, column = list(start), dict(zip(components(scene), range(12), strict=False))
-    for axis in scene.periodic:
-        moved[column[f"{axis}2"]] += 3 * scene.side(axis)
-    near, far = (follow(scene, 7, one, 2.0) for one in (start, moved))
-    assert [row[1:4] for row in near] == [row[1:4] for row in far]
-    shift = np.array(moved) - start
-    assert np.abs(shift).max() >= 3.0
-    for one, other in zip(near, far, strict=True):
-        np.testing.assert_allclose(np.array(other[4]) - one[4], shift, rtol=0, atol=1e-9)
-
-
 @pytest.mark.parametrize(
     "scene",
     [Scene(1.5, 1.0, 0.2, friction=1.0), MANY, slow(Scene(6.0, 4.0, 0.2, discs=20, friction=0.1))],
