@@ -134,9 +134,6 @@ class Intervals(Result):
         values = at_zero, error, exact, None, sum(self.counts[:2]), status, "1/time"
         self.at_zero = Measurement("density_at_zero", *values)
 
-    def __hash__(self):
-        return hash((self.scene, self.hop))
-
     def _texts(self) -> pd.DataFrame:
         """Return the texts of the printed table: the mean and the density at 0."""
         return text_table([self.mean, self.at_zero])

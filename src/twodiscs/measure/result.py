@@ -90,8 +90,6 @@ class Result(Printed):
         ours, theirs = ((r.scene, r.settings, r.rows) for r in (self, other))
         return ours == theirs
 
-    __hash__ = None
-
     def more(
         self, amount: object = None, *, cores: int = 1, progress: bool | None = None, **larger
     ) -> Self:

@@ -69,9 +69,6 @@ class Scan(Result, Sequence[Result]):
     def __eq__(self, other):
         return self.results == other.results if isinstance(other, Scan) else NotImplemented
 
-    def __hash__(self):
-        return hash(tuple(result.scene for result in self))
-
     def _again(self, **asked):
         known = self.settings
         new = {name: value for name, value in asked.items() if value != known.get(name, asked)}
