@@ -124,10 +124,14 @@ def test_calls_add_up_to_separate_blocks(monkeypatch):
     hops = blocks * hop_clusters.HOPS_PER_BLOCK
     found = td.transmission(*given, hops, seed=1, name="a")
     seeds = [transmission.hop_seed(*given, "a", 1, part) for part in ("clusters", "times")]
-    sizes, _ = hop_clusters.cluster_sizes(*given, found.gap, blocks, seeds[0])
+    sizes, followed = hop_clusters.cluster_sizes(*given, found.gap, blocks, seeds[0])
     assert found.clusters == {n: hops for n, hops in enumerate(sizes.tolist()) if hops}
-    sums, _ = hop_clusters.hop_sums(*given, found.times, blocks, seeds[1])
+    sums, counted = hop_clusters.hop_sums(*given, found.times, blocks, seeds[1])
     assert found.curve == transmission.time_estimates(sums.sum(axis=0), hops)
+    # Events are as many as the plan of the run says, roughly.
+    planned = transmission.TransmissionRun(*given, hops, 1, "a").components
+    for part, events in (("clusters", followed), ("times", counted)):
+        assert 0.5 < events / (blocks * planned[part].block_events) < 2
 
 
 def test_more_discs_have_a_coefficient_too():
