@@ -89,7 +89,7 @@ MUTANTS = [
     ("sum of variances in place of their difference", "math.sqrt(late - early) / time}", "math.sqrt(late + early) / time}"),
     ("one of two tests of a plateau", 'min(rate["p"], of["trend"]["p"]) > TEST_LEVEL', 'max(rate["p"], of["trend"]["p"]) > TEST_LEVEL'),
     ("a point of another radius", 'scene.parameters() | settings))', 'content["scene"] | settings))'),
-    ("kinks of a thick shell", "np.clip([0.0, *touches, float(thickness)], 0.0", "np.clip([0.0, float(thickness)], 0.0"),
+    ("kinks of a thick shell", "np.clip([*touches, float(thickness)], 0.0", "np.clip([0.0, float(thickness)], 0.0"),
     ("range of a disc in the free fraction", "else 2 * radius)\n        for axis in scene.axes", "else radius)\n        for axis in scene.axes"),
     ("one block beyond the budget", "min(blocks, math.floor(affordable * done))", "min(blocks, math.ceil(affordable * done))"),
     ("misses resolved by units", "max(0.0, spread) * min(unit, samples)", "max(0.0, spread) * samples"),

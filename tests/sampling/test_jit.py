@@ -8,6 +8,7 @@ import os
 import shutil
 from pathlib import Path
 
+import pytest
 from commands import python
 
 import twodiscs
@@ -99,6 +100,16 @@ def test_two_processes_that_save_together_keep_their_kernels_apart(tmp_path, mon
     first.save("one signature", "one kernel")
     assert found.load("another signature") == "another kernel"
     assert found.load("one signature") in (None, "one kernel")
+
+
+@pytest.mark.parametrize(("given", "folder"), [("kept", ".cache"), ("~/kept", "kept")])
+def test_a_relative_cache_folder_is_ignored(given, folder, tmp_path, monkeypatch):
+    """As the XDG standard says; ~ is the home."""
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("XDG_CACHE_HOME", given)
+    monkeypatch.setattr(jit.numba.config, "CACHE_DIR", "")
+    kept = Path(jit.cache_folder.__wrapped__("twodiscs"))
+    assert kept.parent == tmp_path / folder / "twodiscs"
 
 
 def test_a_users_choice_of_processor_wins():
