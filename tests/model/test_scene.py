@@ -10,7 +10,7 @@ see it.
 
 import math
 import pickle
-from dataclasses import FrozenInstanceError
+from dataclasses import FrozenInstanceError, replace
 from fractions import Fraction
 from itertools import product
 
@@ -225,7 +225,15 @@ def test_walls_of_one_rate_that_a_trajectory_reaches_are_counted_together(effect
         assert scene.copies(event) == (by_axis[EVENT_AXES[event]] if event in WALLS else 1)
 
 
-def test_no_energy_to_spare_to_pass_one_above_the_other_is_none():
+def test_energy_to_pass_one_above_the_other_is_that_of_the_cheaper_order():
+    """The upper disc is the other one's diameter up: g m2 2r1 with disc 2 on top, or g m1 2r2."""
+    for ratios in ({"radius_ratio": 2, "mass_ratio": 3}, {"radius_ratio": 0.5, "mass_ratio": 0.2}):
+        scene = Scene(3.0, 2.0, 0.1, **ratios)
+        limit = ENERGY / (2 * min(scene.masses[1] * scene.radii[0], scene.radii[1]))
+        weak, strong = (replace(scene, field=part * limit) for part in (0.999, 1.001))
+        assert weak.horizontal_hops
+        assert not strong.horizontal_hops
+    # No energy to spare is none.
     assert not Scene(3.0, 2.0, 0.25, field=1.0).horizontal_hops
     assert Scene(3.0, 2.0, 0.25, field=math.nextafter(1.0, 0)).horizontal_hops
 
