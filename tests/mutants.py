@@ -28,6 +28,11 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 
 #: Test files for what is no module: the beginning of a path, in the order of running.
 READERS = {
+    # Tests draw whole initial states, which are made elsewhere.
+    "src/twodiscs/sampling/conditioned.py": (
+        "tests/sampling/test_starts.py",
+        "tests/studies/test_stability.py",
+    ),
     "workflow/rules": (
         "tests/workflow/test_jobs.py",
         "tests/workflow/test_build.py",
