@@ -142,12 +142,14 @@ def _wall_shell(arc, epsilon):
     range_x, range_y, sigma = arc.exact
     thick = Fraction(epsilon)
     if thick >= range_x:
-        return arc_integrals(arc)[0] / epsilon
+        volume, *_ = arc_integrals(arc)
+        return volume / epsilon
     flat, near = arc.beyond_x, min(max((range_x - thick) ** 2, arc.stop), arc.start)
     total = arc.range_y**2 * (flat**2 / (2 * epsilon) if flat < epsilon else flat - epsilon / 2)
     total += sum(w * y * y * sin * x / epsilon for w, x, y, _, sin in arc.nodes(arc.start, near))
     total += sum(w * y * y * sin for w, _, y, _, sin in arc.nodes(near, arc.stop))
-    return total + arc_integrals(Arc(thick, range_y, sigma))[0] / (2 * epsilon)
+    thin_volume, *_ = arc_integrals(Arc(thick, range_y, sigma))
+    return total + thin_volume / (2 * epsilon)
 
 
 def _collision_shell(arc, epsilon):

@@ -27,7 +27,8 @@ def replica_duration(scene, budget=None):
 
     T is so long that the draw of a start costs little. If an open hop happens less than
     ``HOPS_PER_REPLICA`` times in it, the discs keep their sides for long, and counts are
-    correlated. More and shorter replicas then give a smaller error for the same work.
+    correlated. More and shorter replicas then give a smaller error for the same work. It is the
+    same for any ``budget``.
     """
     rate = exact.event_rate(scene) * exact.work_per_event(scene)
     duration = nearest_power_of_two(EVENTS_PER_REPLICA / rate)
