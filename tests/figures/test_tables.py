@@ -298,6 +298,28 @@ def test_texts_of_studies_stand_clear_and_symbols_are_named(name):
     assert unclear(axes.get_figure(root=True)) == []
 
 
+#: The values that panels are compared with, as lines across them.
+ACROSS = {
+    ("tails", "ratio"): [1],
+    ("distributions", "rates"): [1],
+    ("distributions", "passages"): [1],
+    ("friction", "exponent"): [-1.5, -2],
+    ("brownian", "exponent"): [-1.5, -2, -2.5, -3.5, 0],
+    ("diffusion", "ring"): [1],
+    ("thresholds", "ratios"): [1],
+    ("effects", "a"): [1],
+    ("tori", "residuals"): [0, -2, 2, -5, 5],
+}
+
+
+@pytest.mark.parametrize("name, panel", ACROSS)
+def test_a_line_across_a_panel_is_at_the_value_that_is_due(name, panel):
+    axes = drawn(name)[panel]
+    across = axes.get_yaxis_transform("grid")
+    heights = [line.get_ydata()[0] for line in axes.lines if line.get_transform() == across]
+    assert heights == ACROSS[name, panel]
+
+
 def test_what_passages_leave_falls_at_twice_their_rate():
     """The curves κ exp(−2κt/τ) of the figure, at all their times."""
     first = table("passages")[0]
