@@ -11,7 +11,7 @@ from itertools import combinations, combinations_with_replacement
 
 import numpy as np
 import pytest
-from factory import BOX, Laws, bins_point, counts_point, hits_point
+from factory import BOX, bins_point, counts_point, hits_point
 
 import twodiscs as td
 from twodiscs.dynamics.stages import STAGES
@@ -22,7 +22,6 @@ from twodiscs.points.monte_carlo_point import Hits, InsertionPoint, MonteCarloPo
 from twodiscs.theory.clusters import corner_variance
 from twodiscs_paper.pipeline.points import read_point
 
-LAW = Laws(BOX.scene(0.1))
 RNG = np.random.default_rng(6)
 NEAR, THREE = td.Scene(1.5, 1.0, 0.249), td.Scene(1.5, 1.0, 0.2, discs=3)
 
