@@ -82,6 +82,13 @@ def test_the_shell_of_a_blocked_hop_must_be_as_empty_as_it_is():
     row = part_row(500, 1000, 0.5, 0.0)
     assert (row["status"], row["bias"]) == ("impossible", 0.5)
     assert abs(row["z"]) < 1
+    # Weights of three discs: each area must be 0, or the row is wrong.
+    point = td.sample(td.Scene(1.5, 1.0, 0.28, discs=3), 1).point
+    blocked, other = (point.quantities[f"{event}_area"] for event in ("horizontal_hop", "top_wall"))
+    for weights, z in ((blocked, 0), (other, math.inf)):
+        wrong = replace(point, quantities=point.quantities | {"horizontal_hop_area": weights})
+        row = next(r for r in AreasTable.rows([wrong]) if r["quantity"] == "horizontal_hop_area")
+        assert (row["z"], row["test"]) == (z, "certain")
 
 
 # Molecular dynamics ---------------------------------------------------------------------------

@@ -54,6 +54,8 @@ def test_the_longer_side_that_ends_at_walls_is_shown_with_its_hops(box, axis):
     (start, end), (first, last) = (axes.get_xlim() for axes in figure.axes[:2])
     assert last - first <= (end - start) / 3 * (1 + 1e-12)
     assert start <= first < last <= end
+    shaded = [(area.get_x(), area.get_x() + area.get_width()) for area in figure.axes[0].patches]
+    np.testing.assert_allclose(shaded, [axes.get_xlim() for axes in figure.axes[1:]], rtol=1e-9)
 
 
 @pytest.mark.parametrize(("discs", "radius"), [(3, 0.2), (9, 0.1)])
