@@ -312,7 +312,7 @@ ACROSS = {
 }
 
 
-@pytest.mark.parametrize("name, panel", ACROSS)
+@pytest.mark.parametrize(("name", "panel"), ACROSS)
 def test_a_line_across_a_panel_is_at_the_value_that_is_due(name, panel):
     axes = drawn(name)[panel]
     across = axes.get_yaxis_transform("grid")
