@@ -104,6 +104,7 @@ depth: 1, moment_of_inertia: 0.4 → moment_of_inertia must be left out in a box
 CALLS = """
 Scene(1.5, 1, 0.1, depth=1e50) → depth must lie between … and 1e45
 Scene(1.5, 1, 0.1, periodic='x,y') → periodic must be some of the axes x and y (z needs a depth), …
+Scene(1.5, 1, 0.1, depth=1, periodic='x,y') → periodic must be some of the axes x, y and z, each
 Scene('0,3', 1, 0.1) → width must be a positive number, not '0,3'; decimals follow a point, 0.3
 Scene(1.5, 1, 0.1, n_discs=3) → 'n_discs'; did you mean discs?
 Scene(1.5, 1, np.array([0.1, 0.2])) → radius must be
@@ -116,6 +117,7 @@ td.sample(PAPER, cores=10**6) → cores must be an integer from 1 to 1024, not 1
 td.simulate(PAPER, seed=2**63) → seed must be an integer from 0 to 2^63 - 1, not 9223372036854775808
 td.simulate(RING, events='right_wall') → 'right_wall': the periodic axis x has no walls
 td.simulate(RING, events='horizontal_hop') → x two discs have no order that a hop could change
+td.simulate(Scene(1, 1, 0.1, discs=3, periodic='xy'), events='vertical_hop') → y discs on a torus have no order
 td.intervals(FOUR, 'horizontal_hop') → axis x are those of neighbours, see transmission
 td.sample(PAPER, quantities='any_wall') → did you mean any_wall_area?
 td.sample(PAPER, 1).save('\\0') → path must be a file to write, not '\\x00': it has a

@@ -33,7 +33,7 @@ def test_three_discs_fit_as_far_as_closed_forms_say(width):
 
 
 @pytest.mark.parametrize("discs", [2, 3, 4, 5, 8, 13, 64])
-@pytest.mark.parametrize("sides", [(1.5, 1.0), (1.0, 1.0), (1.0, 6.0), (20.0, 1.0)])
+@pytest.mark.parametrize("sides", [(1.0, 1.05), (1.0, 1.0), (1.0, 6.0), (20.0, 1.0)])
 @pytest.mark.parametrize("periodic", ["", "x", "y", "xy"])
 def test_arrangements_fit(discs, sides, periodic):
     largest = largest_radius(discs, *sides, periodic)
@@ -47,6 +47,11 @@ def test_arrangements_fit(discs, sides, periodic):
         assert math.hypot(dx, dy) >= scene.contact_distance
     assert max(abs(x) for x, _ in centres) <= scene.range_x / 2 * (1 + 1e-15)
     assert max(abs(y) for _, y in centres) <= scene.range_y / 2 * (1 + 1e-15)
+
+
+@pytest.mark.parametrize("sides", [(1.0, 2000.0), (2000.0, 1.0)])
+def test_more_than_a_thousand_discs_fit_in_one_row(sides):
+    assert Box(*sides, discs=1100).largest_radius == 0.5
 
 
 # As a scene --------------------------------------------------------------------------------------

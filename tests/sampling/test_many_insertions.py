@@ -61,7 +61,7 @@ def test_the_volume_is_that_of_rejection(scene):
     assert abs(found.log_volume - rejected) < 5 * np.hypot(error, errors.log_volume)
 
 
-@pytest.mark.parametrize(("radius", "periodic"), [(0.2, ""), (0.2, "x"), (0.3, "x")])
+@pytest.mark.parametrize(("radius", "periodic"), [(0.2, ""), (0.2, "x"), (0.3, "x"), (0.2, "y")])
 def test_the_overlap_of_a_pair_is_that_of_two_discs_alone(radius, periodic):
     """Also on a ring so low that discs at opposite walls may touch."""
     two = Scene(2.0, 1.0, radius, periodic=periodic)

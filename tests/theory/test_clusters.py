@@ -21,6 +21,7 @@ from twodiscs.theory.flux import flux_constant
 
 BOX = Scene(1.5, 1.0, 0.24, moment_of_inertia=0.5)
 RING = Scene(1.0, 2.0, 0.2495, moment_of_inertia=0.01, periodic="x")
+WIDE_RING = Scene(1.5, 1.0, 0.249, moment_of_inertia=0.5, periodic="x")
 
 
 def shares(scene, axis, within):
@@ -53,7 +54,7 @@ def shares(scene, axis, within):
     return volume(within) / volume(a), contact(within) / contact(a)
 
 
-@pytest.mark.parametrize("scene", [BOX, RING])
+@pytest.mark.parametrize("scene", [BOX, RING, WIDE_RING])
 def test_shares_of_regions_are_those_of_another_quadrature(scene):
     regions, needed = clusters.regions(scene), dict.fromkeys((0.3, 0.1, 1e-4), 0.0)
     assert len(regions) > 1
@@ -129,6 +130,11 @@ def test_bursts_in_corners_scale_as_the_stays():
     right, top = (clusters.corner_variance(falling, w, 1e-3) for w in ("right_wall", "top_wall"))
     left = (1 - 2 * 0.5 * 0.6) ** 2  # the density at the top over that at the bottom
     assert top / right == pytest.approx(left / (1 + left), rel=1e-9)
+    assert clusters.corner_variance(replace(ROUGH, field=0.9), "top_wall", 1e-3) == 0
+    # Others end the stays of one of many discs, however crowded they are.
+    crowd = Scene(2.0, 2.0, 0.2, discs=20, moment_of_inertia=0.5)
+    once, twice = (clusters.corner_variance(crowd, "any_wall", t) for t in (1e4, 2e4))
+    assert twice == pytest.approx(2 * once, rel=1e-2)
 
 
 @pytest.mark.parametrize("sides", [(1.5, 1.0), (1.0, 1.5)])

@@ -131,30 +131,26 @@ def _zigzags(scene):
     """
     n, sigma, a = scene.discs, scene.contact_distance, scene.range_x
     least = math.sqrt((sigma - scene.range_y) * (sigma + scene.range_y))
-    most = max(k for k in range(n) if k == 0 or k * sigma + (n - 1 - k) * least < a)
+    most = max(k for k in range(n - 1) if k == 0 or k * sigma + (n - 1 - k) * least < a)
     if most == 0:
         return 2
     midway = 2 * math.sqrt(sigma**2 - scene.range_y**2 / 4)
-    if most == n - 1 or (most - 1) * sigma + (n - 2 - most) * least + midway < a:
+    if (most - 1) * sigma + (n - 2 - most) * least + midway < a:
         return 1
     # The other pairs cannot move: they are neither at an end nor next to each other.
     return (2 if most == 1 else 1) + 2 * math.comb(n - 2 - most, most)
 
 
 def can_be_level(scene, axis):
-    """Return whether two discs can have the same ``axis`` coordinate, x or y, beside a third.
+    """Return whether two discs can have the same ``axis`` coordinate, x or y.
 
-    Two discs with the same y are at least σ apart along x, and a third one is at least σ from both.
-    It has the most room at the other wall of y, in the middle between them or beside them. The
-    condition is exact for three discs. For two discs the third is ignored. For more than three it
-    is necessary, not sufficient. On a ring the discs of a row can be level up to the last radius.
+    Two discs with the same y are at least σ apart along x. A third one has the most room at the
+    other wall of y, in the middle between them or beside them. It always has enough: of any three
+    discs that fit, two are at most half of the range apart along x. The condition is exact for
+    three discs. For more it is necessary, not sufficient. On a ring the discs of a row can be level
+    up to the last radius.
     """
-    along, across = scene.range_x, scene.range_y
-    if axis == "x":
-        along, across = across, along
-    sigma = scene.contact_distance
-    beside = max(along / 2, along - sigma)
-    return along > sigma and (scene.discs < 3 or math.hypot(beside, across) > sigma)
+    return (scene.range_y if axis == "x" else scene.range_x) > scene.contact_distance
 
 
 def arrangement(scene):
@@ -175,9 +171,9 @@ def _patterns(n, along, across, ring, torus):
     even, and else by a little less, so that the last row and the first one are shifted as well.
     """
     tried = range(1, n + 1)
-    if n > EXHAUSTIVE_DISCS and min(along, across) > 0:
-        # The best rows are about as far apart as the discs of a row.
-        about = math.sqrt(n * across / along)
+    if n > EXHAUSTIVE_DISCS:
+        # The best rows are about as far apart as the discs of a row; no more rows than discs.
+        about = min(math.sqrt(n * across / along), n) if along else n
         tried = tried[int(about / 3) : int(3 * about) + 3]
     for rows in tried:
         v = across / (rows - (not torus)) if rows > 1 else math.inf
@@ -211,10 +207,8 @@ def _rows(n, along, across, ring, torus=False):
 def _largest_triangle(a, b):
     """Return (corners, side) of the largest equilateral triangle in a × b, b ≤ a ≤ 2b/√3."""
     # One corner at (0, 0), one on x = a, one on y = b: a = s cos θ, b = s cos(π/6 − θ).
-    side = 2 * math.sqrt(max(a * a + b * b - math.sqrt(3) * a * b, 0.0))
-    low = math.sqrt(max(side * side - a * a, 0.0))
-    high = math.sqrt(max(side * side - b * b, 0.0))
-    return [(0.0, 0.0), (a, low), (high, b)], side
+    corners = [(0.0, 0.0), (a, 2 * b - math.sqrt(3) * a), (2 * a - math.sqrt(3) * b, b)]
+    return corners, 2 * math.sqrt(a * a + b * b - math.sqrt(3) * a * b)
 
 
 def arranged(discs, a, b, periodic=""):
@@ -233,8 +227,7 @@ def arranged(discs, a, b, periodic=""):
             least, centres = other, [(x, y) for y, x in turned]
     if discs == 3 and not periodic and min(a, b) > max(a, b) * math.sqrt(3) / 2:
         corners, side = _largest_triangle(max(a, b), min(a, b))
-        if side > least:
-            least, centres = side, corners if a >= b else [(x, y) for y, x in corners]
+        return corners if a >= b else [(x, y) for y, x in corners], side
     return centres, least
 
 
@@ -251,7 +244,6 @@ def largest_known_radius(discs, width, height, periodic=""):
         radius = (low + high) / 2
         across = height if "y" in periodic else height - 2 * radius
         along = width if "x" in periodic else width - 2 * radius
-        fits = across >= 0 and along >= 0
-        fits = fits and arranged(discs, along, across, periodic)[1] >= 2 * radius
+        fits = arranged(discs, along, across, periodic)[1] >= 2 * radius
         low, high = (radius, high) if fits else (low, radius)
     return low

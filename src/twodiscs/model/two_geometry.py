@@ -26,8 +26,6 @@ def _fits(scene):
     widest = 2 * max(scene.exact_radii)
     if any(Fraction(scene.side(axis)) <= widest for axis in scene.axes):
         return False
-    if any(scene.reach(axis) <= 0 for axis in scene.axes):
-        return False
     return scene.squared_reaches() > scene.exact_contact**2
 
 

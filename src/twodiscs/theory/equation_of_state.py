@@ -32,7 +32,7 @@ def bulk_derivatives(scene):
     (1975)). The rate of hops of a pair is taken as without other discs.
     """
     a, b, n, sigma = scene.range_x, scene.range_y, scene.discs, scene.contact_distance
-    packing = min(0.9, n * math.pi * sigma * sigma / 4 / (scene.width * scene.height))
+    packing = n * math.pi * sigma * sigma / 4 / (scene.width * scene.height)
     z = (1 + packing * packing / 8) / (1 - packing) ** 2
     pairs = n * (n - 1) / 2
     return Derivatives(

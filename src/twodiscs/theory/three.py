@@ -78,7 +78,7 @@ def _sums(a, b, sigma):
     for low, high in pairwise(ends):
         if high <= sigma:
             start = math.asin(low / sigma)
-            width = math.asin(min(high / sigma, 1.0)) - start
+            width = math.asin(high / sigma) - start
             angle = start + width * fraction
             t.append(sigma * np.sin(angle))
             c.append(sigma * np.cos(angle))

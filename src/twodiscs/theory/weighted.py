@@ -291,7 +291,7 @@ def _near_contact(branches, sigma, thickness):
         return (inner - outer) / float(thickness)
     # The difference would cancel. At the cuts the growing sphere touches an edge or a corner.
     touches = [float(c - sigma**2) / (float(sigma) + math.sqrt(c)) for c in _sums(branches)]
-    cuts = np.unique(np.clip([*touches, float(thickness)], 0.0, min(touches[-1], thickness)))
+    cuts = np.unique(np.clip([*touches, float(thickness)], 0.0, float(thickness)))
     nodes = zip(*(part.ravel() for part in _nodes(cuts, SINGULAR_RULE)), strict=True)
     total = math.fsum(weight * _at_distance(branches, sigma, True, x) for x, weight in nodes)
     return total / float(thickness)
