@@ -90,11 +90,9 @@ def _sum_rule(point):
     rule, scene, replicas = sum_rule(point), point.scene, point.replicas
     stderr = z = None
     enough = min(point.counts[event] for event in SUM_RULE_EVENTS) >= scores.NORMAL_EVENTS
-    enough = enough and not why_no_error(replicas=replicas) and rule.stderr
-    if enough:
-        # A run of rough discs may have missed the initial states with very many events.
-        enough = all(replicas >= replicas_needed(scene, e, rule.stderr) for e in SUM_RULE_EVENTS)
-    if enough:
+    enough = enough and not why_no_error(replicas=replicas)
+    # A run of rough discs may have missed the initial states with very many events.
+    if enough and all(replicas >= replicas_needed(scene, e, rule.stderr) for e in SUM_RULE_EVENTS):
         stderr = rule.stderr
         z = scores.student_deviate((rule.value - 1) / stderr, replicas - 1)
     values = _normal_values(scene.radius, 1.0, rule.value, stderr, z)
@@ -197,20 +195,20 @@ def distributions(rows):
     return tests
 
 
-def judged(rows, alarm):
-    """Return ``rows`` with verdicts, by Bonferroni's bound for a false-alarm probability."""
+def judged(rows):
+    """Return ``rows`` with verdicts, by Bonferroni's bound for half of ``FALSE_ALARM``."""
     tested = sum(row["z"] is not None for row in rows)
-    bound = scores.bonferroni_bound(tested, alarm) if tested else None
+    bound = scores.bonferroni_bound(tested, scores.FALSE_ALARM / 2) if tested else None
     return [
         row if row["z"] is None else {**row, "bound": bound, "passed": abs(row["z"]) <= bound}
         for row in rows
     ]
 
 
-def check_rows(rows, alarm=scores.FALSE_ALARM):
+def check_rows(rows):
     """Return the rows of check.csv: the comparisons ``rows`` and their distributions, judged.
 
-    The probability that any of them fails although all is right is at most ``alarm``. Half of it is
-    for the comparisons at a radius, half for the distributions.
+    The probability that any of them fails although all is right is at most ``FALSE_ALARM``. Half of
+    it is for the comparisons at a radius, half for the distributions.
     """
-    return judged(rows, alarm / 2) + judged(distributions(rows), alarm / 2)
+    return judged(rows) + judged(distributions(rows))

@@ -103,8 +103,8 @@ def union_z(parts, sign):
     for any dependence of the parts. ``parts`` are their deviates, and ``sign`` is any number with
     the sign of the sum's deviation.
     """
-    largest = max((abs(z) for z in parts), default=0.0)
-    log_p = math.log(2 * max(len(parts), 1)) + float(scipy.special.log_ndtr(-largest))
+    largest = max(abs(z) for z in parts)
+    log_p = math.log(2 * len(parts)) + float(scipy.special.log_ndtr(-largest))
     return _signed(_deviate(log_p), sign)
 
 

@@ -211,7 +211,7 @@ def _sampled_score(point, quantity, sampled, expectation):
     if expectation == 0:
         z, test = scores.impossible_z(0 if estimate is None else 1)
         return abs(z), test
-    if estimate is None or sampled.enough < scores.NORMAL_EVENTS:
+    if sampled.enough < scores.NORMAL_EVENTS:
         return None, None
     t = (estimate.value - expectation) / estimate.stderr
     return scores.student_deviate(t, estimate.n - 1), "normal"

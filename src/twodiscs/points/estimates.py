@@ -73,15 +73,15 @@ def normal_quantile(confidence):
     return float(-ndtri((1 - check_fraction("confidence", confidence)) / 2))
 
 
-def why_no_error(least=LEAST_EVENTS, **numbers):
+def why_no_error(**numbers):
     """Return why an estimate has no error bar, such as "37 of the 100 hits", None if it has one.
 
     ``numbers`` are {name: number} of independent events, such as hits or replicas. Each of them
-    must be the ``least`` or more.
+    must be ``LEAST_EVENTS`` or more.
     """
     short = min(numbers, key=numbers.get)
-    if numbers[short] < least:
-        return f"{numbers[short]:.3g} of the {least:.3g} {short} that an error needs"
+    if numbers[short] < LEAST_EVENTS:
+        return f"{numbers[short]:.3g} of the {LEAST_EVENTS} {short} that an error needs"
     return None
 
 

@@ -277,11 +277,8 @@ def states(scene, number, seed, block=0, progress=None):
             filled[:used, start:end] = some[:used]
         return stop
 
-    step = (
-        STATES_PER_CALL
-        if sampler.prism is None
-        else max(1, int(STATES_PER_CALL * exact.free_fraction(scene)))
-    )
+    share = 1.0 if sampler.prism is None else exact.free_fraction(scene)
+    step = int(STATES_PER_CALL * share)
     calls = ((first, min(first + step, number)) for first in range(0, number, step))
     draw_in_calls(fill, calls, number, progress)
     return filled

@@ -99,17 +99,17 @@ def proposed_measure(prism):
     """
     neck, measure = prism.neck, 1.0
     for axis, (half_1, half_2) in enumerate(zip(prism.half_1, prism.half_2, strict=True)):
-        if not half_1 and not half_2:
+        if not half_1:
             continue  # z in the plane
-        if neck is None or (axis != neck.axis and neck.least[axis] == 0.0):
-            measure *= 4 * half_1 * half_2
-        elif axis == neck.axis:
+        if axis == neck.axis:
             measure *= 4 * half_1 * neck.within
+        elif neck.least[axis] == 0.0:
+            measure *= 4 * half_1 * half_2
         elif prism.period[axis]:
             measure *= 4 * half_1 * neck.span[axis]
         else:
             measure *= 2 * math.prod(min(neck.span[axis], 2 * half) for half in (half_1, half_2))
-    return measure if neck is None else measure * neck.most ** (prism.components / 2 - 1)
+    return measure * neck.most ** (prism.components / 2 - 1)
 
 
 @compiled
