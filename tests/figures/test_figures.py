@@ -188,12 +188,12 @@ def test_drawings_are_those_of_all_plain_scenes():
     assert not any(one.shown_for(QUANTITIES, {"field": 1.5}) for one in drawings)
 
 
-def test_a_table_without_the_quantity_of_a_figure_is_named():
+def test_a_table_of_impossible_hops_or_of_one_area_has_its_figure():
     rows = of(tables_of("paper")["mean_times"], event="horizontal_hop")
     assert [row["status"] for row in rows[-2:]] == ["impossible"] * 2
     draw("mean_hop_time", PAPER, {"mean_times": rows[-2:]}).draw_without_rendering()
-    with pytest.raises(ValueError, match=r"mean_wall_time has no row of right_wall"):
-        draw("mean_wall_time", PAPER, {"mean_times": rows})
+    rows = of(tables_of("paper")["areas"], quantity="any_wall_area")
+    draw("all_areas", PAPER, {"areas": rows}).draw_without_rendering()
 
 
 # Laws and corners ---------------------------------------------------------------------------------

@@ -152,3 +152,4 @@ def test_exact_values_of_four_and_more_discs_are_bars_at_the_radii_of_the_table(
     bars = [line for line in td.plot(table).axes[0].lines if line.get_marker() == "_"]
     assert len(bars) == 5
     assert all(set(bar.get_xdata()[::2]) == {0.19, 0.22} for bar in bars)
+    assert [axes.get_label() for axes in td.plot(table, figure="mean_hop_time").axes] == ["main"]

@@ -26,8 +26,7 @@ def draw(name, box, rows=None, radius=None):
     """Return the figure ``name`` of a ``Box``, with the ``rows`` of its table if it has one.
 
     ``FIGURES`` of ``scene_figures`` has the names; ``mean_times`` and ``areas`` show all events of
-    these tables in one panel. The ``radius`` of a trajectory, if given, is written above it. Raises
-    ``InputError`` if no row is about the figure.
+    these tables in one panel. The ``radius`` of a trajectory, if given, is written above it.
     """
     if name in BOX_DRAWINGS:
         return BOX_DRAWINGS[name](box)

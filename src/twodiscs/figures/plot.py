@@ -256,7 +256,7 @@ def _fitting_figures(rows, box):
     for table in ("mean_times", "volume", "areas"):
         entries = ((name, one) for name, one in FIGURES.items() if one.tables == (table,))
         own = [name for name, one in entries if one.shown_for(shown, box.options)]
-        if own and table in CURVES and table != "volume":
+        if own and table != "volume":
             several = sum(name in CURVES for name in own) > 1
             own.insert(0 if several else len(own), table)
         names += own

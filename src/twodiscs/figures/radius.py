@@ -10,7 +10,6 @@ from twodiscs.figures import curves, panels
 from twodiscs.figures.curves import hop_ends
 from twodiscs.figures.scene_figures import FIGURES, Curves
 from twodiscs.figures.style import BLACK, EVENT_LOOKS, SERIES, event_name, new_figure
-from twodiscs.model.checks import InputError
 from twodiscs.theory import virial
 from twodiscs.theory.exact import mean_times, rate
 from twodiscs.theory.laws import small_radius_time, threshold_time
@@ -37,18 +36,16 @@ CURVES = {name: entry.curves for name, entry in FIGURES.items() if entry.curves}
 def draw(name, box, rows):
     """Draw one of ``CURVES`` for a ``Box``, with the ``rows`` of its table.
 
-    There is a panel of residuals if there are any, and no curve if no exact value is known. Raises
-    ``InputError`` if no row has one of the quantities.
+    There is a panel of residuals if there are any, and no curve if no exact value is known. For
+    more than three discs one radius may take minutes, so nothing is drawn towards the end of a hop.
     """
     kind = CURVES[name]
     radii, by_quantity = select_series(box, rows, kind.names, kind.looks or {})
-    if not by_quantity:
-        raise InputError(f"the table of {name} has no row of {', '.join(kind.names)}")
     drawn = [row for part in by_quantity.values() for row in part.rows]
     # Without any exact value nothing approaches an end.
     measured = [row for row in drawn if row.get("estimate") is not None]
     known = not measured or any(row.get("exact") is not None for row in measured)
-    beneath = kind.approach and known
+    beneath = kind.approach and known and box.discs <= 3
     figure, main, residuals, approach = panels.radius_panels(
         box, kind.label, any(map(panels.is_judged, drawn)), beneath
     )
@@ -82,13 +79,10 @@ AREA_FIGURES = ("collision_area", "wall_area", "vertical_hop_area", "horizontal_
 def draw_areas(box, rows):
     """Draw the areas of all events of a plain ``Box``, each with its residuals beneath.
 
-    The panels are those of the figures of single areas. Raises ``InputError`` if the table has no
-    areas.
+    The panels are those of the figures of single areas.
     """
     names = {q: name for figure in AREA_FIGURES for q, name in CURVES[figure].names.items()}
     radii, by_quantity = select_series(box, rows, names, {})
-    if not by_quantity:
-        raise InputError("the table of all_areas has no row of an area")
     figure = new_figure(5.4, 7.0, layout="constrained")
     heights = [panels.MAIN_HEIGHT, panels.RESIDUALS_HEIGHT]
     axes = figure.subplots(4, 2, height_ratios=heights * 2, squeeze=False)
@@ -188,13 +182,10 @@ def _approach(axes, box, by_quantity):
         end, name = ends[event]
         scenes = [box.scene(float(end * (1 - d))) for d in distances]
         times = [mean_times(scene)[event] for scene in scenes]
-        axes.plot(distances, np.array(times, float), color=colour, zorder=5)
-        if part.is_visible():
-            label = rf"{part.name}, $r_{{\mathrm{{c}}}}={name}$"
-            handles.append(Line2D([], [], label=label, color=colour))
-        shown += [time for time in times if time]
-        if None in times:
-            shown += [row["estimate"] for row in part.rows if row["estimate"]]
+        axes.plot(distances, times, color=colour, zorder=5)
+        label = rf"{part.name}, $r_{{\mathrm{{c}}}}={name}$"
+        handles.append(Line2D([], [], label=label, color=colour))
+        shown += times
         if box.is_plain:
             near = distances < LAW_RANGE
             laws = [threshold_time(scene, event) for scene in scenes]
