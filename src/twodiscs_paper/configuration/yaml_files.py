@@ -42,9 +42,9 @@ def read(path):
     except OSError as error:
         raise ConfigError(f"{path}: {error.strerror}") from None
     except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
         hint = "; indent with blanks" if "\\t" in error.problem else ""
-        raise ConfigError(f"{path}, line {mark.line + 1}: {error.problem}{hint}") from None
+        line = error.problem_mark.line + 1  # every error of PyYAML's safe loader has this mark
+        raise ConfigError(f"{path}, line {line}: {error.problem}{hint}") from None
     except UnicodeDecodeError as error:
         byte, line = error.object[error.start], error.object.count(b"\n", 0, error.start) + 1
         raise ConfigError(

@@ -19,8 +19,7 @@ def printed_ratio(statement, q):
         printed = statement.printed(q)
     except ZeroDivisionError:
         return None
-    real = mp.isfinite(printed) and mp.im(printed) == 0
-    return mp.re(printed) / statement.true(q) if real else None
+    return mp.re(printed) / statement.true(q) if mp.im(printed) == 0 else None
 
 
 def reported_boxes(name):

@@ -357,9 +357,8 @@ def circle_polar(q):
 
 
 def collision_area_polar(q):
-    """app:colgeneral, over 16, with ρ from 0 to r under δ(ρ − √2 r)."""
-    end, reach = mp.sqrt(2) * q.r, q.r
-    return collision_area_angle(q) if 0 < end < reach else mpf(0)
+    """app:colgeneral, over 16, with ρ from 0 to r under δ(ρ − √2 r), which is zero there."""
+    return mpf(0)
 
 
 def collision_area_angle(q):

@@ -103,7 +103,7 @@ def json_difference(observed, expected):
     found, asked = flat(observed), flat(expected)
     for name in asked | found:
         a, b = found.get(name), asked.get(name)
-        floats = isinstance(a, float) and isinstance(b, float)
+        floats = isinstance(a, float)
         if type(a) is not type(b) or not (np.isclose(a, b, FLOAT_ERROR, 0) if floats else a == b):
             return f"{name} is {a!r}, expected {b!r}"
     return ""

@@ -33,8 +33,6 @@ def draw(box, tables):
     rows = tables["passages"]
     kept = [row for row in tables["kept"] if row["scene"] != "pause"]
     figure, (curves, times) = panels.stacked(curves=2.9, times=2.3)
-    if is_empty(figure, curves, rows, box):
-        return figure
     main, hop, limit, ours = measured(at_places(rows, kept, False), box)
     ours += at_places(kept, measured(rows, box)[-1], True)
     _curves(curves, main, hop, limit, ours)

@@ -11,7 +11,6 @@ from twodiscs_paper.studies.estimates import columns
 from twodiscs_paper.studies.passages.figure import (
     INERTIA_LOOKS,
     at_places,
-    is_empty,
     measured,
     points,
     residuals,
@@ -40,8 +39,6 @@ def draw(box, tables):
     rows = at_places(tables["passages"], kept, False)
     heights = {"smooth": 2.35, "rough": 1.85, "slope": 0.95, "plateau": 1.2}
     figure, (smooth, rough, *lower) = panels.stacked(**heights)
-    if is_empty(figure, smooth, rows, box):
-        return figure
     main, hop, _, ours = measured(rows, box)
     _smooth(smooth, rows, kept, place(main, hop))
     own = select(kept, width=main.width, height=main.height, event=hop)
