@@ -127,8 +127,8 @@ def histogram(rng, scene, intervals=10**6, bins=512):
     ]
 
 
-def trajectory(rng, box, events=400):
-    """Return rows of a trajectory that stays on one side and hops now and then.
+def trajectory(rng, box, events=600):
+    """Return rows of a trajectory that hops three times in a row, and once long after that.
 
     Its lengths are below half of the shortest side, and so are its times apart.
     """
@@ -139,7 +139,7 @@ def trajectory(rng, box, events=400):
         places = {"x1": -x, "y1": -0.9 * x, "x2": x, "y2": 0.9 * x} | more
         rows.append(empty(SCENE_TABLES["trajectory"], time=time * unit, event=event, **places))
 
-    side = np.where(np.arange(events) // 90 % 2, 1, -1)
+    side = 2 * (np.searchsorted((90, 91, 92, 400), np.arange(events), side="right") % 2) - 1
     for i, x in enumerate(side * unit * rng.uniform(0.1, 0.4, events)):
         for event, time in zip(HOPS, (i - 0.6, i - 0.5), strict=True):
             if i > 0 and side[i] != side[i - 1]:

@@ -38,8 +38,8 @@ def test_the_panels_beneath_show_most_hops_and_a_hop_that_is_not_undone():
     ids=str,
 )
 def test_the_longer_side_that_ends_at_walls_is_shown_with_its_hops(box, axis):
-    """The panel beneath enlarges a short trajectory too."""
-    rows = tables_of("paper")["trajectory"][:120]
+    """The panel beneath enlarges a short trajectory too; a hop that is not undone has its own."""
+    rows = tables_of("paper")["trajectory"][: None if box == BOX else 120]
     with style.context():
         figure = motion.draw_trajectory(box, rows, radius=0.24)
     assert unclear(figure) == []
@@ -56,12 +56,24 @@ def test_the_longer_side_that_ends_at_walls_is_shown_with_its_hops(box, axis):
     assert start <= first < last <= end
     shaded = [(area.get_x(), area.get_x() + area.get_width()) for area in figure.axes[0].patches]
     np.testing.assert_allclose(shaded, [axes.get_xlim() for axes in figure.axes[1:]], rtol=1e-9)
+    if box == BOX:  # the first three hops are a 50th of a panel apart
+        assert last - first == pytest.approx(50 * np.diff(times).min())
+        assert figure.axes[2].get_xlim() == pytest.approx((times[3] - 25, times[3] + 25))
+    assert len(figure.axes) == 2 + (box == BOX)
 
 
-@pytest.mark.parametrize(("discs", "radius"), [(3, 0.2), (9, 0.1)])
-def test_lines_of_many_discs_are_those_of_the_trajectory(discs, radius):
+@pytest.mark.parametrize(
+    ("box", "radius", "axis"),
+    [
+        (Box(1.5, 1.0, discs=9), 0.1, "x"),
+        (Box(1.0, 1.5, discs=3), 0.2, "y"),
+        (Box(1.5, 1.0, discs=3, periodic="x"), 0.2, "x"),
+    ],
+    ids=str,
+)
+def test_lines_of_many_discs_are_those_of_the_trajectory(box, radius, axis):
     """Few enough bends to follow. Hops are no bends: without them the lines are the same."""
-    box = Box(1.5, 1.0, discs=discs)
+    discs = box.discs
     rows = TrajectoryTable.rows(box, radius, 1908)
     with style.context():
         figure = motion.draw_trajectory(box, rows, radius=radius)
@@ -71,9 +83,12 @@ def test_lines_of_many_discs_are_those_of_the_trajectory(discs, radius):
     for axes in figure.axes:
         for disc, line in enumerate(axes.lines, 1):
             assert len(line.get_xdata()) <= motion.DISC_BENDS * discs + 1 <= len(times)
-            places = [row[f"x{disc}"] for row in rows[: len(times)]]
+            places = [row[f"{axis}{disc}"] for row in rows[: len(times)]]
             assert np.interp(times, *line.get_data()) == pytest.approx(places, abs=1e-12)
         assert len(axes.lines) == disc == discs
+        shown = [line.get_ydata()[line.get_xdata() <= axes.get_xlim()[1]] for line in axes.lines]
+        ends = (np.min(shown), np.max(shown)) if box.effects.get("periodic") else (-0.75, 0.75)
+        assert axes.get_ylim() == ends
     inside = close.lines[0].get_xdata() <= close.get_xlim()[1]
     assert inside.sum() == motion.CLOSE_BENDS * discs + 1
 
@@ -102,6 +117,19 @@ def test_a_curve_has_the_first_bins_that_hold_enough():
         edges, density, errors = motion.curve(rows, fewest)
         assert edges.tolist() == [i / 2 for i in range(1, stop + 1) if stop > 1]
         assert density.tolist() == (2 * errors).tolist() == counts[1:stop]
+
+
+def test_bursts_have_logarithmic_axes_with_space_for_all_radii():
+    """The curve of the first radius is the highest."""
+    same = {"event": "horizontal_hop", "exact_mean": 1.0, "bins": "own", "count": 9, "stderr": 0.1}
+    rows = [
+        same | {"radius": radius, "left": left, "right": 2 * left, "density": high * 0.1 / left}
+        for radius, high in ((0.2, 50.0), (0.24, 5.0))
+        for left in (0.1, 0.2, 0.4)
+    ]
+    _, short = motion.draw_hop_histogram(Box(1.5, 1.0, field=0.1), rows).axes
+    assert short.get_xscale() == short.get_yscale() == "log"
+    assert (short.get_xlim(), short.get_ylim()) == ((0.1, 2.5), (np.exp(-2.5) / 2, 100.0))
 
 
 def test_a_density_that_bins_are_too_wide_for_is_not_marked():

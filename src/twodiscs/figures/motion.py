@@ -193,7 +193,7 @@ def draw_hop_histogram(box, rows):
     figure, (whole, short) = panels.stacked(whole=2.4, short=1.7)
     groups = [list(group) for _, group in groupby(rows, key=lambda row: row["radius"])]
     radii = panels.numbers([group[0]["radius"] for group in groups])
-    low, last, is_marked = 0.1, 1.0, False
+    low, last, first, top, is_marked = 0.1, 1.0, np.inf, 0.0, False
     for i, group in enumerate(groups):
         colour, marker = SERIES[i % len(SERIES)]
         # A curve ends before a bin with fewest intervals; symbols are some mean times apart.
@@ -210,6 +210,8 @@ def draw_hop_histogram(box, rows):
             axes.errorbar(middles[at], density[at], errors[at], ls="", **symbol)
             if axes is whole:
                 low, last = min(low, density.min()), max(last, edges[-1])
+            else:
+                first, top = min(first, edges[1]), max(top, density.max())
         if box.is_plain:
             is_marked |= _mark_zero(short, box, group[0], colour)
     for axes, end in ((whole, last), (short, 2.5)):
@@ -219,8 +221,8 @@ def draw_hop_histogram(box, rows):
     whole.set(yscale="log", ylim=(low / 3, None))
     short.set_ylim(0, None)
     if short.get_ylim()[1] > STEEP_DENSITY:
-        short.set(xlim=(edges[1] / 2, end), xscale="log", yscale="log")
-        short.set_ylim(np.exp(-end) / 2, 2 * density.max())
+        short.set(xlim=(first / 2, end), xscale="log", yscale="log")
+        short.set_ylim(np.exp(-end) / 2, 2 * top)
     whole.legend(loc="upper right")
     if is_marked:
         exact = Line2D([], [], color=BLACK, lw=DASH_WIDTH, label=r"exact density at $t=0$")
