@@ -53,14 +53,14 @@ def small_radius_time(box, event, radius=0.0):
 
 
 def threshold_time(scene, event):
-    """Return the leading law of a mean time at the radius at which its event ends.
+    """Return the leading law of a mean time at the radius at which its possible event ends.
 
-    It is None if the event is impossible. If a hop becomes blocked before the discs jam, its time
-    diverges like (w/4 − r)⁻² (vertical) or (h/4 − r)⁻² (horizontal). All other times depend on the
-    distance from the largest radius r_max: they vanish like r_max − r. If one side is more than
-    twice the other, the times of disc collisions and of the walls at the far ends stay finite.
+    If a hop becomes blocked before the discs jam, its time diverges like (w/4 − r)⁻² (vertical) or
+    (h/4 − r)⁻² (horizontal). All other times depend on the distance from the largest radius r_max:
+    they vanish like r_max − r. If one side is more than twice the other, the times of disc
+    collisions and of the walls at the far ends stay finite.
     """
-    return THRESHOLD_LAWS[event](scene) if scene.is_possible(event) else None
+    return THRESHOLD_LAWS[event](scene)
 
 
 def _last_hops(event):
@@ -118,9 +118,7 @@ THRESHOLD_LAWS = by_kind(
 
 
 def density_at_zero(scene, hop):
-    """Return the density at 0⁺ of the interval between hops of one kind, in 1/time.
-
-    It is None if the hop is blocked.
+    """Return the density at 0⁺ of the interval between open hops of one kind, in 1/time.
 
     An interval t → 0 is a hop, one bounce and the hop back. At a vertical hop both centres are at a
     distance d from the wall that their mean y moves to. It is uniform on [0, B] and independent of
@@ -134,7 +132,5 @@ def density_at_zero(scene, hop):
     No other way back is as short: a collision of the discs moves them farther from the surface that
     they crossed.
     """
-    if not scene.is_possible(hop):
-        return None
     side = {"x": scene.range_x, "y": scene.range_y}[EVENT_AXES[hop]]
     return 3 * math.sqrt(2) / (16 * side)
