@@ -117,7 +117,7 @@ td.sample(PAPER, cores=10**6) → cores must be an integer from 1 to 1024, not 1
 td.simulate(PAPER, seed=2**63) → seed must be an integer from 0 to 2^63 - 1, not 9223372036854775808
 td.simulate(RING, events='right_wall') → 'right_wall': the periodic axis x has no walls
 td.simulate(RING, events='horizontal_hop') → x two discs have no order that a hop could change
-td.simulate(replace(FOUR, periodic='xy'), events='vertical_hop') → y discs on a torus have no order
+td.simulate(Scene(1, 1, 0.1, discs=3, periodic='xy'), events='vertical_hop') → discs on a torus have
 td.intervals(FOUR, 'horizontal_hop') → axis x are those of neighbours, see transmission
 td.sample(PAPER, quantities='any_wall') → did you mean any_wall_area?
 td.sample(PAPER, 1).save('\\0') → path must be a file to write, not '\\x00': it has a
