@@ -127,6 +127,7 @@ td.load(3) → folder must be the path of a folder, not 3
 td.load_result(3) → path must be the path of a file, not 3
 td.load('nothere') → tables of results, but 'nothere' does not exist
 td.load('src') → folder must hold tables of results, but 'src' has none
+td.load(__file__) → folder must hold tables of results, but … is no folder
 Scene(1.5, 1, r=0.1) → argument 'r'; did you mean radius?
 Scene(1.5, 1, 0.1, restitution=1) → argument 'restitution'; collisions are elastic
 td.simulate(PAPER, tol=0.1) → argument 'tol'; did you mean error?
@@ -159,6 +160,9 @@ td.observe(PAPER, x1, [1], starts=td.starts(PAPER, 1)) → starts must be two st
 td.observe(PAPER, x1, [1], 3, starts=td.starts(PAPER, 3)) → replicas must be left out with starts
 td.observe(PAPER, x1, [1], starts=td.starts(FOUR, 3)) → an array of shape (number, 2, 4) of x, y, u
 td.observe(PAPER, x1, [1], starts=np.ones((2, 2, 4))) → must have disc 1 inside the box, with x1
+td.observe(PAPER, x1, [1], starts=np.zeros((2, 3, 4))) → must be states as starts or frames returns
+td.observe(PAPER, x1, [1], starts=np.full((2, 2, 4), NAN)) → must be states as starts or frames
+td.trajectory(PAPER, start=map(float, '12')) → start must be the numbers x1, …, not <map object at
 td.trajectory(PAPER, start='no.xyz') → start must be a file to read, not 'no.xyz': No such file
 td.trajectory(PAPER, start=__file__) → start must be an extended XYZ file with the columns pos and
 td.trajectory(PAPER, start=([[0.3, 0.5], [1.2, 0.5]], np.zeros((2, 2)))) → energy of 0.5, not 0.0
@@ -177,6 +181,8 @@ td.transmission(RING, 'horizontal_hop') → hop 'horizontal_hop' must be between
 td.transmission(BOX.scene(0.3), 'horizontal_hop') → must be open for passages, but is blocked at
 td.trajectory(ROUGH, start=[CENTRES, CENTRES]) → must have the spins of rough discs, s of each disc
 from_file(BOX.scene(0.21)) → must have the box and the discs of the scene, not 2 discs of the rad…
+from_file(Box(1.6, 1).scene(0.2)) → not 2 discs of the radii [0.2, 0.2] in a box of [1.5,
+from_file(Scene(1.5, 1, 0.2, discs=3)) → must have the box and the discs of the scene, not 2 discs
 td.simulate(Scene(1, 9, 0.24999999, discs=20, periodic='x'), 1) → not exceed 0.249999… for 20 discs
 td.plot(td.trajectory(PAPER)[['time']]) → must have at least two rows and the column event, but has
 td.free_energy('a') → of must be a Scene or a result of sample, not 'a'
@@ -218,6 +224,8 @@ observe(lambda a, b: b['x1'] + 1j) → real and imaginary part as two columns
 td.plot(td.observe(PAPER, lambda a, b: np.stack([b['x1']] * 9, 1), [1], 1)) → to be drawn, not 9
 td.trajectory(PAPER).states_at([1e9]) → times must be numbers from 0.0 to
 td.trajectory(PAPER)[['time', 'x1']].states_at([1]) → rows and lacks y1, x2, y2, u1, v1, u2, v2
+td.trajectory(PAPER)[:0].states_at([1]) → and at least one row, but has 0 rows and lacks no column
+pd.concat([td.trajectory(PAPER, 1), td.trajectory(FIELD, 1)]).scene → must have a scene in its attrs
 td.plot(td.sample(PAPER, 1), figure='volum') → one of volume, …, not 'volum'; did you mean volume?
 td.plot(td.sample(PAPER, 1), ax=td.sample(PAPER, 1)) → Axes of matplotlib, not a result of sample
 td.sample(PAPER, shell=1e-300) → shell must lie between 1e-6 and 1, ends excluded, not 1e-300

@@ -137,7 +137,7 @@ def from_dict(content):
             repr({**one.scene.parameters(), **dict.fromkeys(names), "": one.kind}) for one in found
         }
         is_right = len(rest) == 1 and {"radius"} <= {*names} <= {*vars(found[0].scene)}
-        is_right = is_right and {*map(len, refused)} <= {len(names)} and found[0].kind != "scan"
+        is_right = is_right and {*map(len, refused)} <= {len(names)}
         known = {"results": content["results"]}
     else:
         from twodiscs.measure.intervals import Intervals

@@ -364,13 +364,12 @@ def from_corner(scene, given):
         parts = read_xyz(scene, given)
     else:
         try:
-            shapes = {np.shape(part) for part in given}
+            sizes = {np.shape(part)[-2:] for part in given}
+            parts = given if len(given) == 2 and sizes <= {(discs, axes), (discs, 3)} else None
         except (TypeError, ValueError):
+            parts = None
+        if parts is None:
             return given
-        sizes = {shape[-2:] for shape in shapes}
-        if len(given) != 2 or not sizes or not sizes <= {(discs, axes), (discs, 3)}:
-            return given
-        parts = given
     sides = np.array([scene.side(axis) for axis in scene.axes])
     centres, velocities = (np.asarray(part, float)[..., :axes] for part in parts[:2])
     moving = [*np.moveaxis(velocities, -1, 0), *parts[2:]]

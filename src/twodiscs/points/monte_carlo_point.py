@@ -125,7 +125,7 @@ class MonteCarloPoint(SampledPoint):
 
     def all_walls(self):
         """Return the area of all walls from two shells as ``Sampled``, or None."""
-        if self.right_and_top is None or not {*WALL_AREAS} <= self.quantities.keys():
+        if self.right_and_top is None:
             return None
         right, top = (self.quantities[wall] for wall in WALL_AREAS)
         estimate = estimates.combination(
