@@ -216,6 +216,7 @@ CALLS = [
     ({"periodic": ["z"]}, {"depth": 1.2}, EVENTS, (0.0435, 0.131, 0.217, 0.304)),
     ({"field": 1}, {}, EVENTS, (0.0375, 0.112, 0.188, 0.262)),
     ({"moment_of_inertia": 0.5}, {}, EVENTS, ()),
+    ({"moment_of_inertia": 0.5, "friction": 1}, {}, EVENTS, (0.0375, 0.112, 0.188, 0.262)),
     ({}, {"discs": 3}, EVENTS, ()),
 ]  # fmt: skip
 

@@ -54,6 +54,7 @@ def test_curves_break_where_times_jump():
         ({"field": 2.0}, {"h": 0.125, "v": 0.375, "t": 0.375}),
         # Larger unequal discs cannot hop vertically in a field.
         ({"width": 2.0, "height": 1.3, "field": 0.3, "mass_ratio": 4.0}, {"h": 0.325, "f": 0.5}),
+        ({"width": 1.0, "mass_ratio": 2.0}, {"h": 0.25, "v": 0.25}),
         # The larger disc 1 passes behind disc 2 as long as h < (√r1 + √r2)².
         ({"radius_ratio": 0.25}, {"h": 0.4, "x": 4 / 9}),
     ],
@@ -69,6 +70,7 @@ def test_limits_have_their_radii_and_names(effects, expected):
         *marked, (largest, name) = marked
         assert name == r"r_{\mathrm{max}}"
         assert largest == pytest.approx(box.largest_radius, rel=1e-14)
-    names = {radius: re.findall(r"(?:\{|=|^(?=[hw]))([\w/]+)", text) for radius, text in marked}
+    pattern = r"(?:\{|=(?!r)|^(?=[hw]))([\w/]+)"
+    names = {radius: re.findall(pattern, text) for radius, text in marked}
     named = {index: radius for radius, some in names.items() for index in some}
     assert named == pytest.approx(expected, rel=1e-15)

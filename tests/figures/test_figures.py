@@ -294,6 +294,7 @@ def test_every_status_has_its_symbol():
 )
 def test_small_and_large_numbers_are_written_with_powers_of_ten(number, text):
     assert panels.mathtext(number) == text
+    assert panels.numbers([number, 0.2]) == [text, "0.2" if number > 1 else r"2\times10^{-1}"]
 
 
 @pytest.mark.parametrize(("ratio", "named"), [(100, []), (99, [20, 50]), (2.9, [20, 30, 50, 70])])

@@ -8,13 +8,14 @@ from functools import cache
 
 import numpy as np
 import pytest
+from effect_scenes import SCENES
 from factory import of
 from figure_cases import bars, points
 from matplotlib.figure import Figure
 from PIL import Image
 
 import twodiscs as td
-from twodiscs.figures import curves
+from twodiscs.figures import curves, style
 from twodiscs.figures.draw import BOX_DRAWINGS, TABLE_FIGURES
 from twodiscs.figures.style import EVENT_LOOKS
 
@@ -95,6 +96,10 @@ def test_what_a_transmission_leaves_falls_at_twice_its_rate():
     kappa = found.coefficient.value
     expected = kappa * np.exp(-2 * kappa * times / found.exact_mean)
     np.testing.assert_allclose(values, expected, rtol=1e-12)
+    # Hops that are not rare, in a field: neither the exact slope nor the plateau is known.
+    (axes,) = td.plot(td.transmission(SCENES["field"], "horizontal_hop", 2**8)).axes
+    assert axes.get_legend() is None
+    assert style.BLACK not in {line.get_color() for line in axes.lines}
 
 
 # The user's process and axes ----------------------------------------------------------------------

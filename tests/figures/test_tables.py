@@ -19,6 +19,7 @@ from twodiscs.figures import style
 from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.figures.style import EVENT_LOOKS
 from twodiscs.model.events import HOPS, SHELL_EVENTS
+from twodiscs.model.scene import Box
 from twodiscs.theory import exact
 from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES, read_table
 from twodiscs_paper.draw import DRAW
@@ -260,10 +261,16 @@ def test_symbols_and_error_bars_are_those_of_the_table(name, panel, look, due):
     np.testing.assert_allclose(shown, sorted(due), rtol=1e-7)
 
 
-@pytest.mark.parametrize("name", ["tails", "thresholds", "friction", "stability_of_runs"])
+#: Figures of a table that lies alone, and of several.
+LOADED = "volume all_areas mean_hop_time hop_histogram hopping_trajectory"
+LOADED += " tails thresholds friction stability_of_runs"
+
+
+@pytest.mark.parametrize("name", LOADED.split())
 def test_a_loaded_table_is_drawn_with_those_that_lie_beside_it(name):
     """As the job of the figure draws it: the same lines in every panel."""
-    frame = td.load(EXPECTED)[STUDY_FIGURES[name].tables[0]]
+    folder = EXPECTED / "paper" if name in FIGURES else EXPECTED
+    frame = td.load(folder)[(FIGURES | STUDY_FIGURES)[name].tables[0]]
     panels = td.plot(frame, figure=name).axes
     for axes, due in zip(panels, drawn(name).values(), strict=True):
         for line, other in zip(axes.lines, due.lines, strict=True):
@@ -278,10 +285,24 @@ def test_a_table_without_a_figure_or_alone_is_one_sentence(tmp_path):
     ):
         with pytest.raises(td.InputError, match=f"^result must .*{said}"):
             td.plot(tables[name])
-    (tmp_path / "distributions.csv").write_bytes((EXPECTED / "distributions.csv").read_bytes())
-    alone = td.load(tmp_path)["distributions"]
+    for path in (EXPECTED / "distributions.csv", EXPECTED / "paper/volume.csv"):
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    alone = td.load(tmp_path)
     with pytest.raises(td.InputError, match="a build with a scene of two plain discs for the fig"):
-        td.plot(alone, figure="thresholds")
+        td.plot(alone["distributions"], figure="thresholds")
+    with pytest.raises(td.InputError, match="its build, but 'volume' has none"):
+        td.plot(alone["volume"])
+
+
+@pytest.mark.parametrize(
+    ("name", "sides"), [("distributions", r"1\times3"), ("friction", r"1.5\times1")]
+)
+def test_a_study_whose_hops_are_rare_or_do_not_end_has_a_figure(name, sides):
+    """Without rows it names the box, or shows the long runs in theirs."""
+    tables = {run: long_run("passages") for run in STUDY_FIGURES[name].long_runs}
+    upper, lower = DRAW[name](Box(1.0, 3.0), tables | {STUDY_FIGURES[name].tables[0]: []}).axes
+    assert sides in upper.get_title("left")
+    assert bool(lower.containers) == (name == "friction")
 
 
 def test_every_figure_of_a_study_is_compared():

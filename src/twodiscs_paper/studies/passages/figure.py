@@ -50,15 +50,6 @@ def at_places(rows, others, inside):
     return [row for row in rows if (tuple(row[name] for name in PLACE) in own) == inside]
 
 
-def is_empty(figure, upper, rows, box):
-    """Return whether there are no ``rows``; the empty ``figure`` then has a title about it."""
-    if not rows:
-        panels.title(upper, "", box, ": no hop becomes blocked")
-        for axes in figure.axes:
-            axes.set_axis_off()
-    return not rows
-
-
 def measured(rows, box):
     """Return (box, hop, radius where it becomes blocked, rows) of the last hop of one scene.
 

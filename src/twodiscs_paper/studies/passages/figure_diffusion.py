@@ -3,13 +3,7 @@
 from twodiscs.figures import panels
 from twodiscs.figures.style import BLACK, BLUE, GREEN, PURPLE, SKY
 from twodiscs_paper.studies.estimates import columns
-from twodiscs_paper.studies.passages.figure import (
-    INERTIA_LOOKS,
-    first_scene,
-    is_empty,
-    points,
-    residuals,
-)
+from twodiscs_paper.studies.passages.figure import INERTIA_LOOKS, first_scene, points, residuals
 from twodiscs_paper.studies.passages.near import ONE_INERTIA
 from twodiscs_paper.study import select
 
@@ -32,8 +26,6 @@ def draw(box, tables):
     """
     rows = tables["passages"]
     figure, (ring, files, lower) = panels.stacked(ring=1.9, files=1.6, residuals=1.4)
-    if is_empty(figure, ring, rows, box):
-        return figure
     panels.title(ring, "a", first_scene(rows, box)[0])
     _ring(ring, select(rows, quantity="diffusion", discs=2))
     _files(files, tables["files"], tables["displacements"])

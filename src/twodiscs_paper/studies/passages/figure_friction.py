@@ -5,7 +5,7 @@ import numpy as np
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import BLACK, GREY, SERIES
 from twodiscs_paper.studies.estimates import columns
-from twodiscs_paper.studies.passages.figure import at_places, first_scene, is_empty, points
+from twodiscs_paper.studies.passages.figure import at_places, first_scene, points
 from twodiscs_paper.studies.passages.parts.with_friction import (
     NECK_HALVINGS,
     row_scene,
@@ -30,9 +30,8 @@ def draw(box, tables):
     rows = at_places(tables["passages"], kept, False)
     rows = [row for row in rows if row["friction"] is not None]
     figure, (upper, lower) = panels.stacked(kappa=2.3, exponent=1.8)
-    if is_empty(figure, upper, rows, box):
-        return figure
-    panels.title(upper, "a", first_scene(rows, box)[0])
+    # A box without horizontal hops that end has no rows.
+    panels.title(upper, "a", first_scene([*rows, *kept], box)[0])
     # {rate of kicks: colour, marker}.
     for friction, look in dict(zip(NECK_HALVINGS, SERIES, strict=True)).items():
         for some, filled in ((rows, False), (kept, True)):
