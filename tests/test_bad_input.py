@@ -242,6 +242,7 @@ td.animate(td.trajectory(PAPER, 0.01), 'a.gif') → trajectory must last two fra
 
 #: Command lines; after the minus sign only the sides of the box are given, not the radius.
 SHELL = """
+exact - --radius ٠.٢ → radius must be a positive number, not '٠.٢'
 exact - --radius 0,2 → not '0,2'; decimals follow a point, 0.2
 simulate --seed 1_000 → seed must be an integer of at least 0, not '1_000'
 exact - → the following arguments are required: --radius

@@ -319,7 +319,8 @@ def test_results_are_a_folder_that_holds_no_sources(tmp_path, monkeypatch):
     for name in ("docs", "out"):
         (tmp_path / name).mkdir()
     (tmp_path / "README.md").write_text("text")
-    for good in ("out", "out/new", "results", f"{tmp_path}/out"):
+    (tmp_path / "link").symlink_to(tmp_path.parent)
+    for good in ("out", "out/new", "results", f"{tmp_path}/out", "link"):
         yaml_files.check_results(good, tmp_path)
     for bad in ("README.md", "README.md/new", f"{tmp_path}/docs", f"{tmp_path}/docs/new"):
         with pytest.raises(ConfigError, match=f"results must be .*, not '{bad}'"):

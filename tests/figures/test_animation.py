@@ -4,6 +4,7 @@ import json
 import re
 import sys
 from base64 import b64decode
+from dataclasses import replace
 from io import BytesIO
 from itertools import chain
 
@@ -207,21 +208,27 @@ def test_what_leaves_a_ring_comes_in_at_the_other_end():
     paths = [line.get_ydata() for line in strip.lines if len(line.get_ydata()) > 2]
     assert len(paths) == 4
     assert all(low <= path.min() <= path.max() <= high for path in paths)
+    walled = td.Box(1.5, 1.0, discs=4)
+    circles = drawn(walled, 0.15, TrajectoryTable.rows(walled, 0.15, 1))[1]
+    assert circles[1][0][0].figure.axes[1].get_ylim() == (-0.75, 0.75)
 
 
 # Effects and other files --------------------------------------------------------------------------
 
 
 def test_the_nearer_ball_is_in_front():
-    path = td.trajectory(SCENES["combination"], seed=2)
+    """Heights are folded into the box, as all positions on a periodic axis."""
+    path = td.trajectory(replace(SCENES["combination"], periodic="xz"), seed=2)
+    assert np.abs(path[["z1", "z2"]]).max(axis=None) > 0.45
     box, radius = path.scene.box, path.scene.radius
     motion, circles, others = drawn(box, radius, path.to_dict("records"))
     nearer = set()
     for time in motion.frames:
         (state,) = path.states_at(time)
+        z1, z2 = (state[name] - 0.9 * np.round(state[name] / 0.9) for name in ("z1", "z2"))
         parts = animation.moving_parts(motion, circles, others, time)
         first, second = (parts.index(circles[disc][0]) for disc in (1, 2))
-        assert (first > second) == (state["z1"] > state["z2"])
+        assert (first > second) == (z1 > z2)
         assert len(parts) == len(others) + sum(map(len, circles.values()))
         nearer.add(first > second)
     assert nearer == {True, False}

@@ -14,7 +14,7 @@ from twodiscs.theory import exact
 UPRIGHT = BOXES["tall"]
 
 
-@pytest.mark.parametrize("box", [PAPER, UPRIGHT, Box(3.0, 1.0)], ids=str)
+@pytest.mark.parametrize("box", [PAPER, UPRIGHT, Box(3.0, 1.0), Box(1.0, 4.0)], ids=str)
 def test_the_largest_discs_touch_each_other_and_walls(box):
     jammed, regimes = draw("largest_radius", box, {}).axes
     discs = [patch for patch in jammed.patches if isinstance(patch, Circle)]
@@ -35,7 +35,7 @@ def test_the_largest_discs_touch_each_other_and_walls(box):
         np.testing.assert_allclose(radii, due, rtol=1e-12)
     shape = max(box.width, box.height) / min(box.width, box.height)
     marks = [line.get_data() for line in regimes.lines if line.get_marker() == "o"]
-    assert marks == [([shape], [radius / min(box.width, box.height)])]
+    assert marks == [([shape], [radius / min(box.width, box.height)])] * (shape < 3.4)
 
 
 @pytest.mark.parametrize("box", [PAPER, UPRIGHT, Box(2.5, 1.0)], ids=str)
