@@ -208,6 +208,25 @@ def test_a_budget_has_room_for_the_replicas_of_an_error_or_for_few(discs, budget
     assert planned(max(150 / replicas, 1) * events)[0] >= 100
 
 
+def test_crowded_discs_have_replicas_of_one_length():
+    """Whatever the budget, with the most events of a replica. Rates of a channel are exact."""
+    box = td.Box(128.0, 128.0, discs=16384, periodic="xy")
+    roomy, crowded = (box.scene(share * box.largest_radius) for share in (0.5, 0.95))
+    usual = many_rates.replica_duration(crowded)
+    assert many_rates.replica_duration(crowded, 10**6) == usual
+    events = usual * many_rates.expected_event_rate(crowded)
+    assert 0.5 < events / many_rates.MOST_REPLICA_EVENTS < 2
+    block = many_rates.block_replicas(roomy, many_rates.replica_duration(roomy))
+    assert many_rates.block_replicas(roomy) == block
+    channel = td.Scene(8.0, 0.41, 0.2, discs=CELL_DISCS)
+    for event in ("any_wall", "disc_collision"):
+        assert many_rates.expected_rates(channel)[event] == pytest.approx(td.rate(channel, event))
+    # Wall hits are guessed here, and collisions are 1.6 times the guess.
+    box = td.Box(32.0, 32.0, discs=1024)
+    found = many_rates.expected_rates(box.scene(0.985 * box.largest_radius))
+    assert found["disc_collision"] / found["any_wall"] == pytest.approx(1.605, rel=1e-3)
+
+
 def test_errors_have_the_correlation_of_successive_replicas():
     """Sums of four neighbours in a row of random numbers; each error is known to 3 %."""
     alone = np.random.default_rng(3).integers(1000, 1100, (8000, 2))
