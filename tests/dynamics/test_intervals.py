@@ -5,6 +5,7 @@ errors.
 """
 
 import math
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -14,8 +15,8 @@ from marks import slow
 
 import twodiscs as td
 from twodiscs.dynamics import ensemble, runs
-from twodiscs.dynamics.many import many_intervals, many_paths
-from twodiscs.dynamics.two import returns
+from twodiscs.dynamics.many import all_pairs, many_intervals, many_paths
+from twodiscs.dynamics.two import hop_clusters, returns, strip
 from twodiscs.measure.intervals import make_intervals
 from twodiscs.points.intervals_point import BIN_GROWTH, N_BINS, wide_edges
 from twodiscs.sampling.many import many_initial_states
@@ -39,6 +40,25 @@ def test_hop_intervals_have_their_exact_mean_and_density_at_zero(event, side, sc
         exact = 3 * math.sqrt(2) / (16 * (side - 0.2))
         assert density_at_zero(scene, event) == pytest.approx(exact, rel=1e-15)
         assert abs(counts @ at_zero / (n * width) - exact) <= 5 * np.hypot(*error * at_zero)
+
+
+@pytest.mark.parametrize(("hop", "axis"), [("horizontal_hop", 0), ("vertical_hop", 1)])
+def test_hops_are_those_along_their_axis_where_axes_are_not_exchanged(hop, axis, monkeypatch):
+    """In a field, and for more than two discs; the kernels themselves are slow to compile."""
+    scene, follow, record = SCENES["field"], Mock(), Mock(return_value=np.zeros((2, 1)))
+    for module in (strip, returns, hop_clusters):
+        monkeypatch.setattr(module, "follow", follow)
+    monkeypatch.setattr(all_pairs, "record_intervals", record)
+    given = hop, 1, 0, 1, 1, (1.0, None, np.zeros(2, int)), np.ones(1, bool)
+    strip.run_blocks(scene, hop, strip.choose_strip(scene, hop), 1, 0, 1)
+    returns.record_intervals(scene, *given)
+    hop_clusters.hop_sums(scene, hop, [1.0], 1, 1)
+    many_intervals.record_intervals(THREE, *given, window=1.0)
+    experiments, scenes, samplers = zip(*(one.args[:3] for one in follow.mock_calls), strict=True)
+    found = [*(one.horizontal for one in experiments[:2]), experiments[2].axis[0]]
+    assert [*found, record.call_args.args[5]] == [True if axis == 0 else None] * 4
+    assert scenes == (scene,) * 3
+    assert [samplers[0].prism.neck.axis, *(one.surface for one in samplers[1:])] == [axis] * 3
 
 
 def test_squares_are_those_of_the_counts_of_each_chain():
