@@ -214,7 +214,7 @@ def measured(start, scene, hop, seed, events=INTERVAL_EVENTS):
     """
     constant, mean = tail_constant(scene, hop), exact.mean_times(scene)[hop]
     rate = exact.event_rate(scene)
-    affordable = int(nearest_power_of_two(max(1.0, events / (rate * mean)))) // INTERVAL_BLOCKS
+    affordable = int(nearest_power_of_two(events / (rate * mean))) // INTERVAL_BLOCKS
     block = max(1, min(affordable, MOST_INTERVALS // INTERVAL_BLOCKS))
     passages = min(block, MOST_PASSAGES // INTERVAL_BLOCKS)
     # For a test, first passages are cut at this many mean times.
