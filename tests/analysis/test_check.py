@@ -19,6 +19,7 @@ from twodiscs.analysis.tables import AreasTable, HopHistogramTable, MeanTimesTab
 from twodiscs.model.events import EVENT_AXES, EVENTS, HOPS, SHELL_EVENTS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import Estimate
+from twodiscs.points.monte_carlo_point import InsertionPoint, Weights
 from twodiscs.theory import exact
 
 SAMPLES = 10**12  # at 0.36 a sample in 300 000 is a hit of a shell
@@ -131,7 +132,7 @@ def test_a_number_off_by_one_percent_is_named(points, theory, name, monkeypatch)
 @pytest.mark.parametrize("dynamics", [0.031, 0.032])
 @pytest.mark.parametrize("samples", [0.031, 0.032])
 def test_a_flux_has_a_score_if_neither_of_its_errors_is_coarse(dynamics, samples, monkeypatch):
-    """Both are to be below 1/√1000."""
+    """Both are to be below 1/√1000, and known."""
     monkeypatch.setattr(check, "flux_time", lambda *_: Estimate(2.0, 2.0 * samples, 9))
     row = empty(MeanTimesTable, radius=0.1, event="top_wall", starts="invariant", status="counted")
     row |= {"estimate": 2.1, "stderr": 2.1 * dynamics, "relative_stderr": dynamics}
@@ -142,6 +143,29 @@ def test_a_flux_has_a_score_if_neither_of_its_errors_is_coarse(dynamics, samples
     fine = max(dynamics, samples) == 0.031
     assert flux["z"] == (pytest.approx(0.05 / flux["stderr"]) if fine else None)
     assert flux["status"] == ("counted" if fine else "too-few")
+    _, unknown = check.comparisons([], [], [row | {"stderr": None}], [], [point])
+    monkeypatch.setattr(check, "flux_time", lambda *_: None)
+    assert check.comparisons([], [], [row], [], [point])[1] == unknown
+    assert (unknown["estimate"], unknown["z"], unknown["status"]) == (None, None, "too-few")
+    # Without samples at its radius there is no flux.
+    assert len(check.comparisons([], [], [row | {"radius": 0.2}], [], [point])) == 1
+
+
+@pytest.mark.parametrize(
+    ("names", "number", "known"),
+    [
+        (("volume", "top_wall_area"), 100, True),
+        (("volume", "top_wall_area"), 99, False),
+        (("volume",), 100, False),
+    ],
+)
+def test_a_flux_follows_from_a_volume_and_an_area_of_enough_samples(names, number, known):
+    unit = 2**20
+    found = dict.fromkeys(names, Weights(number * unit, number * unit, 1.0))
+    products = {f"{a}*{b}": number * unit for a, b in combinations_with_replacement(names, 2)}
+    three = Scene(1.5, 1.0, 0.15, discs=3)
+    point = InsertionPoint(three, "insertion", 1000, unit, found, products)
+    assert (check.flux_time("top_wall", point) is not None) == known
 
 
 @pytest.mark.parametrize("rare", check.SUM_RULE_EVENTS)
@@ -236,8 +260,11 @@ def test_independent_rows_could_fail_and_follow_from_no_other(points, theory):
 
 
 def test_walls_are_tests_of_their_own_where_they_are_not_counted_alone(theory):
-    """The whole of the walls is a sum of others only if those are watched, too."""
-    rng = np.random.default_rng(7)
+    """The whole of the walls is a sum of others only if those are watched, or has a shell."""
+    rng, row = np.random.default_rng(7), empty(AreasTable, quantity="any_wall_area", radius=0.2)
+    for epsilon in (None, 0.004):
+        (one,) = check.comparisons([], [row | {"epsilon": epsilon, "z": 0.0}], [], [], [])
+        assert one["independent"] == (epsilon is not None)
     for events in (("any_wall",), ("right_wall", "any_wall"), ("disc_collision", "any_wall")):
         found = text_table({"dynamics": [LAWS[1].dynamics(rng, events=events)]}, theory)
         assert [row["quantity"] for row in found if row["independent"]] == [

@@ -110,6 +110,8 @@ def test_measured_pressures_are_the_exact_ones(name):
     events = ("right_wall", "top_wall") if scene.walled else ("disc_collision",)
     pressure = found["wall_pressure" if scene.walled else "virial_pressure"]
     assert pressure.count == min(times[f"{event}_time"].count for event in events)
+    ratio = found["compressibility_factor"].u / pressure.u  # of one measured number
+    assert ratio.std_dev < 1e-9 * ratio.nominal_value
     for quantity, exact in td.pressure(scene).items():
         one = found[quantity]
         assert one.exact == exact
@@ -118,17 +120,19 @@ def test_measured_pressures_are_the_exact_ones(name):
             assert abs(one.z) < 5, quantity
 
 
+@pytest.mark.parametrize("number", [20, 0])
 @pytest.mark.parametrize("rare", ["right_wall", "top_wall"])
-def test_a_pressure_has_an_error_if_none_of_its_times_is_too_rare_for_one(rare):
+def test_a_pressure_has_an_error_if_none_of_its_times_is_too_rare_for_one(rare, number):
     point = Laws(PAPER).dynamics(np.random.default_rng(1), 1024, 1e-2)
-    products = point.products | {f"{rare}*{rare}": 20}
-    point = replace(point, counts=point.counts | {rare: 20}, products=products)
+    products = point.products | {f"{rare}*{rare}": number}
+    point = replace(point, counts=point.counts | {rare: number}, products=products)
     rows = MeanTimesTable.rows([point])
     found = td.pressure(Measurements("simulate", PAPER, rows, {}, point))
     known = {name for name, one in found.items() if one.stderr}
     other = {*WALLS} - {rare}
     assert known == {"virial_pressure", *(f"{wall}_pressure" for wall in other)}
     assert {name for name, one in found.items() if one.z is not None} == known
+    assert (found[f"{rare}_pressure"].value is None) == (number == 0)
 
 
 @pytest.mark.parametrize(
@@ -150,6 +154,8 @@ def test_the_free_energy_is_measured_by_the_volume():
     assert abs(found.z) < 5
     volume = td.sample(PAPER, 1e6, seed=2, quantities="volume")["volume"]
     assert found.stderr == pytest.approx(volume.stderr / volume.value)
+    four = td.Scene(1.5, 1.0, 0.12, discs=4)  # whose volume is not known exactly
+    assert td.free_energy(four) is td.free_energy(td.sample(four, 1)).exact is None
 
 
 # Diffusion ----------------------------------------------------------------------------------------
