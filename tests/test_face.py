@@ -509,11 +509,16 @@ def test_a_shell_is_a_part_of_the_volume(sampled):
     ratio = area.u / volume.u
     relative = ratio.std_dev / ratio.nominal_value
     assert relative**2 == pytest.approx(1 / area.count - 1 / volume.count)
+    # With effects all walls have a shell of their own.
+    walls = td.sample(SCENES["rough"], 1)["any_wall_area"]
+    assert (walls.u.nominal_value, walls.u.std_dev) == pytest.approx((walls.value, walls.stderr))
     # Insertions count the products of their weights.
     many = td.sample(td.Scene(1.5, 1.0, 0.2, discs=3), 1, seed=1)
     ratio = many["disc_collision_area"].u / many["volume"].u
     due = many.point.ratio({"disc_collision_area": 1.0})
     assert (ratio.nominal_value, ratio.std_dev) == pytest.approx((due.value, due.stderr))
+    alone = td.sample(many.scene, 1, seed=1, quantities="disc_collision_area")
+    assert alone["disc_collision_area"].u.std_dev == many["disc_collision_area"].u.std_dev
     # An event at the other wall of an axis is counted by the same sum.
     part = deepcopy(many.components["all"])
     part["quantities"]["bottom_wall_area"] = part["quantities"]["top_wall_area"]

@@ -8,6 +8,7 @@ from dataclasses import replace
 from unittest.mock import Mock, call
 
 import pytest
+from effect_scenes import SCENES
 
 import twodiscs as td
 from twodiscs.analysis.tables import shortfall
@@ -221,15 +222,27 @@ def test_a_pilot_has_at_least_its_fewest_blocks(fewest):
     assert each >= 0
 
 
-def test_prices_of_insertions_are_those_of_samples(blocks):
+@pytest.mark.parametrize("periodic", ["", "xy"])
+def test_prices_of_insertions_are_those_of_samples(blocks, periodic):
     """The errors of 32 blocks of another seed are known within some per cent."""
-    three = td.Scene(1.5, 1.0, 0.15, discs=3)
+    three = td.Scene(1.5, 1.0, 0.15, discs=3, periodic=periodic)
     measured = td.sample(three, 32 * insertions.INSERTIONS_PER_BLOCK)
     prices = [*cost._prices_of_samples(three, 0.02)]
     assert {price.quantity for price in prices} == {*measured}
     for price in prices:
         due = 32e-3 * measured[price.quantity].relative_stderr ** 2
         assert price.c == pytest.approx(due, rel=0.2)
+    assert [*cost._prices_of_samples(td.Scene(9.0, 9.0, 0.1, discs=65), 0.02)] == []
+
+
+def test_all_walls_have_the_price_of_their_own_shell_with_effects():
+    """The variance of a binomial count of the share of the samples that are in it."""
+    (make,), wanted = montecarlo.samplers(SCENES["rough"]).values(), ["volume", "any_wall_area"]
+    sampler = make(SCENES["rough"], [*wanted, "right_wall_area", "top_wall_area"], 0.02, 0)
+    part = sampler.constants["quantities"]["any_wall_area"]
+    due = exact.shell_expectation(SCENES["rough"], "any_wall", part["epsilon"]) / part["measure"]
+    variance, _ = cost.variances(SCENES["rough"], sampler, None, 1)["any_wall_area"]
+    assert variance * sampler.block == pytest.approx(1 / due - 1)
 
 
 def test_a_run_has_its_first_round_whatever_is_asked_and_the_replicas_of_bursts():
