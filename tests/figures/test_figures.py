@@ -122,10 +122,7 @@ def series(name, box, rows):
                 yield "main", "residuals", quantity, due, curve
 
 
-OVER_RADIUS = {*radius.CURVES, "all_areas", "pressure"}
-
-
-@pytest.mark.parametrize(("name", "box"), cases(QUICK, OVER_RADIUS))
+@pytest.mark.parametrize(("name", "box"), cases(QUICK, {*radius.CURVES, "all_areas", "pressure"}))
 def test_numbers_over_the_radius_are_those_of_the_rows(name, box):
     """Estimates with their errors, residuals, and exact curves, in the order of the quantities.
 

@@ -32,7 +32,6 @@ def test_the_panels_beneath_show_most_hops_and_a_hop_that_is_not_undone():
         (Box(1.0, 1.5), "y"),
         (Box(1.5, 1.0, periodic="x"), "y"),
         (Box(1.0, 1.5, periodic="y"), "x"),
-        (Box(1.0, 1.5, periodic="x"), "y"),
     ],
     ids=str,
 )

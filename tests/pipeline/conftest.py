@@ -7,16 +7,13 @@ from checkout import EXPECTED
 
 from twodiscs_paper.catalogue import STUDY_TABLES, TABLES
 
-#: Tables with seconds in them, which are not kept.
-TIMED = ("cost", "accuracy_cost")
-
 
 @pytest.fixture(scope="session")
 def tables_of():
     """Return a function that writes the tables of a build to a folder.
 
     ``scenes`` are {name in the folder: name in the expected results}. Tables that are not expected
-    and the ``empty`` ones, {name}, have no rows.
+    because of their seconds, and the ``empty`` ones, {name}, have no rows.
     """
 
     def write(folder, scenes, empty=()):
@@ -25,7 +22,7 @@ def tables_of():
             for path in (EXPECTED / kept).glob("*.csv"):
                 if path.stem not in empty:
                     shutil.copy(path, folder / own)
-            for name in {*empty, *TIMED} & TABLES.keys():
+            for name in {*empty, "cost", "accuracy_cost"} & TABLES.keys():
                 if (name in STUDY_TABLES) == (own == "."):
                     TABLES[name].write(folder / own / f"{name}.csv", [])
 
