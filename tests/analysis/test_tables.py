@@ -126,13 +126,21 @@ def test_a_wrong_file_is_named(tmp_path, text, message):
 
 
 def test_columns_that_the_table_does_not_know_are_left_out(tmp_path):
-    """A later version may have one more, at any place."""
-    text = "radius,colour,quantity,exact,more\n0.1,red,volume,1.0,\n"
+    """A later version may have one more, at any place; and empty lines."""
+    text = "radius,colour,quantity,exact,more\n\n0.1,red,volume,1.0,\n"
     (tmp_path / "theory.csv").write_text(text)
     assert TheoryTable.read(tmp_path / "theory.csv") == [
         {"radius": 0.1, "quantity": "volume", "exact": 1.0}
     ]
     assert list(load.read(tmp_path / "theory.csv", TheoryTable)) == ["radius", "quantity", "exact"]
+
+
+def test_the_box_of_a_configuration_has_its_effects():
+    """As YAML reads them: 2e0 is a text."""
+    effects = {"periodic": "xy", "mass_ratio": 2}
+    scene = {"name": "a", "box": {"width": "2e0", "height": 1}, "effects": effects}
+    assert load.read_box({"scenes": [scene]}) == Box(2.0, 1.0, **effects)
+    assert load.read_box({"scenes": [scene, scene]}) is None
 
 
 #: Packages that take long to import: the Snakefile and the shell do without them.

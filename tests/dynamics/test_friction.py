@@ -121,3 +121,8 @@ def test_velocities_forget_at_the_rate_of_kicks():
         assert abs(mean - 0.25 * math.exp(-2.0 * time)) <= 5 * error + 0.02 * 0.25
     together = td.observe(scene, product, times[-1:], 2**15, seed=1)
     assert together.mean[0] == pytest.approx(found.mean[-1], rel=1e-12)
+
+
+def test_kicks_may_leave_no_event_to_a_run():
+    found = td.simulate(replace(PLAIN, friction=1e6), 1, budget=1)
+    assert {(one.count, one.status) for one in found.values()} == {(0, "none-seen")}

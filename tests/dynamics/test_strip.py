@@ -214,6 +214,7 @@ def test_planned_blocks_are_enough_and_not_far_too_many(effects, product):
         assert product <= hops * 1e-8 <= product * (1 + 1 / 16)
         return
     run = strip.strip_run(scene, hop, 0.01, 10**9, 1)
+    assert strip.relative_error(np.ones((1, 1)), np.array([[[9]], [[0]], [[0]]])) == math.inf
     (excess,) = run.error_over_target(run.work(0, run.planned), run.planned)
     assert 0.5 < excess <= 1
 

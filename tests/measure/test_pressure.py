@@ -188,9 +188,10 @@ def test_displacements_are_of_disc_1_unless_all_are_equal(ring, discs, monkeypat
     def moved(start, now):
         return np.mean([(now[f"x{n}"] - start[f"x{n}"]) ** 2 for n in discs], axis=0)
 
-    found = td.diffusion(ring, [1.0, 3.0, 4.0], 1, seed=2)
-    due = td.observe(ring, moved, found.times, 1, seed=2).mean
+    found = td.diffusion(ring, [1.0, 3.0, 4.0], 8193, seed=2)  # three blocks
+    due = td.observe(ring, moved, found.times, 8193, seed=2).mean
     assert np.allclose(found.mean[:, 0], due, rtol=1e-12)
     # One time after the other, as of more states than the memory is to hold.
     monkeypatch.setattr("twodiscs.dynamics.averages.MOST_STATE_NUMBERS", 1)
-    assert np.allclose(found.mean, td.diffusion(ring, found.times, 1, seed=2).mean, rtol=1e-12)
+    again = td.diffusion(ring, found.times, 8193, seed=2, cores=2)
+    assert np.allclose(found.mean, again.mean, rtol=1e-12)

@@ -162,7 +162,7 @@ def test_which_clusters_have_an_error(rare, frequent, fewest):
     sizes = np.zeros(5, int)
     sizes[[rare, frequent]] = fewest, 900
     found = transmission.cluster_estimate(sizes)
-    assert (found.stderr is not None) == (fewest == 100)
+    assert (found.relative_stderr is not None) == (fewest == 100)
     assert found.value == transmission.cluster_coefficient(sizes).value
 
 
