@@ -154,7 +154,11 @@ def test_exact_values_alone_are_curves():
 def test_exact_values_of_four_and_more_discs_are_bars_at_the_radii_of_the_table():
     """A curve would take up to a minute for each of its radii."""
     table = td.exact_table(2.5, 0.6, [0.19, 0.22], discs=5)
-    bars = [line for line in td.plot(table).axes[0].lines if line.get_marker() == "_"]
+    main = td.plot(table).axes[0]
+    bars = [line for line in main.lines if line.get_marker() == "_"]
     assert len(bars) == 5
     assert all(set(bar.get_xdata()[::2]) == {0.19, 0.22} for bar in bars)
+    heights = np.concatenate([bar.get_ydata()[::2] for bar in bars])
+    low, high = main.get_ylim()
+    assert low < heights.min() < heights.max() < high
     assert [axes.get_label() for axes in td.plot(table, figure="mean_hop_time").axes] == ["main"]

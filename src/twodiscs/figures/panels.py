@@ -328,6 +328,7 @@ def logarithmic(axes, radii, series):
     ends = radii[np.flatnonzero(np.isnan(radii)) - 1]
     largest = max(ends, default=0.0)
     clear = (np.abs(radii[:, None] - ends) > 0.05 * largest).all(axis=1) & (radii > 0.1 * largest)
+    clear |= np.all(np.isnan(radii[1::2]))  # single radii are no curves that leave the panel
     values = [value for part in series for value in part.exact[clear] if value > 0]
     values += [value for value in estimates if value]
     low, high = min(values, default=1.0), max(values, default=1.0)
