@@ -19,7 +19,6 @@ from twodiscs.analysis.tables import AreasTable, HopHistogramTable, MeanTimesTab
 from twodiscs.model.events import EVENT_AXES, EVENTS, HOPS, SHELL_EVENTS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import Estimate
-from twodiscs.points.monte_carlo_point import InsertionPoint, Weights
 from twodiscs.theory import exact
 
 SAMPLES = 10**12  # at 0.36 a sample in 300 000 is a hit of a shell
@@ -149,23 +148,6 @@ def test_a_flux_has_a_score_if_neither_of_its_errors_is_coarse(dynamics, samples
     assert (unknown["estimate"], unknown["z"], unknown["status"]) == (None, None, "too-few")
     # Without samples at its radius there is no flux.
     assert len(check.comparisons([], [], [row | {"radius": 0.2}], [], [point])) == 1
-
-
-@pytest.mark.parametrize(
-    ("names", "number", "known"),
-    [
-        (("volume", "top_wall_area"), 100, True),
-        (("volume", "top_wall_area"), 99, False),
-        (("volume",), 100, False),
-    ],
-)
-def test_a_flux_follows_from_a_volume_and_an_area_of_enough_samples(names, number, known):
-    unit = 2**20
-    found = dict.fromkeys(names, Weights(number * unit, number * unit, 1.0))
-    products = {f"{a}*{b}": number * unit for a, b in combinations_with_replacement(names, 2)}
-    three = Scene(1.5, 1.0, 0.15, discs=3)
-    point = InsertionPoint(three, "insertion", 1000, unit, found, products)
-    assert (check.flux_time("top_wall", point) is not None) == known
 
 
 @pytest.mark.parametrize("rare", check.SUM_RULE_EVENTS)

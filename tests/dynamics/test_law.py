@@ -170,14 +170,12 @@ def test_grazing_contact_never_repeats_for_ever(seed, approach):
 
 
 def test_hops_are_counted_once():
+    """From + to exactly 0 and on to −, or back to +, there is one hop, or none."""
     assert event_law.crosses(0.1, -0.1)
     assert not event_law.crosses(0.1, 0.0)
     assert not event_law.crosses(0.0, 0.1)
     assert event_law.crosses(0.0, -0.1)
     assert event_law.crosses(-0.1, 0.0)
-    # From + to exactly 0 and on to −, or back to +: one hop, or none.
-    assert sum(map(event_law.crosses, (0.1, 0.0), (0.0, -0.1))) == 1
-    assert sum(map(event_law.crosses, (0.1, 0.0), (0.0, 0.1))) == 0
     assert event_law.crossing_time(0.3, -0.6) == 0.5
 
 

@@ -14,7 +14,7 @@ import pytest
 from dynamics.rates import five, same_sizes
 from marks import slow
 
-from twodiscs.dynamics.many import many_hop_clusters
+from twodiscs.dynamics.many import many_hop_clusters as of_many
 from twodiscs.dynamics.transmission import cluster_coefficient, odd_clusters_per_passage, plateau
 from twodiscs.dynamics.two import hop_clusters as of_two
 from twodiscs.model.scene import Scene
@@ -37,13 +37,13 @@ HOP = "horizontal_hop"
 def test_two_discs_among_no_others_are_two_discs(hop, effects):
     sides = (1.5, 1.0) if hop == HOP else (1.0, 1.5)
     scene = Scene(*sides, 0.246, **effects)
-    counts, events = many_hop_clusters.cluster_sizes(scene, hop, 6.0, 128, 11)
+    counts, events = of_many.cluster_sizes(scene, hop, 6.0, 128, 11)
     other, due = of_two.cluster_sizes(scene, hop, 6.0, 128, 12)
     same_sizes(counts, np.repeat(np.arange(other.size), other))
     assert events == pytest.approx(due, rel=0.05)
     found, reference = (
         coefficients_at_times(module.hop_sums(scene, hop, [0.2, 1.0, 5.0], 256, 3)[0])
-        for module in (many_hop_clusters, of_two)
+        for module in (of_many, of_two)
     )
     for mine, known in zip(found, reference, strict=True):
         five(mine.value, known.value, math.hypot(mine.stderr, known.stderr))
@@ -52,17 +52,17 @@ def test_two_discs_among_no_others_are_two_discs(hop, effects):
 def test_it_does_not_matter_where_a_ring_begins():
     """Hops within a short gap after random ones, and after the same ones half a turn further."""
     scene, gap = Scene(1.0, 1.0, 0.1, discs=3, periodic="x"), 1.0
-    pair = many_hop_clusters.surface_pair(scene, HOP)
+    pair = of_many.surface_pair(scene, HOP)
     states, found = np.zeros((12, 2**11)), []
-    stream = many_hop_clusters.open_stream(np.uint64(2), 0)
-    many_hop_clusters.draw_on_surface(stream, pair, states, -1)
+    stream = of_many.open_stream(np.uint64(2), 0)
+    of_many.draw_on_surface(stream, pair, states, -1)
     for begun in (0.0, scene.width / 2):
         turned = states.copy()
         turned[:3] -= np.where(turned[:3] > 0, begun, -begun)
         net, hops = np.zeros((2, states.shape[1]))
-        now = many_hop_clusters.begin(3, turned, 0, net, hops)
+        now = of_many.begin(3, turned, 0, net, hops)
         time = np.full(states.shape[1], gap)
-        many_hop_clusters.follow_pair(now, time, gap, net, hops, pair.law, None)
+        of_many.follow_pair(now, time, gap, net, hops, pair.law, None)
         found.append(hops)
     assert found[0].sum() > 400
     assert np.array_equal(*found)
@@ -73,10 +73,8 @@ def test_relative_speeds_on_the_surface_have_the_law_of_the_flux(periodic, compo
     """For s, the relative speed over its largest, (1 − s²)^((D − 1)/2) is uniform."""
     scene = Scene(1.5, 1.0, 0.2, discs=2, periodic=periodic)
     states = np.zeros((8, 2**14))
-    stream = many_hop_clusters.open_stream(np.uint64(1), 0)
-    many_hop_clusters.draw_on_surface(
-        stream, many_hop_clusters.surface_pair(scene, HOP), states, -1
-    )
+    stream = of_many.open_stream(np.uint64(1), 0)
+    of_many.draw_on_surface(stream, of_many.surface_pair(scene, HOP), states, -1)
     law = (1 - (states[4] - states[5]) ** 2 / 2) ** ((components - 1) / 2)
     five(law.mean(), 0.5, 1 / math.sqrt(12 * law.size))
 
@@ -86,17 +84,12 @@ def test_the_sampled_rate_of_hops_is_the_exact_one(monkeypatch):
     scene = Scene(2.25, 1.0, 0.2499, discs=3)
     due = n_discs.rate(scene, HOP)
     monkeypatch.setattr(n_discs, "rate", lambda scene, hop: None)
-    many_hop_clusters.hop_rate.cache_clear()
-    found = many_hop_clusters.hop_rate(scene, HOP)
-    many_hop_clusters.hop_rate.cache_clear()
-    _, volume_error = many_hop_clusters.insertions.sample(
-        scene, many_hop_clusters.VOLUME_SAMPLES, 0
-    )
-    five(
-        found / due,
-        1.0,
-        math.hypot(1 / math.sqrt(many_hop_clusters.SURFACE_STATES), volume_error[0]),
-    )
+    of_many.hop_rate.cache_clear()
+    found = of_many.hop_rate(scene, HOP)
+    of_many.hop_rate.cache_clear()
+    _, volume_error = of_many.insertions.sample(scene, of_many.VOLUME_SAMPLES, 0)
+    error = math.hypot(1 / math.sqrt(of_many.SURFACE_STATES), volume_error[0])
+    five(found / due, 1.0, error)
 
 
 @pytest.mark.parametrize(("discs", "blocks"), [(3, 256), slow(6, 4096)])
@@ -106,11 +99,11 @@ def test_the_coefficient_does_not_depend_on_the_gap(discs, blocks):
     The slow one sees both.
     """
     scene = Scene(0.75 * discs, 1.0, 0.246, discs=discs)
-    mean, others = many_hop_clusters.neighbours(scene, HOP)
+    mean, others = of_many.neighbours(scene, HOP)
     assert others == pytest.approx(2 * (discs - 2) / (discs - 1), rel=1e-14)
     found = []
     for gap in (8.0, 80.0):
-        kappa = cluster_coefficient(many_hop_clusters.cluster_sizes(scene, HOP, gap, blocks, 9)[0])
+        kappa = cluster_coefficient(of_many.cluster_sizes(scene, HOP, gap, blocks, 9)[0])
         found.append(plateau(kappa, gap, mean, lambda x: odd_clusters_per_passage(x, others)))
     short, long = found
     five(short.value, long.value, math.hypot(short.stderr, long.stderr))
@@ -127,15 +120,15 @@ def test_the_coefficient_does_not_depend_on_the_gap(discs, blocks):
     ],
 )
 def test_what_cannot_be_followed_is_refused_in_a_sentence(scene, hop, said, monkeypatch):
-    monkeypatch.setattr(many_hop_clusters, "MOST_SURFACE_PROPOSALS", 2**16)
-    with pytest.raises(many_hop_clusters.InputError, match=said):
-        many_hop_clusters.require_coefficient(scene, hop)
+    monkeypatch.setattr(of_many, "MOST_SURFACE_PROPOSALS", 2**16)
+    with pytest.raises(of_many.InputError, match=said):
+        of_many.require_coefficient(scene, hop)
 
 
 @pytest.mark.parametrize("periodic", ["", "x"])
 def test_neighbours_share_as_many_hops_as_pairs_have_a_disc_in_common(periodic, monkeypatch):
-    monkeypatch.setattr(many_hop_clusters, "hop_rate", lambda scene, hop: 2.0)
+    monkeypatch.setattr(of_many, "hop_rate", lambda scene, hop: 2.0)
     scene = Scene(4.0, 1.0, 0.2, discs=5, periodic=periodic)
     pairs = [{n, (n + 1) % 5} for n in range(5 if periodic else 4)]
     shared = [sum(len(one & other) == 1 for other in pairs) for one in pairs]
-    assert many_hop_clusters.neighbours(scene, HOP) == (len(pairs) / 2.0, np.mean(shared))
+    assert of_many.neighbours(scene, HOP) == (len(pairs) / 2.0, np.mean(shared))

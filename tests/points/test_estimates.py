@@ -116,7 +116,6 @@ def test_mean_time_agrees_with_the_replicas_themselves():
     t = (30.5 - counts.mean()) / (counts.std(ddof=1) / math.sqrt(400))
     assert test == "normal"
     assert z == pytest.approx(scores.student_deviate(t, 399), rel=1e-12)
-    assert z > 0 or counts.mean() > 30.5
 
 
 def test_the_law_of_a_test_does_not_depend_on_what_was_counted():

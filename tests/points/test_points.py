@@ -14,6 +14,7 @@ import pytest
 from factory import BOX, bins_point, counts_point, hits_point
 
 import twodiscs as td
+from twodiscs.analysis.check import flux_time
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.checks import InputError
 from twodiscs.points.base import digest_line, file_content, read_json, require_logged, write_json
@@ -118,6 +119,8 @@ def test_a_ratio_has_an_error_if_none_of_its_parts_is_coarse(coarse):
     assert point.all_walls().enough == (99 if coarse in walls else 100)
     for wall in walls:
         assert (point.ratio({wall: 1.0}) is None) == (coarse in ("volume", wall))
+        assert (flux_time(wall[:-5], point) is None) == (coarse in ("volume", wall))
+    assert flux_time("disc_collision", point) is None  # whose area it lacks
     # As many misses, and one fewer.
     misses = {name: ((301 << 20) - n, (301 << 20) - n, 1.0) for name, n in number.items()}
     most = inserted(301, 2**20, misses, joint)
