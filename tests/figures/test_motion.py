@@ -61,20 +61,16 @@ def test_the_longer_side_that_ends_at_walls_is_shown_with_its_hops(box, axis):
 
 
 @pytest.mark.parametrize(
-    ("box", "radius", "axis"),
-    [
-        (Box(1.5, 1.0, discs=9), 0.1, "x"),
-        (Box(1.0, 1.5, discs=3), 0.2, "y"),
-        (Box(1.5, 1.0, discs=3, periodic="x"), 0.2, "x"),
-    ],
+    "box",
+    [Box(1.5, 1.0, discs=9), Box(1.0, 1.5, discs=3), Box(1.5, 1.0, discs=3, periodic="x")],
     ids=str,
 )
-def test_lines_of_many_discs_are_those_of_the_trajectory(box, radius, axis):
+def test_lines_of_many_discs_are_those_of_the_trajectory(box):
     """Few enough bends to follow. Hops are no bends: without them the lines are the same."""
-    discs = box.discs
-    rows = TrajectoryTable.rows(box, radius, 1908)
+    discs, axis = box.discs, "x" if box.width > box.height else "y"
+    rows = TrajectoryTable.rows(box, 0.1, 1908)
     with style.context():
-        figure = motion.draw_trajectory(box, rows, radius=radius)
+        figure = motion.draw_trajectory(box, rows, radius=0.1)
     assert unclear(figure) == []
     whole, close = figure.axes
     times = [row["time"] for row in rows if row["time"] <= whole.get_xlim()[1]]
