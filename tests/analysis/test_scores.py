@@ -6,6 +6,7 @@ They are compared with enumeration, mpmath, scipy and seeded simulation.
 """
 
 import math
+from functools import reduce
 
 import mpmath
 import numpy as np
@@ -112,14 +113,6 @@ def test_union_never_rejects_more_often_than_it_says():
 # Mean times -----------------------------------------------------------------------------------
 
 
-def law_of_total(replica_law, replicas):
-    """Return the law of the sum over independent replicas, by repeated convolution."""
-    law = np.ones(1)
-    for _ in range(replicas):
-        law = np.convolve(law, replica_law)
-    return law
-
-
 @pytest.mark.parametrize("sizes", [{1: 1.0}, {1: 0.6, 2: 0.3, 3: 0.1}, {4: 1.0}, {1: 0.5, 4: 0.5}])
 @pytest.mark.parametrize("seen", [0.003, 0.05])
 def test_cluster_bound_never_rejects_more_often_than_it_says(sizes, seen):
@@ -128,7 +121,7 @@ def test_cluster_bound_never_rejects_more_often_than_it_says(sizes, seen):
     law[0] = 1 - seen
     for size, share in sizes.items():
         law[size] = seen * share
-    total = law_of_total(law, replicas)
+    total = reduce(np.convolve, [law] * replicas)  # of the sum over independent replicas
     exact = 1 / float(law @ np.arange(5))
     # Σ N² = Σ N makes the allowance its smallest, K = 4. Totals of 200 and more count as rejected.
     found = [scores.mean_time_z(n, n, replicas, 1.0, exact) for n in range(200)]

@@ -34,8 +34,7 @@ from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import many_initial_states
 from twodiscs.theory.exact import replicas_needed
 
-BOX = Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.3)
-FIVE = replace(BOX, discs=5, radius=0.1)
+FIVE = Scene(1.5, 1.0, 0.1, discs=5, moment_of_inertia=0.3)
 RING = Scene(4.0, 2.0, 0.15, discs=CELL_DISCS, periodic="x", moment_of_inertia=0.5)
 
 
