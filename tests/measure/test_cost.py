@@ -195,9 +195,7 @@ def test_a_sentence_says_what_was_not_reached(rows, said):
     found = shortfall([row("any_wall", 2e-5)], 10**9, 1e8)
     assert found.endswith("ended the run at 2e-5 (any_wall_time). A budget of 4.8e9 is enough.")
     found = shortfall([row("any_wall", None, "too-few", 0.01) | {"replicas": 50}], 10**9, 1e8)
-    assert found.endswith(
-        "after 50 of the 100 replicas that an error needs. A budget of 3e8 is enough."
-    )
+    assert found.endswith("50 of the 100 replicas that an error needs. A budget of 3e8 is enough.")
     found = shortfall([row("any_wall", 2e-5)], None)
     assert found.endswith(", but the limit of a day ended the run at 2e-5 (any_wall_time).")
 
