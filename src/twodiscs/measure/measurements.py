@@ -187,9 +187,9 @@ class Measurement(Immutable):
         result of ``sample`` as far as their samples tell. Numbers of two results are taken as
         independent: give them two seeds. The error is NaN if it is not known.
         """
-        from uncertainties import ufloat
+        from uncertainties import Variable
 
-        independent = ufloat(float(self), math.nan if self.stderr is None else self.stderr)
+        independent = Variable(float(self), math.nan if self.stderr is None else self.stderr)
         if isinstance(self.source, Measurements):
             return self.source.correlated.get(self.quantity, independent)
         return independent if self.source is None else self.source
