@@ -21,7 +21,7 @@ from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.two import event_counts
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Box
-from twodiscs.points.base import reached
+from twodiscs.points.base import added, reached
 from twodiscs.sampling import montecarlo, rounds
 from twodiscs.sampling.many import insertions
 from twodiscs.theory import exact
@@ -161,6 +161,10 @@ def test_the_work_of_runs_one_after_the_other_ends_at_their_total():
     done = rounds.run_all_in_rounds(components, lambda *given: seen.append(given))
     work = [reached(ranges)[1] * components[name].block_work for name, ranges in done.items()]
     assert seen[-1] == (sum(work), sum(work))
+    # Sums of floats, whose order counts, are told block by block.
+    run = rounds.fixed(lambda first, stop, *_: [[1.0]] * (stop - first), 3, 10.0, join=added)
+    rounds.run_in_rounds(run, lambda *given: seen.append(given))
+    assert seen[-3:] == [(10.0, 30.0), (20.0, 30.0), (30.0, 30.0)]
 
 
 @pytest.mark.parametrize("budget", [55, 325, 1005, 2890, 12345])
