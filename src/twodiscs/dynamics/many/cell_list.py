@@ -378,9 +378,12 @@ def count_hops(i, at, now, band, kind, log, bands):
 def leave_band(i, now, band, target, ahead, borders, kind, log, bands):
     """Move disc ``i`` from its ``band`` to another one and return its hops.
 
-    It is at the upper border of its band if ``ahead`` is 1, at the lower one if it is 0.
+    It is at the upper border of its band if ``ahead`` is 1, at the lower one if it is 0. Discs that
+    rest on a border are in the band above it, and the disc is behind them while it is there.
     """
-    count = count_hops(i, borders[band + ahead], now, band, kind, log, bands)
+    border = borders[band + ahead]
+    border = border if ahead else np.nextafter(border, -INFINITE_GAP)
+    count = count_hops(i, border, now, band, kind, log, bands)
     while band != target:
         up = 1 if target > band else 0
         others = bands.first[band + 1] - bands.first[band] - 1
@@ -391,7 +394,8 @@ def leave_band(i, now, band, target, ahead, borders, kind, log, bands):
         exchange_entries(bands.entry[i], end, bands)
         bands.first[band + up] = end + 1 - up
         band += 2 * up - 1
-    bands.at[bands.entry[i]] = borders[band + 1 - ahead]
+    border = borders[band + 1 - ahead]
+    bands.at[bands.entry[i]] = np.nextafter(border, -INFINITE_GAP) if ahead else border
     return count
 
 
