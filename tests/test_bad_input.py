@@ -151,7 +151,7 @@ td.simulate(PAPER, 1, method='strips') → method must be one of dynamics, not '
 td.sample(PAPER, 1).more(budget=1e7) → to go on, give samples=
 td.simulate(PAPER, 0.5, budget=1).more(duration=10) → duration must be left out for a result of …
 td.trajectory(RING, start=ROUND_THE_RING) → must have the discs apart
-td.trajectory(Scene(1.5, 1, 0.1, discs=3), start=[-0.5, 0, 0.1, *[0] * 9]) → must have the discs apart
+td.trajectory(Scene(1.5, 1, 0.1, discs=3), start=[-0.5, 0, 0.1, *[0] * 9]) → have the discs apart
 td.trajectory(PAPER, start=td.starts(PAPER, 2)) → numbers x1, …; start[0] is one of these states
 td.trajectory(PAPER, start=td.trajectory(PAPER, 1)) → …; states_at(times)[0] is a state of a traj…
 td.trajectory(PAPER, hops='no') → hops must be True or False, not 'no'
