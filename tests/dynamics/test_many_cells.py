@@ -16,7 +16,7 @@ from marks import slow
 import twodiscs as td
 from twodiscs.dynamics.many import all_pairs as many
 from twodiscs.dynamics.many import cell_list as many_cells
-from twodiscs.dynamics.many import class_counts, many_paths, many_rates
+from twodiscs.dynamics.many import class_counts, many_intervals, many_paths, many_rates
 from twodiscs.model.many_geometry import CELL_DISCS
 from twodiscs.sampling.many import chains, many_initial_states
 from twodiscs.sampling.many.cell_grid import make_grid
@@ -222,6 +222,11 @@ def test_crowded_discs_have_replicas_of_one_length():
     assert 0.5 < events / many_rates.MOST_REPLICA_EVENTS < 2
     block = many_rates.block_replicas(roomy, many_rates.replica_duration(roomy))
     assert many_rates.block_replicas(roomy) == block
+    # A chain of intervals is as long as a replica.
+    for hop in ("vertical_hop", "horizontal_hop"):
+        mean = many_intervals.mean_interval(BORDER[0], hop)
+        due = many_rates.replica_duration(BORDER[0]) / mean / 2
+        assert many_intervals.per_chain(BORDER[0], hop) == int(due)
     channel = td.Scene(8.0, 0.41, 0.2, discs=CELL_DISCS)
     for event in ("any_wall", "disc_collision"):
         assert many_rates.expected_rates(channel)[event] == pytest.approx(td.rate(channel, event))
