@@ -222,6 +222,7 @@ def test_crowded_discs_have_replicas_of_one_length():
     assert 0.5 < events / many_rates.MOST_REPLICA_EVENTS < 2
     block = many_rates.block_replicas(roomy, many_rates.replica_duration(roomy))
     assert many_rates.block_replicas(roomy) == block
+    assert many_paths.trajectory_rate(TORI[1]) == many_rates.expected_event_rate(TORI[1])
     # A chain of intervals is as long as a replica.
     for hop in ("vertical_hop", "horizontal_hop"):
         mean = many_intervals.mean_interval(BORDER[0], hop)

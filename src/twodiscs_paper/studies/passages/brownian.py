@@ -252,10 +252,7 @@ METHODS = {
 
 
 def counted(seeds, **groups):
-    """Return {method: points}: the counts at each point of the ``groups`` of a method.
-
-    There are two ``seeds``, whose counts are compared.
-    """
+    """Return {method: points}: the counts at each point of the ``groups`` of a method, by seed."""
     found = {}
     for method, (count, _) in METHODS.items():
         found[method] = [
@@ -289,7 +286,9 @@ def rows(counts):
                     del cells["test"]
                 if quantity == "coefficient" and method == "crossings":
                     known[place] = found
-                cells["seeds_z"] = compared(*(seed[quantity] for seed in seeds))["z"]
+                if len(seeds) == 2:
+                    one, other = (seed[quantity] for seed in seeds)
+                    cells["seeds_z"] = compared(one, other)["z"]
                 steps = both["passage"][0] if method == "passages" else both["steps"]
                 yield row(cells, found, samples=found.n, steps=steps)
     yield from exponents(counts)
@@ -343,7 +342,7 @@ def _fits(cells, chosen, estimates):
         [_time(point, estimates(point, one)) for point, one in zip(chosen, own, strict=True)]
         for own in zip(*(point["seeds"] for point in chosen), strict=True)
     ]
-    agree = {"seeds_z": compared(*map(_slope, seeds))["z"]}
+    agree = {"seeds_z": compared(*map(_slope, seeds))["z"]} if len(seeds) == 2 else {}
     if cells["neck"] >= LONG_NECK_STEPS:
         slow = [(*time[:3], time[3] + math.log1p(HEIGHT_TERM * time[0])) for time in together]
         agree["reference"] = _slope(slow, column=3).value
