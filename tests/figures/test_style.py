@@ -1,6 +1,7 @@
 """Files of figures: their bytes are the same with any settings, on any day."""
 
 import re
+import runpy
 from pathlib import Path
 
 import matplotlib
@@ -10,6 +11,7 @@ from marks import slow
 
 import twodiscs as td
 from twodiscs.figures import style
+from twodiscs.model import events
 
 
 def test_fonts_are_those_of_matplotlib_even_if_its_list_lacks_them(monkeypatch):
@@ -56,3 +58,12 @@ def test_same_bytes_whatever_the_settings_are(name, kind, tmp_path, monkeypatch)
     elif (name, kind) == ("integration_regimes", "png"):
         width = int.from_bytes(found[0][16:20], "big")
         assert width == round(style.RC_PARAMS["savefig.dpi"] * style.COLUMN_WIDTH)
+
+
+# Looks of events ----------------------------------------------------------------------------------
+
+
+def test_events_without_a_look_are_told(monkeypatch):
+    monkeypatch.setattr(events, "EVENTS", tuple("abcdefghi"))
+    with pytest.raises(TypeError, match=r"style\.py has 8 looks, too few for 9 events"):
+        runpy.run_path(style.__file__)

@@ -262,7 +262,7 @@ def test_symbols_and_error_bars_are_those_of_the_table(name, panel, look, due):
 
 
 #: Figures of a table that lies alone, and of several.
-LOADED = "volume all_areas mean_hop_time hop_histogram hopping_trajectory"
+LOADED = "all_areas mean_hop_time hop_histogram hopping_trajectory"
 LOADED += " tails thresholds friction stability_of_runs"
 
 

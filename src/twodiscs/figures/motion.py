@@ -54,6 +54,8 @@ def draw_trajectory(box, rows, radius=None):
         panel["c"].tick_params(labelleft=False)
         for name in letters:
             panel[name].xaxis.set_major_locator(MaxNLocator(4))
+            # A power of ten of the ticks is at the right end.
+            panel[name].set_xlabel(panel[name].get_xlabel(), loc="left")
     if hops.size:
         panel["a"].plot([], [], ls="", marker="o", markersize=2.2, color=VERMILLION, label="hops")
     figure.legend(loc="outside lower center", ncols=3)

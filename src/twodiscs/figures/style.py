@@ -128,8 +128,13 @@ def save(figure, path, origin=None):
         Path(new).write_bytes(stream.getvalue())
 
 
-#: {event: (colour, marker)}; all colours differ, and all markers.
-EVENT_LOOKS = dict(zip(EVENTS, (*SERIES, (ORANGE, "v"), (SKY, "P")), strict=True))
+#: (colour, marker) of the events in their order; all colours differ, and all markers.
+_LOOKS = (*SERIES, (ORANGE, "v"), (SKY, "P"), (PURPLE, "v"), (GREEN, "D"))
+if len(EVENTS) > len(_LOOKS):
+    raise TypeError(f"figures/style.py has {len(_LOOKS)} looks, too few for {len(EVENTS)} events")
+
+#: {event: (colour, marker)}
+EVENT_LOOKS = dict(zip(EVENTS, _LOOKS, strict=False))
 
 
 def event_name(event):
