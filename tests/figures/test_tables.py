@@ -261,16 +261,10 @@ def test_symbols_and_error_bars_are_those_of_the_table(name, panel, look, due):
     np.testing.assert_allclose(shown, sorted(due), rtol=1e-7)
 
 
-#: Figures of a table that lies alone, and of several.
-LOADED = "all_areas mean_hop_time hop_histogram hopping_trajectory"
-LOADED += " tails thresholds friction stability_of_runs"
-
-
-@pytest.mark.parametrize("name", LOADED.split())
+@pytest.mark.parametrize("name", ["tails", "thresholds", "friction", "stability_of_runs"])
 def test_a_loaded_table_is_drawn_with_those_that_lie_beside_it(name):
     """As the job of the figure draws it: the same lines in every panel."""
-    folder = EXPECTED / "paper" if name in FIGURES else EXPECTED
-    frame = td.load(folder)[(FIGURES | STUDY_FIGURES)[name].tables[0]]
+    frame = td.load(EXPECTED)[STUDY_FIGURES[name].tables[0]]
     panels = td.plot(frame, figure=name).axes
     for axes, due in zip(panels, drawn(name).values(), strict=True):
         for line, other in zip(axes.lines, due.lines, strict=True):
@@ -285,13 +279,10 @@ def test_a_table_without_a_figure_or_alone_is_one_sentence(tmp_path):
     ):
         with pytest.raises(td.InputError, match=f"^result must .*{said}"):
             td.plot(tables[name])
-    for path in (EXPECTED / "distributions.csv", EXPECTED / "paper/volume.csv"):
-        (tmp_path / path.name).write_bytes(path.read_bytes())
-    alone = td.load(tmp_path)
+    (tmp_path / "distributions.csv").write_bytes((EXPECTED / "distributions.csv").read_bytes())
+    alone = td.load(tmp_path)["distributions"]
     with pytest.raises(td.InputError, match="a build with a scene of two plain discs for the fig"):
-        td.plot(alone["distributions"], figure="thresholds")
-    with pytest.raises(td.InputError, match="its build, but 'volume' has none"):
-        td.plot(alone["volume"])
+        td.plot(alone, figure="thresholds")
 
 
 def test_a_study_whose_hops_are_rare_or_do_not_end_has_a_figure():
