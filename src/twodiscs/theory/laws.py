@@ -53,7 +53,7 @@ def small_radius_time(box, event, radius=0.0):
 
 
 def threshold_time(scene, event):
-    """Return the leading law of a mean time at the radius at which its possible event ends.
+    """Return the leading law of the mean time of a possible event at the radius at which it ends.
 
     If a hop becomes blocked before the discs jam, its time diverges like (w/4 − r)⁻² (vertical) or
     (h/4 − r)⁻² (horizontal). All other times depend on the distance from the largest radius r_max:

@@ -92,9 +92,10 @@ class Bands(NamedTuple):
 
     Band b has the entries ``first[b]`` … ``first[b + 1]`` − 1 of the arrays (N,). The disc of an
     entry was ``at`` a place at the time ``since``, and moves with its ``speed``. Disc i has the
-    entry ``entry[i]``.
+    entry ``entry[i]``. The places ``behind`` are just below the borders of bands.
     """
 
+    behind: np.ndarray
     first: np.ndarray
     entry: np.ndarray
     disc: np.ndarray
@@ -327,7 +328,8 @@ def new_bands(discs, borders, hops):
     """Return the ``Bands`` of a number of ``discs`` between ``borders``; None without ``hops``."""
     whole, real = np.zeros((2, discs), np.int64), np.zeros((3, discs))
     first = np.zeros(borders.size, np.int64)
-    return Bands(first, whole[0], whole[1], real[0], real[1], real[2])
+    behind = np.nextafter(borders, -INFINITE_GAP)
+    return Bands(behind, first, whole[0], whole[1], real[0], real[1], real[2])
 
 
 @optional(lambda cells, at, speeds, bands: None)
@@ -381,8 +383,7 @@ def leave_band(i, now, band, target, ahead, borders, kind, log, bands):
     It is at the upper border of its band if ``ahead`` is 1, at the lower one if it is 0. Discs that
     rest on a border are in the band above it, and the disc is behind them while it is there.
     """
-    border = borders[band + ahead]
-    border = border if ahead else np.nextafter(border, -INFINITE_GAP)
+    border = borders[band + 1] if ahead else bands.behind[band]
     count = count_hops(i, border, now, band, kind, log, bands)
     while band != target:
         up = 1 if target > band else 0
@@ -394,8 +395,7 @@ def leave_band(i, now, band, target, ahead, borders, kind, log, bands):
         exchange_entries(bands.entry[i], end, bands)
         bands.first[band + up] = end + 1 - up
         band += 2 * up - 1
-    border = borders[band + 1 - ahead]
-    bands.at[bands.entry[i]] = np.nextafter(border, -INFINITE_GAP) if ahead else border
+    bands.at[bands.entry[i]] = bands.behind[band] if ahead else borders[band + 1]
     return count
 
 
