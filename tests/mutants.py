@@ -3,9 +3,9 @@
 
     python tests/mutants.py [FILE or word ...]
 
-tries the mutants whose file or description holds one of the words, or all, two at a time. Of the test
-files that import the mutated module those that are nearest run first, ``--most`` of them at most; the
-first failure ends the run. A line has the verdict, the seconds and the test that failed. At the end
+tries the mutants whose file or description holds one of the words, or all, two at a time. Test files
+that are named after the mutated module, or name it most often, run first, ``--most`` of them at most;
+the first failure ends the run. A line has the verdict, the seconds and the test that failed. At the end
 these tests run on the sources as they are and must pass, or they noticed nothing. The exit status is
 0 if no mutant lived. A mutant is anchored on a text that the sources hold once.
 """
@@ -32,6 +32,11 @@ READERS = {
     "src/twodiscs/sampling/conditioned.py": (
         "tests/sampling/test_starts.py",
         "tests/studies/test_stability.py",
+    ),
+    # The workflow compares a point with its job.
+    "src/twodiscs_paper/pipeline/points.py": (
+        "tests/sampling/test_rounds.py",
+        "tests/workflow/test_shards.py",
     ),
     "workflow/rules": (
         "tests/workflow/test_jobs.py",
@@ -151,44 +156,6 @@ def file_scene(text):
 # Which tests --------------------------------------------------------------------------------------
 
 
-def module_of(path):
-    """Return the name by which others import the file at a path."""
-    parts = Path(path).with_suffix("").parts
-    return ".".join(parts[1:]).removesuffix(".__init__") if parts[0] == "src" else parts[-1]
-
-
-def imported(text):
-    """Return the names that a text of Python imports; those of the face by their modules."""
-    found, tree = set(), ast.parse(text)
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.module:
-            found |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
-    attributes = [node for node in ast.walk(tree) if isinstance(node, ast.Attribute)]
-    of_face = {one.attr for one in attributes if getattr(one.value, "id", "") in ("td", "twodiscs")}
-    return found | {f"twodiscs.{homes()[name]}" for name in of_face & homes().keys()}
-
-
-@cache
-def homes():
-    """Return {name: module} of the face."""
-    stub = (REPOSITORY / "src/twodiscs/__init__.pyi").read_text(encoding="utf-8")
-    lines = re.findall(r"^from \.(\S+) import (.+)$", stub, re.MULTILINE)
-    return {name: module for module, names in lines for name in re.findall(r"as (\w+)", names)}
-
-
-@cache
-def users():
-    """Return {module: paths of the files that import it}, of the packages and of the tests."""
-    found = {}
-    for path, text in texts("tests", *MUTATED).items():
-        if path.endswith(".py") and path != "src/twodiscs/__init__.py":
-            for name in imported(text):
-                found.setdefault(name, set()).add(path)
-    return found
-
-
 def names_in(text, mutated):
     """Return the names of the function or class of a ``text`` that holds the mutated text, or all.
 
@@ -201,32 +168,23 @@ def names_in(text, mutated):
 
 
 def nearest(mutated):
-    """Return the test files of a mutated text of the sources, the nearest first.
+    """Return the test files for a mutated text of the sources, the nearest first.
 
-    By name, then by the imports in between, then by how often a file names what is mutated.
+    By name, then by how often a file names its module and what is mutated.
     """
     path = file_scene(mutated)
     for beginning, files in READERS.items():
         if path.startswith(beginning):
             return files
-    distance, border = {path: 0}, [path]
-    while border:
-        border = sorted(
-            {user for one in border for user in users().get(module_of(one), ())} - distance.keys()
-        )
-        distance |= dict.fromkeys(border, max(distance.values()) + 1)
-    here, names = Path(path), names_in(texts(*MUTATED)[path], mutated)
-    for test in texts("tests"):
-        if Path(test).name == f"test_{here.stem}.py":  # which may run it as a program
-            distance.setdefault(test, 1)
+    here = Path(path)
+    names = [here.stem, *names_in(texts(*MUTATED)[path], mutated)]
 
     def order(test):
         text = texts("tests")[test]
         named = Path(test).stem.startswith((f"test_{here.stem}", f"test_{here.parent.name}"))
-        spoken = sum(len(re.findall(rf"\b{name}\b", text)) for name in names)
-        return not named, distance[test], -spoken, len(text)
+        return not named, -sum(len(re.findall(rf"\b{name}\b", text)) for name in names), len(text)
 
-    return sorted((p for p in distance if Path(p).name.startswith("test_")), key=order)
+    return sorted((p for p in texts("tests") if Path(p).name.startswith("test_")), key=order)
 
 
 # How ----------------------------------------------------------------------------------------------
