@@ -4,9 +4,11 @@ Without these tests compiled code could be that of other sources, or change a us
 """
 
 import compileall
+import errno
 import os
 import shutil
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 from commands import python
@@ -17,9 +19,8 @@ from twodiscs.sampling import jit
 
 SCRIPT = """
 import numpy as np
-from twodiscs.sampling.conditioned import draw_velocity
-from twodiscs.sampling.streams import open_stream
-print(draw_velocity(open_stream(np.uint64(1), 0)))
+from twodiscs.sampling.conditioned import draw_in_disc
+print(draw_in_disc(np.array([1, 2, 3, 1 << 60], np.uint64)))
 """
 
 
@@ -48,21 +49,9 @@ def test_an_edit_of_what_a_kernel_imports_changes_the_result(tmp_path):
         return {path: path.stat().st_mtime_ns for path in cache.rglob("*.nb?")}
 
     kept = kernels()
-    assert any("draw_velocity" in path.name for path in kept)
+    assert any("draw_in_disc" in path.name for path in kept)
     assert output(environment) == before
     assert kernels() == kept
-
-    # If no code can be kept, a sentence says so: a file is in the way, the disk full, a file cut.
-    (blocked := tmp_path / "file").touch()
-    full = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (9, 9))"
-    shutil.copytree(cache, cut := tmp_path / "cut")
-    for path in cut.rglob("*.nb?"):
-        os.truncate(path, 9)
-    for folder, limit in ((blocked, ""), (tmp_path / "full", full), (cut, "")):
-        done = python("-c", limit + SCRIPT, env=environment | {"NUMBA_CACHE_DIR": str(folder)})
-        assert done.stdout == before
-        assert done.stderr.startswith("Compiled code cannot be kept, so every process compiles aga")
-        assert done.stderr.count("\n") == 1
 
     streams = sources / "sampling" / "streams.py"
     status, text = streams.stat(), streams.read_text()
@@ -83,6 +72,33 @@ def test_an_edit_of_what_a_kernel_imports_changes_the_result(tmp_path):
         assert output(environment) == result
         for path in sources.rglob("*.was"):
             path.rename(path.with_suffix(".py"))
+
+
+def test_if_no_code_can_be_kept_one_sentence_says_so(tmp_path, monkeypatch, capsys):
+    """A file is in the way of the folder, the disk is full, or files were cut."""
+
+    def said():
+        jit._warn_not_kept.cache_clear()
+        kernels = map(jit.compiled, (law.crosses.py_func, law.crossing_time.py_func))
+        assert [kernel(0.5, -0.5) for kernel in kernels] == [True, 1.0]
+        return capsys.readouterr().err
+
+    (blocked := tmp_path / "file").touch()
+    with monkeypatch.context() as patch:
+        patch.setattr(jit.numba.config, "CACHE_DIR", str(blocked))
+        patch.setattr(jit, "cache_folder", jit.cache_folder.__wrapped__)
+        found = [said()]
+    monkeypatch.setattr(jit, "cache_folder", lambda package: str(tmp_path))
+    with monkeypatch.context() as patch:
+        full = Mock(side_effect=OSError(errno.ENOSPC, "No space left on device"))
+        patch.setattr(jit.caching.IndexDataCacheFile, "_save_data", full)
+        found.append(said())
+    assert said() == ""
+    for path in tmp_path.rglob("*.nb?"):
+        os.truncate(path, 9)
+    for sentence in (*found, said()):
+        assert sentence.startswith("Compiled code cannot be kept, so every process compiles again")
+        assert sentence.count("\n") == 1
 
 
 def test_two_processes_that_save_together_keep_their_kernels_apart(tmp_path, monkeypatch):
