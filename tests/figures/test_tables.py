@@ -15,7 +15,7 @@ from matplotlib.patches import StepPatch
 import twodiscs as td
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.dynamics.transmission import box_time
-from twodiscs.figures import style
+from twodiscs.figures import curves, style
 from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.figures.style import EVENT_LOOKS
 from twodiscs.model.events import HOPS, SHELL_EVENTS
@@ -51,6 +51,15 @@ def table(name):
         return [empty(TABLES[name], **row, instructions=4000 + i) for i, row in made]
     folder = EXPECTED / "paper" if name in SCENE_TABLES else EXPECTED
     return TABLES[name].read(folder / f"{name}.csv")
+
+
+@pytest.fixture(autouse=True, scope="module")
+def rough_curves():
+    """Exact curves have every fourth of their nodes: with effects each takes milliseconds."""
+    fine = curves.branches
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(curves, "branches", lambda *given: [one[::4] for one in fine(*given)])
+        yield
 
 
 @cache

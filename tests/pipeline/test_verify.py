@@ -10,7 +10,9 @@ import pandas as pd
 import pytest
 from checkout import EXPECTED, REPOSITORY
 from commands import python
+from factory import empty
 
+from twodiscs.analysis.tables import GridTable
 from twodiscs_paper.configuration.yaml_files import load, read
 from twodiscs_paper.pipeline.results import verify
 
@@ -51,9 +53,13 @@ def results(tmp_path):
 
 
 @pytest.fixture
-def expected(results, tmp_path):
-    """The expected results, renewed from the results."""
-    folder = tmp_path / "expected"
+def expected(results, tmp_path, monkeypatch):
+    """The expected results, renewed from the results, with the table of a long run beside them."""
+    folder, rows = tmp_path / "expected", [empty(GridTable, radius=0.125)]
+    (tmp_path / "long_run").mkdir()
+    monkeypatch.setattr(
+        verify, "long_run_tables", lambda kept: [(kept / "grid.csv", GridTable, rows)]
+    )
     write(folder / "gone" / "volume.csv", "of an earlier configuration\n")
     points = sorted((results / "small/points/dynamics").glob("*.json"))
     verify.renew(results, folder, [results / name for name in TABLES], points)
@@ -77,6 +83,7 @@ def test_renewed_results_are_as_expected(results, expected):
     files = len(TABLES) + 2 + 1  # with two points and the configuration
     assert len(verify.differences(results, expected)) == files
     assert not (expected / "gone" / "volume.csv").exists()
+    assert "0.125" in (expected.parent / "long_run" / "grid.csv").read_text()
     points = json.loads((expected / "small/points/dynamics.json").read_text())
     assert points == {r: POINT | {"radius": float(r)} for r in ("0.1", "0.24")}
     # Long tables are kept at some rows.

@@ -90,7 +90,7 @@ def small(monkeypatch):
     """Make the study one of few distances and hops."""
     for name, value in {
         "SMOOTH_HALVINGS": range(6, 9), "ROUGH_HALVINGS": range(6, 9), "RING": range(3, 4),
-        "MOST_HOPS": 2**12, "LIMIT_BLOCKS": 4, "PORE_BLOCKS": 8,
+        "MOST_HOPS": 2**12, "LIMIT_BLOCKS": 4, "PORE_BLOCKS": 8, "PORE_REPLICAS": 2**12,
         "LONG_FILE": 18, "LONG_REPLICAS": 8, "RECORDS": 64,
     }.items():  # fmt: skip
         modules = near, in_long_file, in_pore, in_the_limit, near_threshold, on_ring
