@@ -570,7 +570,7 @@ LAUGHS = [f"a{i + 1}: &a{i + 1} [{', '.join([f'*a{i}' if i else '1'] * 9)}]" for
 LONG = {
     "a list of lists": f"seed: {nested('a' * 30, 5)}\nscenes: [{{name: one, box: 1}}]",
     "no block": nested("a", 5),
-    "depth": "a: " + "[" * 1500,
+    "depth": "a: " + "[" * 1000,
     "alias": "a: *" + "b" * 70_000,
     "tag": "a: !" + "b" * 70_000 + " 1",
     "key": "? " + "a" * 1000 + "\n: 1",

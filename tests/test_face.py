@@ -354,7 +354,7 @@ def test_tables_come_back_with_units_and_provenance(simulated, sampled, tmp_path
 @pytest.mark.parametrize(
     ("scene", "error", "method"),
     [
-        (SCENE, {"vertical_hop_area": 2e-3, "volume": 5e-5}, "rejection"),
+        (SCENE, {"vertical_hop_area": 4e-3, "volume": 1e-4}, "rejection"),
         (td.Scene(1.5, 1.0, 0.37), {"volume": 3e-4, "disc_collision_area": 0.02}, "conditioned"),
         (td.Scene(1.5, 1.0, 0.2, field=0.5), {"volume": 1e-3}, "rejection"),
         (td.Scene(1.5, 1.0, 0.2, discs=3), 0.02, "insertions"),

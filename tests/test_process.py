@@ -38,7 +38,7 @@ EXPECTED = Path(__file__).parents[1] / "paper" / "expected"
 #: {name: a call of a public function, with a scene, and a use of its result}
 CALLS = {
     "a mistake": lambda s: _refused(),
-    "animate": lambda s: td.animate(td.trajectory(s, 0.2), _file("gif")),
+    "animate": lambda s: td.animate(td.trajectory(s, 0.1), _file("gif")),
     "areas": lambda s: td.areas(s),
     "cost": lambda s: _used(td.cost(s, 1e-3)),
     "diffusion": lambda s: td.diffusion(td.Scene(**SCENE, periodic="x"), [0.1], 8),

@@ -69,7 +69,7 @@ MADE = {
     ),
     "sample to an error": (
         lambda: td.sample(SCENE, error=0.1, seed=5, quantities=["volume", "any_wall_area"]),
-        "error", 5e-4,
+        "error", 1e-3,
     ),
     "observe": (
         lambda replicas=5e3: td.observe(SCENE, seen, [0, 1], replicas, seed=5), "replicas", 2e4,

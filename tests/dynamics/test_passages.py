@@ -71,7 +71,7 @@ def test_clusters_to_both_sides_are_those_of_another_program(scene, gap):
     module = of_two if scene.discs == 2 else of_many
     counts, _ = module.cluster_sizes(scene, HOP, gap, 192, 11)
     assert (counts[0], counts.sum()) == (0, 192 * of_two.HOPS_PER_BLOCK)
-    same_sizes(counts, sample(scene, 8000, 12, gap=gap)[1])
+    same_sizes(counts, sample(scene, 4000, 12, gap=gap)[1])
 
 
 EFFECTS = {
