@@ -174,13 +174,13 @@ def bars(axes, colour, marker):
 
 
 def shown_texts(figure):
-    """Return the visible texts of a figure, each with its box in pixels."""
+    """Return the visible texts of a figure, each with (left, bottom, right, top) in pixels."""
     found = []
     draw_text = Text.draw
 
     def record(text, renderer):
         if text.get_visible() and text.get_text().strip():
-            found.append((text, Text.get_window_extent(text, renderer)))
+            found.append((text, Text.get_window_extent(text, renderer).extents.tolist()))
         return draw_text(text, renderer)
 
     with patch.object(Text, "draw", record):
@@ -205,7 +205,7 @@ def unclear(figure):
     """
     texts = shown_texts(figure)
     (width, height), named = figure.bbox.size, [(t.get_text(), b) for t, b in texts]
-    edges = [edge for axes in figure.axes for edge in edges_of(axes)]
+    edges = [(e, c.extents.tolist()) for axes in figure.axes for e, c in edges_of(axes)]
     bare = [(t, b) for t, b in texts if t.get_bbox_patch() is None and not t.get_path_effects()]
     shown = [one for a in figure.axes if a.axison for one in (a.xaxis, a.yaxis)]
     labels = [one.get_label_text() for one in shown]
@@ -213,7 +213,7 @@ def unclear(figure):
     return [
         *(("no label", one.axes.get_label()) for one in nameless if has_numbers(one)),
         *(("unit", label) for label in labels if lacks_unit(label)),
-        *(("beyond", t) for t, b in named if min(b.p0) < 0 or b.x1 > width or b.y1 > height),
+        *(("beyond", t) for t, b in named if min(b) < 0 or b[2] > width or b[3] > height),
         *(("pale", t.get_text()) for t, _ in texts if contrast(t.get_color()) < CONTRAST),
         *(("other", s, t) for (s, a), (t, b) in combinations(named, 2) if shared(a, b)),
         *(("line", t.get_text()) for t, b in bare if any(on(shared(b, c), e) for e, c in edges)),
@@ -241,8 +241,10 @@ def lacks_unit(label):
 
 def shared(one, other):
     """Return what two boxes in pixels share, or None if it is not larger than a rim."""
-    found = Bbox.intersection(one, other)
-    return found.padded(-RIM / 2) if found and min(found.size) > RIM else None
+    left, bottom = map(max, one[:2], other[:2])
+    right, top = map(min, one[2:], other[2:])
+    if min(right - left, top - bottom) > RIM:
+        return Bbox.from_extents(left, bottom, right, top).padded(-RIM / 2)
 
 
 def on(box, edge):
