@@ -94,12 +94,6 @@ def test_a_spoilt_formula_is_wrong(label):
         assert judged(label, lambda q, change=change: change(printed(q)))["verdict"] == "wrong"
 
 
-def test_right_in_one_regime_only_is_right_in_range():
-    printed = BY_LABEL["app:colgeneral"].printed
-    row = judged("app:colgeneral", lambda q: printed(q) if q.b > q.r else mpf(0))
-    assert (row["verdict"], row["radius"], row["ratio"]) == ("right-in-range", 0.3, 0)
-
-
 # Corrections --------------------------------------------------------------------------------------
 
 

@@ -131,16 +131,6 @@ def test_tori_have_the_published_pressures_where_they_are_in_equilibrium():
             assert infinite - row["estimate"] > 10 * row["stderr"]
 
 
-@pytest.mark.parametrize("discs", [3, 20, math.inf])
-def test_the_virial_series_has_the_coefficients_of_few_discs(discs):
-    """Published sums of many discs; b₂ of N discs has the factor 1 − 1/N."""
-    for packing, due in ((0.1, 1.236144), (0.2, 1.57037), (0.3, 2.06316), (0.4, 2.8273)):
-        found, rest = tori.virial_series(packing, math.inf)
-        assert found - rest == pytest.approx(due, abs=5e-5)
-    small, _ = tori.virial_series(1e-5, discs)
-    assert (small - 1) / 2e-5 == pytest.approx(1 - 1 / discs, abs=1e-4)
-
-
 @pytest.mark.slow
 def test_both_starts_of_a_small_torus_have_one_pressure():
     point = {"discs": 72, "aspect": "1:1", "packing": 0.65, "events": 2e6, "replicas": 32}
