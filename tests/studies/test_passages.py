@@ -19,7 +19,6 @@ from marks import slow
 from twodiscs.dynamics.two import strip
 from twodiscs.figures import style
 from twodiscs.model.scene import Box, Scene
-from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.many import insertions
 from twodiscs.theory.flux import rates
 from twodiscs_paper.catalogue import STUDIES
