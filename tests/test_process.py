@@ -7,7 +7,10 @@ This file is also a program: ``python tests/test_process.py`` prints what change
 """
 
 import decimal
+import doctest
 import gc
+import inspect
+import io
 import json
 import locale
 import logging
@@ -18,69 +21,35 @@ import sys
 import tempfile
 import threading
 import warnings
-from contextlib import contextmanager
-from inspect import isfunction
+from contextlib import chdir, contextmanager
 from pathlib import Path
 
 import matplotlib
 import numba
 import numpy as np
-import pytest
 import scipy.integrate  # noqa: F401 - SciPy adds filters of warnings when it is imported
 from commands import python
 
 import twodiscs as td
 
-SCENE = {"width": 1.5, "height": 1.0, "radius": 0.2}
-
 EXPECTED = Path(__file__).parents[1] / "paper" / "expected"
 
-#: {name: a call of a public function, with a scene, and a use of its result}
-CALLS = {
-    "a mistake": lambda s: _refused(),
-    "animate": lambda s: td.animate(td.trajectory(s, 0.1), _file("gif")),
-    "areas": lambda s: td.areas(s),
-    "cost": lambda s: _used(td.cost(s, 1e-3)),
-    "diffusion": lambda s: td.diffusion(td.Scene(**SCENE, periodic="x"), [0.1], 8),
-    "exact": lambda s: td.exact(s),
-    "exact_table": lambda s: td.exact_table(1.5, 1.0, [0.2]),
-    "free_energy": lambda s: td.free_energy(s),
-    "intervals": lambda s: td.intervals(s, "vertical_hop", 100).frame(),
-    "load": lambda s: td.load(EXPECTED)["errata"],
-    "load_result": lambda s: td.load_result(_saved(td.sample(s, 1))).more(2),
-    "mean_times": lambda s: td.mean_times(s),
-    "frames": lambda s: td.frames(s, [0.1], 8)["x"],
-    "observe": lambda s: td.observe(s, lambda _, now: now["u1"] ** 2, [0.1], 8).frame(),
-    "plot": lambda s: td.plot(td.trajectory(s, 2), _file("pdf")),
-    "pressure": lambda s: td.pressure(s),
-    "rate": lambda s: td.rate(s, "vertical_hop"),
-    "sample": lambda s: td.sample(s, 1, cores=2, progress=True)["volume"].u,
-    "scan": lambda s: td.scan(1.5, 1.0, [0.2], 0.5, cores=2).frame(),
-    "simulate": lambda s: td.simulate(s, 0.5, progress=True).frame(),
-    "starts": lambda s: td.starts(s, 2),
-    "trajectory": lambda s: td.trajectory(s, 2).positions([1.0]),
-    "transmission": lambda s: td.transmission(s, "vertical_hop", 1).frame(),
-    "volume": lambda s: td.volume(s),
+
+def examples(function):
+    """Return the examples of the docstring of a ``function`` as one program."""
+    found = doctest.DocTestParser().get_examples(inspect.getdoc(function))
+    return "".join(one.source for one in found if doctest.SKIP not in one.options)
+
+
+#: {name: a program}: the examples of all functions, and uses of their results.
+PROGRAMS = {n: examples(f) for n in td.__all__ if inspect.isfunction(f := getattr(td, n))} | {
+    "load": f"td.load({str(EXPECTED)!r})['errata']",
+    "a mistake": "try: td.load('no such folder')\nexcept td.InputError: pass",
+    "results": """
+md, mc = td.simulate(scene, 0.5, progress=True), td.sample(scene, 1, cores=2, progress=True)
+print(md, mc, md.frame(), mc["volume"].u, file=io.StringIO())
+""",
 }
-
-
-def _used(cost):
-    return str(cost), cost.frame(), cost.prices[0].seconds(0.1)
-
-
-def _refused():
-    with pytest.raises(td.InputError):
-        td.load("no such folder")
-
-
-def _file(kind):
-    return tempfile.mkstemp(suffix=f".{kind}")[1]
-
-
-def _saved(result):
-    path = _file("json")
-    result.save(path)
-    return path
 
 
 def _active(handlers):
@@ -151,14 +120,18 @@ def entered():
         warnings.catch_warnings.__enter__ = enter
 
 
-def found_by(call, scene, threads):
-    """Return what a call changes, in the main thread or in several threads."""
+def found_by(program, threads):
+    """Return what a program changes, in the main thread or in several threads."""
+
+    def run():
+        exec(program, {"td": td, "io": io, "scene": td.Scene(1.5, 1.0, 0.2)})
+
     before, failed = look(), []
     with entered() as modules:
         if threads == 1:
-            call(scene)
+            run()
         else:
-            several = [threading.Thread(target=call, args=(scene,)) for _ in range(threads)]
+            several = [threading.Thread(target=run) for _ in range(threads)]
             usual, threading.excepthook = threading.excepthook, failed.append
             for one in several:
                 one.start()
@@ -172,18 +145,18 @@ def found_by(call, scene, threads):
 
 
 def main():
-    """Print {name: changes} of all ``CALLS``, each in the main thread, then in two threads."""
-    scene = td.Scene(**SCENE)
+    """Print {name: changes} of all ``PROGRAMS``, each in the main thread, then in two threads."""
     # Threads take turns often, so that what is not safe in threads shows.
     sys.setswitchinterval(1e-5)
-    print(json.dumps({n: [found_by(c, scene, k) for k in (1, 2)] for n, c in CALLS.items()}))
+    with tempfile.TemporaryDirectory() as folder, chdir(folder):
+        print(json.dumps({n: [found_by(p, k) for k in (1, 2)] for n, p in PROGRAMS.items()}))
 
 
 def test_a_process_is_left_as_it_was():
     done = python(__file__)
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
-    assert {*found} > {name for name in td.__all__ if isfunction(getattr(td, name))}
+    assert all(PROGRAMS.values())
     assert {name: changed for name, changed in found.items() if changed != [[], []]} == {}
 
 
