@@ -26,25 +26,13 @@ from queue import SimpleQueue
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 
-#: Test files for what is no module: the beginning of a path, in the order of running.
+#: Tests for what is no module, files or folders: the beginning of a path, in the order of running.
 READERS = {
     # Tests draw whole initial states, which are made elsewhere.
-    "src/twodiscs/sampling/conditioned.py": (
-        "tests/sampling/test_starts.py",
-        "tests/studies/test_stability.py",
-    ),
+    "src/twodiscs/sampling/conditioned.py": ("tests/sampling/test_starts.py", "tests/sampling"),
     # The workflow compares a point with its job.
-    "src/twodiscs_paper/pipeline/points.py": (
-        "tests/sampling/test_rounds.py",
-        "tests/workflow/test_shards.py",
-    ),
-    "workflow/rules": (
-        "tests/workflow/test_jobs.py",
-        "tests/workflow/test_build.py",
-        "tests/workflow/test_scenes.py",
-        "tests/workflow/test_shards.py",
-        "tests/workflow/test_run.py",
-    ),
+    "src/twodiscs_paper/pipeline/points.py": ("tests/sampling/test_rounds.py", "tests/workflow"),
+    "workflow/rules": ("tests/workflow/test_jobs.py", "tests/workflow"),
     "workflow/scripts": ("tests/pipeline/test_scripts.py", "tests/workflow/test_build.py"),
     "workflow/explorer": ("tests/pipeline/test_explorer.py",),
     "workflow/report": ("tests/pipeline/test_report.py", "tests/workflow/test_report.py"),

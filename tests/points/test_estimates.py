@@ -19,7 +19,7 @@ from twodiscs.model.events import EVENTS
 from twodiscs.points import estimates
 from twodiscs.points.estimates import Estimate
 from twodiscs_paper.studies.distributions.measure import density_at_zero
-from twodiscs_paper.studies.estimates import LinearFit, sample_mean
+from twodiscs_paper.studies.estimates import sample_mean
 
 # Estimates ------------------------------------------------------------------------------------
 
@@ -65,7 +65,7 @@ def test_a_count_is_a_sum_of_others_if_it_is_so_in_every_replica():
     assert sums_of_others(*sums_of({"vertical_hop": none, "horizontal_hop": none})) == set()
 
 
-# Means and lines ------------------------------------------------------------------------------
+# Means ----------------------------------------------------------------------------------------
 
 
 def test_a_mean_has_the_error_of_its_spread():
@@ -77,21 +77,6 @@ def test_a_mean_has_the_error_of_its_spread():
             assert same.n == 50
     assert sample_mean([1, 2]) == Estimate(1.5, 0.5, 2)
     assert sample_mean([1, -1]).relative_stderr == math.inf
-
-
-X = np.array([1.0, 2.0, 4.0, 5.0, 9.0])
-Y = 0.3 - 2 * X + np.array([0.1, -0.2, 0.05, 0.0, 0.1])
-
-
-def test_a_line_with_errors_is_that_of_the_normal_equations():
-    errors = np.array([0.1, 0.2, 0.1, 0.4, 0.3])
-    line, matrix = LinearFit(X, Y, errors), np.array([X, X**0] / errors)
-    covariance = np.linalg.inv(matrix @ matrix.T)
-    slope, constant = covariance @ matrix @ (Y / errors)
-    found = line.slope.value, line.slope.stderr, line.constant
-    assert found == pytest.approx((slope, math.sqrt(covariance[0, 0]), constant), rel=1e-11)
-    residuals = Y / errors - (slope, constant) @ matrix
-    assert line.chi2 == pytest.approx(residuals @ residuals, rel=1e-11)
 
 
 # Counts ---------------------------------------------------------------------------------------
