@@ -10,6 +10,7 @@ from exact_motion import compare, path_events
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from twodiscs import trajectory
 from twodiscs.dynamics.law import two_disc_law
 from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling.initial_states import states
@@ -103,6 +104,23 @@ def test_discs_smaller_than_the_spacing_of_coordinates():
             state, time, _ = advance(state, two_disc_law(scene))
             assert 0 <= time < math.inf
             assert abs(math.fsum(v * v for v in state[4:]) - 1) < 1e-14
+
+
+@pytest.mark.parametrize("discs", [2, 3, 20])
+@pytest.mark.parametrize(("radius", "apart"), [(0.1, 0.2 * (1 - 1e-13)), (1e-20, 0.25)])
+def test_discs_that_overlap_collide_at_once_or_go_on(discs, radius, apart):
+    """By a rounding, then at time 0; or wholly, where centres have no line. Other discs rest."""
+    scene, speed = Scene(8.0, 2.0, radius, discs=discs), math.sqrt(0.5)
+    start = {f"{letter}{k + 1}": 0.0 for letter in "xyuv" for k in range(discs)}
+    start |= {f"x{k + 1}": 0.3 * k - 3.5 for k in range(discs)}
+    start |= {"y1": 0.5, "x2": start["x1"] + apart, "y2": 0.5, "u1": speed, "u2": -speed}
+    rows = trajectory(scene, duration=0.2, start=start)
+    first, last = rows[rows["event"] == "disc_collision"].iloc[0], rows.iloc[-1]
+    assert first["time"] == pytest.approx(0.0 if radius == 0.1 else apart / 2 / speed, abs=1e-15)
+    assert (rows["time"] >= 0).all()
+    assert [last["u1"], last["u2"]] == pytest.approx(
+        [-speed, speed] if radius == 0.1 else [speed, -speed]
+    )
 
 
 #: Velocities that are trouble, before they are scaled to the energy.

@@ -541,7 +541,7 @@ def follow_discs(duration, epoch, motion, laps, grid, law, counts, lane, kicks, 
         grids.clear(discs, calendar)
         for i in range(discs):
             enlist(i, rate, motion)
-        day, last = 0, np.int64(min(end * rate, LAST_DAY))
+        day, last = 0, np.int64(end * rate)
         while True:
             i, day, now = find_first(day, last, calendar)
             full = is_full(discs, log)
