@@ -19,6 +19,7 @@ import twodiscs as td
 from twodiscs.dynamics import law
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import open_block_kicks, open_kicks
+from twodiscs.dynamics.many import all_pairs
 from twodiscs.dynamics.two.follow import new_kicks
 from twodiscs.sampling.initial_states import components, states
 from twodiscs.sampling.streams import exponential, open_stream
@@ -62,6 +63,22 @@ def test_a_kick_keeps_places_and_draws_velocities_on_the_sphere(name):
     for axis in scene.axes:
         momentum = scene.masses @ found[axis][2:]
         assert (np.ptp(momentum) < 1e-14) == (axis in scene.conserved)
+
+
+@pytest.mark.parametrize("angle", range(8))
+def test_a_kick_leaves_discs_that_move_alike(angle):
+    """Roundings give their relative energy, 0, either sign; its root changes velocities by 1e-8."""
+    torus = td.Scene(2.0, 2.0, 0.1, periodic="xy", mass_ratio=0.7, friction=1.0)
+    way = np.array([math.cos(angle), math.sin(angle)])
+    kicks, alike = new_kicks(torus, 1), (way / math.sqrt(sum(torus.masses))).tolist()
+    state = 0.0, 0.0, 0.5, 0.0, *alike, *alike
+    given = open_stream(np.uint64(2), 0), kicks.direction, kicks.velocity, kicks.sampler
+    assert law.redrawn.py_func(state, *given) == pytest.approx(state, abs=1e-7)
+    three = replace(torus, mass_ratio=1.0, discs=3)
+    same = np.repeat(way / math.sqrt(3), 3).reshape(2, 3, 1)
+    moved, kicks = same.copy(), open_block_kicks(all_pairs.new_kicks(three, 1), 2)
+    all_pairs.redraw.py_func(*moved, None, 0, 0, all_pairs.many_disc_law(three), kicks)
+    assert moved == pytest.approx(same, abs=1e-7)
 
 
 @pytest.mark.parametrize("rate", [0.5, 20.0])

@@ -137,9 +137,11 @@ def test_intervals_of_many_are_those_of_trajectories(scene, event, monkeypatch):
         window *= many_intervals.mean_interval(scene, event)
     width = window / 128
     wide, going = np.full(65, 65), np.ones(1, np.bool_)
-    (times, numbers), sums = many_intervals.record_intervals(
-        scene, event, 7, 3, 4, replicas, (width, None, wide), going, window=window
-    )
+    given = scene, event, 7, 3, 4, replicas, (width, None, wide)
+    (times, numbers), sums = many_intervals.record_intervals(*given, going, window=window)
+    # A call that is stopped has none, nor a window without a hop.
+    for none in ({"going": ~going, "window": window}, {"going": going, "window": 1e-9}):
+        assert not any(found.any() for found in many_intervals.record_intervals(*given, **none))
     due = np.zeros((3, 66), np.int64)
     for k, state in enumerate(many_initial_states.states(scene, replicas, 7, 3).T):
         rows = path_events(scene, state, 4 * window, seed=7)

@@ -14,6 +14,7 @@ from exact_motion import path_events
 from marks import slow
 
 import twodiscs as td
+from twodiscs.dynamics import rows
 from twodiscs.dynamics.many import all_pairs as many
 from twodiscs.dynamics.many import cell_list as many_cells
 from twodiscs.dynamics.many import class_counts, many_intervals, many_paths, many_rates
@@ -135,7 +136,7 @@ FOLLOWED += [slow(td.Scene(8.75, 0.6, 0.18, discs=20, friction=4.0))]
 
 @pytest.mark.parametrize("scene", FOLLOWED, ids=repr)
 def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
-    """In the same order, hops as well, before roundings have grown; also past a full log."""
+    """In the same order, hops as well, before roundings grow; also past full logs and rows."""
     state = many_initial_states.states(scene, 1, 1)[:, 0]
     for axis in scene.periodic:
         state[3 + scene.discs * (axis == "y")] += 2 * scene.side(axis)
@@ -143,7 +144,11 @@ def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
     short = scene in KICKED[1:]
     duration = many_rates.expected_duration(scene, (10 if short else 5) * scene.discs)
     monkeypatch.setattr(many_paths, "LOG_ENTRIES", 50)
+    monkeypatch.setattr(
+        many_paths, "new_rows", lambda size: rows.Rows(*(a[..., :20] for a in rows.new_rows(size)))
+    )
     found = [*path_events(scene, state, duration)]
+    monkeypatch.undo()
     monkeypatch.setattr(many_paths, "large_grid", lambda scene: None)
     monkeypatch.setattr(many_paths, "record_rows", many_paths.record_rows.py_func)
     other = [*path_events(scene, state, duration)]
@@ -223,11 +228,15 @@ def test_crowded_discs_have_replicas_of_one_length():
     block = many_rates.block_replicas(roomy, many_rates.replica_duration(roomy))
     assert many_rates.block_replicas(roomy) == block
     assert many_paths.trajectory_rate(TORI[1]) == many_rates.expected_event_rate(TORI[1])
-    # A chain of intervals is as long as a replica.
-    for hop in ("vertical_hop", "horizontal_hop"):
-        mean = many_intervals.mean_interval(BORDER[0], hop)
-        due = many_rates.replica_duration(BORDER[0]) / mean / 2
-        assert many_intervals.per_chain(BORDER[0], hop) == int(due)
+    # A chain of intervals is as long as a replica, but has 256 to 64 times as many of them.
+    for scene, hop, window in (
+        (BORDER[0], "vertical_hop", many_rates.replica_duration(BORDER[0])),
+        (BORDER[0], "horizontal_hop", many_rates.replica_duration(BORDER[0])),
+        (td.Scene(32.0, 32.0, 0.3, discs=1024), "vertical_hop", 64.0),
+        (td.Scene(15.0, 1.0, 0.2499, discs=CELL_DISCS), "horizontal_hop", 2.0**28),
+    ):
+        mean = many_intervals.mean_interval(scene, hop)
+        assert many_intervals.per_chain(scene, hop) == max(256, int(window / mean / 2))
     channel = td.Scene(8.0, 0.41, 0.2, discs=CELL_DISCS)
     for event in ("any_wall", "disc_collision"):
         assert many_rates.expected_rates(channel)[event] == pytest.approx(td.rate(channel, event))

@@ -49,6 +49,16 @@ def test_two_discs_among_no_others_are_two_discs(hop, effects):
         five(mine.value, known.value, math.hypot(mine.stderr, known.stderr))
 
 
+@pytest.mark.parametrize("module", [of_two, of_many])
+def test_the_last_size_has_all_larger_clusters_which_are_not_followed(module, monkeypatch):
+    clusters = Scene(1.5, 1.0, 0.246), HOP, 6.0, 16, 11
+    sizes, events = module.cluster_sizes(*clusters)
+    monkeypatch.setattr(module, "LARGEST_CLUSTER", 2)
+    some, fewer = module.cluster_sizes(*clusters)
+    assert some.tolist() == [*sizes[:2], sizes[2:].sum()]
+    assert 0 < fewer < events
+
+
 def test_it_does_not_matter_where_a_ring_begins():
     """Hops within a short gap after random ones, and after the same ones half a turn further."""
     scene, gap = Scene(1.0, 1.0, 0.1, discs=3, periodic="x"), 1.0
@@ -62,7 +72,7 @@ def test_it_does_not_matter_where_a_ring_begins():
         net, hops = np.zeros((2, states.shape[1]))
         now = of_many.begin(3, turned, 0, net, hops)
         time = np.full(states.shape[1], gap)
-        of_many.follow_pair(now, time, gap, net, hops, pair.law, None)
+        of_many.follow_pair(now, time, gap, 2**13, net, hops, pair.law, None)
         found.append(hops)
     assert found[0].sum() > 400
     assert np.array_equal(*found)

@@ -162,10 +162,15 @@ def accepted(state, prism, proposals):
         (Scene(1.5, 1.0, 0.05, radius_ratio=2.0), "vertical_hop"),
         # A periodic axis that is not that of the neck.
         (Scene(1.0, 1.5, 0.24, periodic="x", mass_ratio=2.0), "vertical_hop"),
-        # A disc has less room in depth than their separation.
+        # A disc has less room in depth than their separation, or some have the opposite order.
         *(
-            slow(Scene(1.5, 1.0, radius, field=0.3, depth=depth, radius_ratio=r), HOPS[1])
-            for radius, depth, r in ((0.2, 0.6, 1.0), (0.04, 1.0, 12.0), (0.48, 1.0, 1 / 12))
+            (Scene(1.5, 1.0, radius, field=0.3, depth=depth, radius_ratio=r), HOPS[1])
+            for radius, depth, r in (
+                (0.2, 0.6, 1.0),
+                (0.04, 1.0, 12.0),
+                (0.48, 1.0, 1 / 12),
+                (0.29, 2.0, 1.0),
+            )
         ),
     ],
     ids=repr,

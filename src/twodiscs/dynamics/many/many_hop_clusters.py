@@ -91,12 +91,12 @@ def draw_on_surface(state, pair, states, most):
 
 
 @compiled
-def follow_pair(states, remaining, gap, net, hops, law, kicks):
+def follow_pair(states, remaining, gap, most, net, hops, law, kicks):
     """Follow the columns of ``states`` (rows, lanes) for the times ``remaining`` (lanes,).
 
     Σ s_k of the hops of discs 1 and 2 is added to ``net``, their number to ``hops``. With a ``gap``
-    (above 0) a lane goes on after each hop for this time, up to ``LARGEST_CLUSTER`` hops. Returns
-    the number of wall hits and collisions.
+    (above 0) a lane goes on after each hop for this time, up to ``most`` hops. Returns the number
+    of wall hits and collisions.
     """
     lanes = all_pairs.new_lanes(states, remaining, law)
     x, u, old_x, times = lanes.x, lanes.u, lanes.old_x, lanes.times
@@ -113,7 +113,7 @@ def follow_pair(states, remaining, gap, net, hops, law, kicks):
                 hops[l] += 1.0
                 if gap > 0.0:
                     left = gap - (times[l] - crossing_time(apart, rising[l]))
-                    remaining[l] = left if hops[l] < LARGEST_CLUSTER else 0.0
+                    remaining[l] = left if hops[l] < most else 0.0
     return np.int64(lanes.counts[COLLISIONS:].sum())
 
 
@@ -143,6 +143,7 @@ def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes, kicks):
     ``HOPS_PER_BLOCK`` lanes, None without friction.
     """
     discs, law, events, sides = pair.sampler.discs, pair.law, 0, 2 if gap > 0.0 else 1
+    most = sizes.size - 1
     states, steps = np.zeros((pair.sampler.rows, HOPS_PER_BLOCK)), np.zeros(HOPS_PER_BLOCK)
     net, hops = np.zeros(HOPS_PER_BLOCK), np.zeros(HOPS_PER_BLOCK)
     for block in range(first, stop):
@@ -158,7 +159,7 @@ def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes, kicks):
             for k in range(times.size):
                 for l in range(HOPS_PER_BLOCK):
                     steps[l] = times[k] - (times[k - 1] if k > 0 else 0.0)
-                events += follow_pair(now, steps, gap, net, hops, law, kicks)
+                events += follow_pair(now, steps, gap, most, net, hops, law, kicks)
                 for l in range(HOPS_PER_BLOCK):
                     falls = states[2 * discs, l] < states[2 * discs + 1, l]
                     n, m = np.int64(-net[l] if falls else net[l]), np.int64(hops[l])
@@ -169,7 +170,7 @@ def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes, kicks):
             for l in range(HOPS_PER_BLOCK):
                 size[l] += hops[l]
         for l in range(HOPS_PER_BLOCK):
-            sizes[min(np.int64(size[l]), sizes.size - 1)] += 1
+            sizes[min(np.int64(size[l]), most)] += 1
     return events
 
 

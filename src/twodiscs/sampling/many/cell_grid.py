@@ -62,7 +62,7 @@ def find_interval(position, borders):
     """Return the number of the interval between ``borders`` that holds a ``position``."""
     number = borders.size - 1
     k = np.int64((position - borders[0]) / (borders[number] - borders[0]) * number)
-    return min(max(k, 0), number - 1)
+    return min(k, number - 1)
 
 
 @inlined

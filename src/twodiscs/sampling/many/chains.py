@@ -43,8 +43,6 @@ def plan(scene):
     """
     room = (scene.largest_radius - scene.radius) / scene.radius
     length = CONTACTS_PER_CHAIN * math.pi / 4 * scene.contact_distance * room
-    # Small discs hardly touch.
-    length = min(length, 4 * max(scene.width, scene.height))
     contacts = CONTACTS_PER_DISC * crowding(scene)
     return math.ceil(contacts * scene.discs / CONTACTS_PER_CHAIN), length
 

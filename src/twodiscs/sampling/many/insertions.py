@@ -79,9 +79,8 @@ def ring_separation(dx, ring):
 
 
 def _put_between(starts, ends, n, low, high, half, ring):
-    low, high = max(low, -half), min(high, half)
-    starts[n], ends[n] = low, high
-    return n + 1 if high > low else n
+    starts[n], ends[n] = max(low, -half), min(high, half)
+    return n + 1
 
 
 @optional(_put_between)
@@ -119,7 +118,7 @@ def free_place(state, centres, k, y, box, starts, ends):
     for i in range(n):
         free += max(starts[i] - reached, 0.0)
         reached = max(reached, ends[i])
-    free += max(box.half_x - reached, 0.0)
+    free += box.half_x - reached
     left, reached = free * uniform(state), -box.half_x
     for i in range(n):
         gap = max(starts[i] - reached, 0.0)

@@ -205,7 +205,7 @@ def fill_cells(ends, tilt, sigma, height, least, weights, backward):
         for l in range(cells):
             # Two cells have the least d at their far ends.
             far = max(ends[k + 1] - ends[l], ends[l + 1] - ends[k])
-            z = tilt * excess(min(far, height), sigma, height, least)
+            z = tilt * excess(far, sigma, height, least)
             # The weight is (1 + z/64)^(−64), which is not below exp(−z).
             weight = 1.0 / (1.0 + z / 64)
             for _ in range(6):
@@ -418,7 +418,7 @@ def propose_heights(state, cells, sigma, heights, tilted=False):
         heights[i] = low + (high - low) * uniform(state)
         if i > 0:
             apart = abs(heights[i] - heights[i - 1])
-            left -= excess(min(apart, height), sigma, height, cells.least)
+            left -= excess(apart, sigma, height, cells.least)
             ratio /= cells.weights[last, k]
     if left <= 0.0 or tilted:
         return left > 0.0
@@ -451,7 +451,7 @@ def draw_centres(state, initial, centres, k, cells):
         if i > 0:
             apart = heights[i] - heights[i - 1]
             passed += math.sqrt((initial.sigma - apart) * (initial.sigma + apart))
-        order[i] = min(max(passed + free * order[i] - half, -half), half)
+        order[i] = min(passed + free * order[i] - half, half)
     settle(state, initial, centres, initial.chain)
 
 
@@ -519,7 +519,7 @@ def labelled(scene, number, seed, block=0, progress=None):
         first, step = 0, 1
         while first < number:
             yield first, min(first + step, number)
-            first, step = first + step, step if seconds > 0.05 else min(2 * step, 2**13)
+            first, step = first + step, step if seconds > 0.05 else 2 * step
 
     draw_in_calls(fill, calls(), number, progress)
     return filled
