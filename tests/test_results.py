@@ -134,10 +134,6 @@ JOBS = {
         {"error": {"any_wall": 0.01, "horizontal_hop": 0.05}, "budget": 10**8},
         {"error": {"any_wall": 5e-4, "horizontal_hop": 2e-3}}, td.simulate,
     ),
-    "monte_carlo": (
-        {"samples": 10**6, "quantities": ["volume", "any_wall_area"], "shell": 0.02},
-        {"samples": 5 * 10**6}, td.sample,
-    ),
     "intervals": (
         {"hop": "vertical_hop", "number": 10**5, "budget": 10**11}, {"number": 2 * 10**5},
         td.Intervals.makers["intervals"],  # with the bins of a build

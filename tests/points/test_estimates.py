@@ -87,10 +87,6 @@ def moments(counts):
 
 
 def test_mean_time_agrees_with_the_replicas_themselves():
-    assert estimates.binomial_estimate(0, 100, 2.0) is None
-    found = estimates.binomial_estimate(25, 100, 2.0)
-    assert (found.value, found.n) == (0.5, 100)
-    assert found.stderr == pytest.approx(2 * math.sqrt(0.25 * 0.75 / 100))
     counts = np.random.default_rng(6).poisson(30, 400)
     found = estimates.mean_time(*moments(counts), 60.0)
     relative = counts.std(ddof=1) / math.sqrt(400) / counts.mean()
@@ -113,15 +109,8 @@ def test_the_law_of_a_test_does_not_depend_on_what_was_counted():
     assert not estimates.is_enough(400, 500, 1000, expected=0.1)
 
 
-def test_no_event_and_no_spread_divide_by_nothing():
-    assert estimates.mean_time(0, 0, 1000, 10.0) is None
-    assert estimates.effective_count(0, 0, 1000) == 0
-    assert estimates.effective_count(3000, 9000, 1000) == 0
-    assert not estimates.is_enough(3000, 9000, 1000)
-    z, test = scores.mean_time_z(0, 0, 1000, 10.0, 1e6)
-    assert test == "cluster-bound"
-    assert 0 <= z < 1
-    assert scores.mean_time_z(0, 0, 1000, 10.0, 1.0)[0] > 50
+def test_a_score_far_from_what_is_due_is_finite():
+    assert 50 < scores.mean_time_z(0, 0, 1000, 10.0, 1.0)[0] < math.inf
     assert math.isfinite(scores.mean_time_z(10**9, 10**15, 1000, 10.0, 1e9)[0])
 
 
