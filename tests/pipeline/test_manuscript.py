@@ -100,22 +100,17 @@ def paper(tmp_path_factory, tables_of):
 
 
 def test_it_is_the_same_bytes_again_until_a_number_of_a_table_is_another(paper):
-    some = [*FIGURES][1::2], [*STUDY_FIGURES][1::2], 3
+    """With each second figure alone: those that are missing leave no dangling reference."""
+    some, rest = (([*FIGURES][n::2], [*STUDY_FIGURES][n::2], 3) for n in range(2))
     content, numbers = paper(*some)
     assert (content, numbers) == paper(*some)
     assert content.startswith(b"%PDF")
     assert b"CreationDate" not in content
     cell = "third_virial,,,,,0.782004437"
     edit = "results/agreement.csv", cell, cell.replace("0.782", "0.882")
-    edited, others = paper(*some, edit=edit)
-    assert edited != content
+    _, others = paper(*rest, edit=edit)
     changed = {name: text for name, text in others.items() if text != numbers[name]}
     assert changed == {"third_virial": "$0.882004438$"}
-
-
-def test_a_missing_figure_leaves_no_dangling_reference(paper):
-    """The other half of the figures than above, where there are three scenes."""
-    paper([*FIGURES][::2], [*STUDY_FIGURES][::2])
 
 
 def test_it_compiles_without_rows(paper):

@@ -24,7 +24,6 @@ from twodiscs_paper.studies.distributions.study import DistributionsTable
 from twodiscs_paper.studies.single import tail_constant
 
 BOX = Box(1.5, 1.0)
-PAPER = BOX.scene(0.24)
 
 
 def bins_of(edges, chances, intervals):

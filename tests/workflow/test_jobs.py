@@ -151,7 +151,6 @@ EDITS = [
     ("workflow/scripts/point.py", COUNTED, {"exact", "trajectory"}),
     ("src/twodiscs/figures/style.py", DRAWN | DOCUMENTS, None),
     ("src/twodiscs/analysis/tables.py", TABLES, COUNTED),
-    ("src/twodiscs/dynamics/law.py", TABLES | COUNTED | DRAWN | DOCUMENTS, {"configuration"}),
 ]
 
 
