@@ -264,7 +264,6 @@ def test_the_exact_table_holds_the_exact_numbers():
 def test_a_scene_prints_what_it_is():
     scene = td.Scene(1.5, 1.0, 0.2, periodic=["y", "x"], mass_ratio=2)
     assert repr(scene) == "Scene(1.5, 1.0, 0.2, mass_ratio=2.0, periodic='xy')"
-    assert eval(repr(scene), {"Scene": td.Scene}) == scene == scene.box.scene(0.2)
     assert str(scene).endswith("in a box of 1.5 × 1.0, mass ratio 2.0, periodic xy")
     assert td.Scene(1.5, 1.0, 0.2, periodic=[]) == SCENE
     assert str(td.Scene(1.5, 1, 0.2, discs=3)) == str(SCENE).replace("Two", "3")
