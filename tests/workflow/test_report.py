@@ -47,9 +47,9 @@ LOOK = """
 """
 
 
-@pytest.fixture(scope="module", params=[1280, 768, 390])
+@pytest.fixture(scope="module", params=[768, 390])
 def front(request, complete, tmp_path_factory):
-    """A browser shows the report in a wide window and in a narrow one."""
+    """A browser shows the report in the narrowest window with usual tables, and in a narrow one."""
     address, width = (complete.path / "results" / "report.html").as_uri(), request.param
     with browser(tmp_path_factory.mktemp("browser")) as page:
         page.open(address, width=width, scheme="dark")
