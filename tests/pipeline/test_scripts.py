@@ -8,7 +8,7 @@ import json
 import re
 import runpy
 from pathlib import Path
-from types import MappingProxyType, SimpleNamespace
+from types import SimpleNamespace
 
 import pytest
 from checkout import one_scene
@@ -40,20 +40,16 @@ REQUEST = load(
 BOX, WORK = REQUEST.box, {stage: REQUEST.arguments(stage) for stage in STAGES}
 
 
-#: Neither wildcards nor files.
-NONE = MappingProxyType({})
-
-
 @pytest.fixture
 def run(monkeypatch, tmp_path):
     """Run a script with inputs, outputs, params and wildcards in a separate folder."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(job, "start", lambda log: None)
 
-    def run(script, params, wildcards=NONE, files=NONE, **output):
+    def run(script, params, wildcards=None, files=None, **output):
         snakemake = SimpleNamespace(
-            input=Namedlist(fromdict=files), output=Namedlist(fromdict=output),
-            params=Namedlist(fromdict=params), wildcards=Namedlist(fromdict=wildcards),
+            input=Namedlist(fromdict=files or {}), output=Namedlist(fromdict=output),
+            params=Namedlist(fromdict=params), wildcards=Namedlist(fromdict=wildcards or {}),
             log=["job.log"],
         )  # fmt: skip
         runpy.run_path(str(SCRIPTS / f"{script}.py"), {"snakemake": snakemake})

@@ -70,25 +70,19 @@ def effect_rows():
     ]
 
 
-@pytest.fixture
-def rows():
-    """Return the rows of two scenes that have the same tests, as the table has them."""
-    tables = {"a/check": check_rows(), "a/hop_histogram": histogram_rows()}
-    tables |= {"effects": effect_rows(), "b/check": check_rows()}
-    return [*AgreementTable.rows(tables)]
-
-
 def one(rows, **where):
     (row,) = of(rows, **where)
     return row["count"], row["estimate"], row.get("stderr")
 
 
-def test_rows_are_as_by_hand(rows):
+def test_rows_are_as_by_hand():
     """Tests with a normal law, bins, and effects whose count is no sum of others are compared.
 
     A bin of half of all intervals has the error √(n/4)/n/width if they are independent. The
     parabola p − at² whose means over (0, 1) and (1, 2) are 1.3 and 1 begins at 1.35.
     """
+    tables = {"a/check": check_rows(), "a/hop_histogram": histogram_rows()}
+    rows = [*AgreementTable.rows(tables | {"effects": effect_rows(), "b/check": check_rows()})]
     due = 32, np.mean(np.square([*SCORES.values()])), math.sqrt(2 / 32)
     assert one(rows, quantity="mean_square") == pytest.approx(due)
     assert one(rows, quantity="error_ratio") == (1, pytest.approx(3), None)
