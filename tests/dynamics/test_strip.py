@@ -213,6 +213,14 @@ def test_planned_blocks_are_enough_and_not_far_too_many(effects, product):
     assert 0.5 < excess <= 1
 
 
+@pytest.mark.parametrize(("scene", "hop"), NECKS.values())
+def test_a_budget_is_one_of_events_or_of_64_proposals_for_each(scene, hop):
+    run = strip.strip_run(scene, hop, 0.01, 10**9, 1)
+    starts = run.budget / run.block_events * REPLICAS
+    proposals = starts / strip.acceptance(scene, hop, strip.choose_strip(scene, hop))
+    assert max(run.budget, proposals / 64) == pytest.approx(10**9)
+
+
 def test_every_rare_hop_has_random_numbers_of_its_own(monkeypatch):
     """In a square both hops are rare together, and the same numbers would give the same counts."""
     streams = {}

@@ -196,3 +196,24 @@ def test_who_waits_hears_how_many_states_are_drawn():
     assert (done, done[-1]) == (sorted(done), 200)
     assert len(done) > 5
     assert {number for _, number in told} == {200}
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "discs", "share"),
+    [
+        (4.0, 4.0, 16, 1 / 16), (160.0, 0.4, 16, (80 / 32) ** 2 / 16), (8.0, 8.0, 64, 1 / 8),
+        (64.0, 1.0, 64, 1 / 2), (640.0, 0.4, 64, 0), (1e30, 1.0, 64, 0),
+    ],
+)  # fmt: skip
+def test_the_way_to_the_next_state_is_longer_in_a_long_box(width, height, discs, share):
+    """Diffusion takes the square of the length; where a new chain is as short, there is no way.
+
+    The smallest moves are below the free length, but no number of their sizes is beyond 62.
+    """
+    scene = Scene(width, height, 0.1, discs=discs)
+    for turned in (scene, scene.turned()):
+        chain = many_initial_states.make_initial(turned, "chain", contacts=512).chain
+        assert chain.between == math.ceil(share * chain.sweeps)
+        assert 2.0**chain.scales > min(2**61, width / (scene.largest_radius - 0.1))
+        assert chain.scales <= 62
+        assert not chain.grid or (chain.grid.x.size - 1) * (chain.grid.y.size - 1) < discs

@@ -260,7 +260,7 @@ def strip_run(scene, hop, target, budget, seed):
     wanders = scene.moment_of_inertia or scene.friction
     margin = MARGIN_OF_ROUGH if wanders else MARGIN_OF_COUNTS
     margin *= max(1.0, (scene.friction * strip.time) ** GROWTH_BY_KICKS)
-    events = max(1.0, PATH_DURATION * expected_events(scene, hop, strip))
+    events = PATH_DURATION * expected_events(scene, hop, strip)
     proposals = 1 / acceptance(scene, hop, strip) / events
 
     def work(first, stop):
