@@ -117,7 +117,7 @@ def drawn(scene, number, seed, **changes):
 def test_ways_to_draw_agree(scene, one, other):
     number = {"chain": 500}
     found, same = (
-        many_initial_states.states(scene, number.get(way, 20_000), seed, by=way)
+        many_initial_states.states(scene, number.get(way, 10_000), seed, by=way)
         for seed, way in ((1, one), (2, other))
     )
     assert difference(scene, found, same) < 5

@@ -138,7 +138,7 @@ def test_without_a_budget_a_run_ends_with_the_first_round_that_reaches_every_err
     kind, call, what = "event", td.simulate, {"events": names}
     if names and "volume" in names:
         kind, call, what = "quantity", td.sample, {"quantities": names}
-    for seed in range(6 if kind == "event" else 3):
+    for seed in range(4 if kind == "event" else 3):
         first = call(scene, error=1.0, seed=seed, **what)
         errors = {row[kind]: row["relative_stderr"] for row in first.rows}
         possible = [event for event, error in errors.items() if error]
