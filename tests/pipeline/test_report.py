@@ -37,10 +37,8 @@ def test_the_largest_deviation_has_the_digits_of_the_verdict(z):
     texts = "-0.66", "+1.2", "7.5e-05", "none-seen", "> 3.2"
     set_as = ["−0.66", "+1.2", "7.5 × 10<sup>−5</sup>", "none-seen", "> 3.2"]
     assert [*map(report.typeset, texts)] == set_as
-    assert [*map(report.relative_error, (1e-3, 2.8e-4))] == [
-        "10<sup>−3</sup>",
-        "2.8 × 10<sup>−4</sup>",
-    ]
+    errors = ["10<sup>−3</sup>", "2.8 × 10<sup>−4</sup>"]
+    assert [*map(report.relative_error, (1e-3, 2.8e-4))] == errors
 
 
 def test_the_events_of_the_agreement_are_those_of_dynamics(tmp_path, tables_of):
