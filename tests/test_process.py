@@ -47,6 +47,7 @@ PROGRAMS = {n: examples(f) for n in td.__all__ if inspect.isfunction(f := getatt
     "a mistake": "try: td.load('no such folder')\nexcept td.InputError: pass",
     "results": """
 md, mc = td.simulate(scene, 0.5, progress=True), td.sample(scene, 1, cores=2, progress=True)
+td.mean_times(td.Scene(1.5, 1.0, 0.1, discs=3))
 print(md, mc, md.frame(), mc["volume"].u, file=io.StringIO())
 """,
 }

@@ -369,9 +369,11 @@ def test_averages_over_states_have_honest_errors():
     assert found == td.observe(SCENE, seen, [0, 1, 7.5], 20000, seed=3, cores=2)
     assert found != td.observe(SCENE, seen, [0, 1, 7.5], 20000, seed=4)
     assert list(found.frame().columns) == [f"{n}_{k}" for n in ("mean", "stderr") for k in range(3)]
-    given = td.starts(SCENE, 5000)  # more than a block
+    given = np.sort(td.starts(SCENE, 5000), order="x1")  # more than a block; their means differ
     found = td.observe(SCENE, lambda start, now: now["x1"], [0], starts=given)
+    error = given["x1"].std(ddof=1) / math.sqrt(5000)
     assert (found.replicas, found.mean[0]) == (5000, pytest.approx(given["x1"].mean()))
+    assert found.stderr[0] == pytest.approx(error, rel=1e-12)
 
 
 def test_what_is_observed_has_names():
