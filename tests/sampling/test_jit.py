@@ -128,9 +128,11 @@ def test_a_relative_cache_folder_is_ignored(given, folder, tmp_path, monkeypatch
     assert kept.parent == tmp_path / folder / "twodiscs"
 
 
-def test_a_users_choice_of_processor_wins():
-    script = "from twodiscs.sampling.jit import numba; print(numba.config.CPU_FEATURES)"
-    assert output(os.environ | {"NUMBA_CPU_FEATURES": "+sse2"}, script) == "+sse2\n"
+def test_vectors_are_as_wide_as_the_processor_has_them_unless_a_user_chooses():
+    script = "from twodiscs.sampling import jit; print(jit.numba.config.CPU_FEATURES)"
+    script += "; print('-prefer-256' in jit.cpu_target.target_context.codegen()._tm_features)"
+    assert output(os.environ | {"NUMBA_CPU_FEATURES": "+sse2"}, script) == "+sse2\nFalse\n"
+    assert output(os.environ, script) == f"None\n{jit.features.get('avx512f', False)}\n"
 
 
 def test_without_a_compiler_there_are_no_kernels_and_a_sentence_says_so():
