@@ -79,14 +79,22 @@ def test_it_does_not_matter_where_a_ring_begins():
 
 
 @pytest.mark.parametrize(("periodic", "components"), [("", 4), ("x", 3)])
-def test_relative_speeds_on_the_surface_have_the_law_of_the_flux(periodic, components):
-    """For s, the relative speed over its largest, (1 − s²)^((D − 1)/2) is uniform."""
+def test_states_on_the_surface_have_the_law_of_the_flux(periodic, components):
+    """For s, the relative speed over its largest, (1 − s²)^((D − 1)/2) is uniform.
+
+    The room that is left beside both discs is uniform, too: each has a third of it at its wall.
+    """
     scene = Scene(1.5, 1.0, 0.2, discs=2, periodic=periodic)
     states = np.zeros((8, 2**14))
     stream = of_many.open_stream(np.uint64(1), 0)
     of_many.draw_on_surface(stream, of_many.surface_pair(scene, HOP), states, -1)
     law = (1 - (states[4] - states[5]) ** 2 / 2) ** ((components - 1) / 2)
     five(law.mean(), 0.5, 1 / math.sqrt(12 * law.size))
+    rooms = (scene.range_y / 2 - np.abs(states[2:4])) / scene.clearance(HOP)
+    assert np.all(rooms.sum(axis=0) < 1 + 1e-14)
+    for share in rooms:
+        five(share.mean(), 1 / 3, 1 / math.sqrt(18 * share.size))
+    five((states[0] ** 2).mean() * 12 / scene.range_x**2, 1.0, math.sqrt(0.8 / law.size))
 
 
 def test_the_sampled_rate_of_hops_is_the_exact_one(monkeypatch):
