@@ -50,6 +50,10 @@ def test_an_edit_of_what_a_kernel_imports_changes_the_result(tmp_path):
 
     kept = kernels()
     assert any("draw_in_disc" in path.name for path in kept)
+    # What Python compiles beside the sources, and stubs, are no part of them.
+    (sources / "sampling/__pycache__").mkdir()
+    for name in ("sampling/__pycache__/jit.pyc", "sampling/jit.pyi"):
+        (sources / name).touch()
     assert output(environment) == before
     assert kernels() == kept
 
