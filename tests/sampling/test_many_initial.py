@@ -216,4 +216,4 @@ def test_the_way_to_the_next_state_is_longer_in_a_long_box(width, height, discs,
         assert chain.between == math.ceil(share * chain.sweeps)
         assert 2.0**chain.scales > min(2**61, width / (scene.largest_radius - 0.1))
         assert chain.scales <= 62
-        assert not chain.grid or (chain.grid.x.size - 1) * (chain.grid.y.size - 1) < discs
+        assert not chain.grid or (chain.grid.x.size - 1) * (chain.grid.y.size - 1) <= 4 * discs

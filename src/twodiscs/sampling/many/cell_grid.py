@@ -34,10 +34,10 @@ class Places(NamedTuple):
 
 
 def make_grid(scene):
-    """Return the ``CellGrid`` of a ``Scene``, which must be followable: fewer cells than discs."""
+    """Return the ``CellGrid`` of a ``Scene``, which must be followable: up to 4 N cells."""
     a, b, least = scene.range_x, scene.range_y, LEAST_CELL_SIDE * scene.contact_distance
-    # In a box that is longer than a row of N squares there are fewer than N cells along it.
-    side = max(least, 1.25 * math.sqrt(a * b / scene.discs), 1.25 * max(a, b) / scene.discs)
+    # A box may be so long that cells of this area are far more than its discs.
+    side = max(least, 1.25 * math.sqrt(a * b / scene.discs), max(a, b) / scene.discs / 4)
     numbers = {"x": max(1, int(a / side)), "y": max(1, int(b / side))}
     for axis in scene.periodic:
         # Along it there are four cells if there is room, otherwise two or three. With two each is
