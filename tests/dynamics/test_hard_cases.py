@@ -109,7 +109,7 @@ def test_discs_smaller_than_the_spacing_of_coordinates():
 @pytest.mark.parametrize("discs", [2, 3, 20])
 @pytest.mark.parametrize(("radius", "apart"), [(0.1, 0.2 * (1 - 1e-13)), (1e-20, 0.25)])
 def test_discs_that_overlap_collide_at_once_or_go_on(discs, radius, apart):
-    """By a rounding, then at time 0; or wholly, where centres have no line. Other discs rest."""
+    """An overlap by a rounding ends at time 0; centres that coincide have no line of centres."""
     scene, speed = Scene(8.0, 2.0, radius, discs=discs), math.sqrt(0.5)
     start = {f"{letter}{k + 1}": 0.0 for letter in "xyuv" for k in range(discs)}
     start |= {f"x{k + 1}": 0.3 * k - 3.5 for k in range(discs)}

@@ -228,7 +228,7 @@ def test_crowded_discs_have_replicas_of_one_length():
     block = many_rates.block_replicas(roomy, many_rates.replica_duration(roomy))
     assert many_rates.block_replicas(roomy) == block
     assert many_paths.trajectory_rate(TORI[1]) == many_rates.expected_event_rate(TORI[1])
-    # A chain of intervals is as long as a replica, but has 256 to 64 times as many of them.
+    # A chain lasts as long as a replica: at least 256 intervals, at most 64 windows of these.
     for scene, hop, window in (
         (BORDER[0], "vertical_hop", many_rates.replica_duration(BORDER[0])),
         (BORDER[0], "horizontal_hop", many_rates.replica_duration(BORDER[0])),

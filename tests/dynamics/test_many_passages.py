@@ -82,7 +82,7 @@ def test_it_does_not_matter_where_a_ring_begins():
 def test_states_on_the_surface_have_the_law_of_the_flux(periodic, components):
     """For s, the relative speed over its largest, (1 − s²)^((D − 1)/2) is uniform.
 
-    The room that is left beside both discs is uniform, too: each has a third of it at its wall.
+    Places are uniform: each disc has, on average, a third of the room between it and its wall.
     """
     scene = Scene(1.5, 1.0, 0.2, discs=2, periodic=periodic)
     states = np.zeros((8, 2**14))

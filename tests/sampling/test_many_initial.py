@@ -206,9 +206,9 @@ def test_who_waits_hears_how_many_states_are_drawn():
     ],
 )  # fmt: skip
 def test_the_way_to_the_next_state_is_longer_in_a_long_box(width, height, discs, share):
-    """Diffusion takes the square of the length; where a new chain is as short, there is no way.
+    """It grows as the square of the length, as diffusion does; it is 0 if a new chain is shorter.
 
-    The smallest moves are below the free length, but no number of their sizes is beyond 62.
+    The smallest moves are below the free length, and moves have 62 sizes at most.
     """
     scene = Scene(width, height, 0.1, discs=discs)
     for turned in (scene, scene.turned()):

@@ -162,7 +162,8 @@ def accepted(state, prism, proposals):
         (Scene(1.5, 1.0, 0.05, radius_ratio=2.0), "vertical_hop"),
         # A periodic axis that is not that of the neck.
         (Scene(1.0, 1.5, 0.24, periodic="x", mass_ratio=2.0), "vertical_hop"),
-        # A disc has less room in depth than their separation, or some have the opposite order.
+        # A disc has less room in depth than their separation, or some proposals have the opposite
+        # order in depth.
         *(
             (Scene(1.5, 1.0, radius, field=0.3, depth=depth, radius_ratio=r), HOPS[1])
             for radius, depth, r in (

@@ -54,7 +54,7 @@ def power_rows(power, halvings, inertia=None):
 
 
 def test_a_power_is_fitted_to_the_last_octaves():
-    """Of each hop by itself, in any order of rows. Errors are those of the long run's table."""
+    """The fit takes each hop by itself, in any order of rows; test_long_runs has its errors."""
     far = power_rows(0.9, [3])  # not among the last five
     smooth = power_rows(1 / 3, range(4, 9))
     rough, alone = power_rows(0.5, [4, 3], inertia=0.5), power_rows(0.5, [4], inertia=1.0)

@@ -34,9 +34,9 @@ class Places(NamedTuple):
 
 
 def make_grid(scene):
-    """Return the ``CellGrid`` of a ``Scene``, which must be followable: up to 4 N cells."""
+    """Return the ``CellGrid``, up to 4 N columns or rows, of a ``Scene`` that can be followed."""
     a, b, least = scene.range_x, scene.range_y, LEAST_CELL_SIDE * scene.contact_distance
-    # A box may be so long that cells of this area are far more than its discs.
+    # Along a very long box there would be far more cells of this area than discs.
     side = max(least, 1.25 * math.sqrt(a * b / scene.discs), max(a, b) / scene.discs / 4)
     numbers = {"x": max(1, int(a / side)), "y": max(1, int(b / side))}
     for axis in scene.periodic:
@@ -62,6 +62,7 @@ def new_places(discs, grid):
 def find_interval(position, borders):
     """Return the number of the interval between ``borders`` that holds a ``position``."""
     number = borders.size - 1
+    # Truncation puts what a rounding has moved before the first border into the first interval.
     k = np.int64((position - borders[0]) / (borders[number] - borders[0]) * number)
     return min(k, number - 1)
 
