@@ -1,22 +1,17 @@
 """Command lines, run in this process, and programs, run in another one."""
 
-import json
 import subprocess
 import sys
 
-from twodiscs.cli import run
+from twodiscs import cli
 
 
-def command(monkeypatch, module, *arguments):
-    """Run the ``main`` of a ``module`` in this process and return its exit status.
-
-    ``arguments`` are the arguments of the command line; a dict is spelled as JSON.
-    """
-    words = [json.dumps(a) if isinstance(a, dict) else str(a) for a in arguments]
+def command(monkeypatch, *words):
+    """Run ``twodiscs`` with some ``words`` in this process and return its exit status."""
     with monkeypatch.context() as patch:
-        patch.setattr("sys.argv", [module.__name__, *words])
+        patch.setattr("sys.argv", ["twodiscs", *map(str, words)])
         try:
-            run(module.main)
+            cli.run(cli.main)
         except SystemExit as leave:
             return leave.code or 0
 

@@ -332,7 +332,7 @@ def refusal(path, text):
 
 def refused_in_shell(monkeypatch, capsys, *words):
     """Return the sentence of the shell about ``words``."""
-    assert command(monkeypatch, cli, *words) == 2
+    assert command(monkeypatch, *words) == 2
     shown = capsys.readouterr()
     assert shown.out == ""
     assert shown.err.startswith("error: ")

@@ -45,7 +45,7 @@ def shell(monkeypatch, capsys):
     """A function that runs ``twodiscs`` in this process and returns what it prints."""
 
     def run(*words):
-        assert command(monkeypatch, cli, *words) == 0
+        assert command(monkeypatch, *words) == 0
         return capsys.readouterr().out
 
     return run
@@ -83,10 +83,10 @@ def test_every_option_reaches_the_function(name, monkeypatch):
     function = create_autospec(getattr(twodiscs, name), side_effect=InputError("enough"))
     monkeypatch.setattr(twodiscs, name, function)
     words = [name, *BOX, "--radius", "0.2"]
-    assert command(monkeypatch, cli, *words) == 2
+    assert command(monkeypatch, *words) == 2
     for option, value in given.items():
         words += [f"--{option}", *(value if isinstance(value, list) else [value])]
-    assert command(monkeypatch, cli, *words) == 2
+    assert command(monkeypatch, *words) == 2
     scene = Scene(1.5, 1, 0.2)
     for call, options in zip(function.call_args_list, ({}, given), strict=True):
         found, right = usual.bind(*call.args, **call.kwargs), usual.bind(scene, **options)
@@ -113,7 +113,7 @@ def test_cost_prints_times_of_errors_as_a_table_and_for_scripts(shell, monkeypat
 
 def test_a_result_for_scripts_has_its_note_beside_it(monkeypatch, capsys):
     words = "simulate", *BOX, "--radius", "0.2", "--events", "any_wall", "--error", "1e-4"
-    assert command(monkeypatch, cli, *words, "--budget", "1e6", "--csv") == 0
+    assert command(monkeypatch, *words, "--budget", "1e6", "--csv") == 0
     shown = capsys.readouterr()
     assert shown.err.startswith("You asked for an error of 0.0001, but the budget of 1e6 events")
     assert shown.out.startswith("radius,")
@@ -150,11 +150,11 @@ def test_no_stream_loses_a_result(shell, monkeypatch, capsys):
         output = TextIOWrapper(io.BytesIO(), encoding)
         with monkeypatch.context() as patch:
             patch.setattr(sys, "stdout", output)
-            assert command(monkeypatch, cli, *EXACT) == 0
+            assert command(monkeypatch, *EXACT) == 0
         assert output.buffer.getvalue() == expected.encode(encoding, "backslashreplace")
     for words, status, result in ((EXACT, 0, expected), (("exact", *BOX), 2, "")):
         monkeypatch.setattr(sys, "stderr", None)
-        assert command(monkeypatch, cli, *words) == status
+        assert command(monkeypatch, *words) == status
         assert capsys.readouterr().out == result
     with open("/dev/full", "w") as full:
         to = {"stdout": full, "stderr": subprocess.PIPE, "capture_output": False}
@@ -166,7 +166,7 @@ def test_no_stream_loses_a_result(shell, monkeypatch, capsys):
 def test_a_closed_output_is_refused_before_the_work(monkeypatch, capsys):
     monkeypatch.setattr(sys, "stdout", None)
     monkeypatch.setattr(twodiscs, "simulate", None)
-    assert command(monkeypatch, cli, "simulate", *BOX, "--radius", "0.2") == 2
+    assert command(monkeypatch, "simulate", *BOX, "--radius", "0.2") == 2
     assert capsys.readouterr().err == "error: standard output is closed\n"
 
 
@@ -195,7 +195,7 @@ def test_an_error_is_a_sentence(error, sentence, capsys):
 
 def test_a_new_configuration_is_one_and_is_not_written_over(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    assert not command(monkeypatch, cli, "new", "my.yaml")
+    assert not command(monkeypatch, "new", "my.yaml")
     said = "my.yaml is written. To build it: twodiscs run my.yaml\n"
     assert capsys.readouterr().out == said
     configuration = load(read("my.yaml"))
@@ -211,10 +211,10 @@ def test_a_new_configuration_is_one_and_is_not_written_over(tmp_path, monkeypatc
     targets = re.findall(r"^# twodiscs run my.yaml *(\w*)", text, re.MULTILINE)
     assert targets[0] == ""
     assert {*targets[1:]} <= {*build.TARGETS}
-    assert command(monkeypatch, cli, "new", "my.yaml") == 2
+    assert command(monkeypatch, "new", "my.yaml") == 2
     assert capsys.readouterr().err == "error: my.yaml exists already and is not overwritten\n"
     assert Path("my.yaml").read_text() == text
-    assert not command(monkeypatch, cli, "new", "b c.yaml")
+    assert not command(monkeypatch, "new", "b c.yaml")
     assert load(read("b c.yaml")).results == "results-b-c"
 
 
@@ -229,7 +229,7 @@ def test_a_new_configuration_is_one_and_is_not_written_over(tmp_path, monkeypatc
 def test_a_library_alone_says_what_it_lacks(name, absent, needed, monkeypatch, capsys):
     monkeypatch.setattr(cli, "plugin", lambda name: None)
     monkeypatch.setitem(sys.modules, absent, None)  # which makes its import fail
-    assert command(monkeypatch, cli, name, "my.yaml") == 2
+    assert command(monkeypatch, name, "my.yaml") == 2
     assert capsys.readouterr().err == f"error: twodiscs {name} needs {needed}\n"
 
 
@@ -266,20 +266,20 @@ def test_what_cannot_be_built_is_refused(tmp_path, monkeypatch, capsys):
     )
     said["volume"] = "cannot be drawn: no scene of a.yaml has its quantities in `watch`"
     for target, reason in said.items():
-        assert command(monkeypatch, cli, "run", "a.yaml", target) == 2
+        assert command(monkeypatch, "run", "a.yaml", target) == 2
         assert capsys.readouterr().err == f"error: {target} {reason}\n"
     build.check_targets("a.yaml", ["mean_hop_time", "effects", "check"], load(read("a.yaml")))
     Path("a.yaml").write_text(f"seeed: 1\nseed: x\nscenes: [{scene}]\n")
-    assert command(monkeypatch, cli, "run", "a.yaml") == 2
+    assert command(monkeypatch, "run", "a.yaml") == 2
     assert re.fullmatch(
         r"error: a.yaml: the configuration has an unknown key 'seeed'.*\n"
         r"error: a.yaml: seed must be an integer .*, not 'x'\n",
         capsys.readouterr().err,
     )
     Path("a.yaml").write_text(f"results: a.yaml\nscenes: [{scene}]\n")
-    assert command(monkeypatch, cli, "run", "a.yaml") == 2
+    assert command(monkeypatch, "run", "a.yaml") == 2
     assert capsys.readouterr().err.startswith("error: results must be ")
-    assert command(monkeypatch, cli, "run", "b.yaml") == 2
+    assert command(monkeypatch, "run", "b.yaml") == 2
     assert capsys.readouterr().err == "error: b.yaml: No such file or directory\n"
 
 
@@ -287,7 +287,7 @@ def test_targets_may_stand_behind_options(monkeypatch, capsys):
     given = []
     monkeypatch.setattr(build, "build", lambda path, **words: given.append((path, words)))
     words = "run", "my.yaml", "volume", "-n", "pressure", "--cores", "2"
-    assert not command(monkeypatch, cli, *words)
+    assert not command(monkeypatch, *words)
     options = {"targets": ["volume", "pressure"], "cores": 2}
     flags = {"dry_run": True, "unlock": False, "force": False}
     assert given == [("my.yaml", options | flags)]
@@ -368,7 +368,7 @@ def run(tmp_path, monkeypatch):
 
     def run(main, *words):
         monkeypatch.setattr("snakemake.cli.main", Mock(side_effect=main))
-        return command(monkeypatch, cli, "run", "a.yaml", *words)
+        return command(monkeypatch, "run", "a.yaml", *words)
 
     return run
 
