@@ -5,6 +5,7 @@ import math
 from contextlib import contextmanager
 from functools import cached_property
 from itertools import combinations_with_replacement
+from pathlib import Path
 from unittest.mock import patch
 
 import numpy as np
@@ -18,6 +19,9 @@ from twodiscs.points.intervals_point import Bins, IntervalsPoint
 from twodiscs.points.monte_carlo_point import Hits, MonteCarloPoint
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
+
+#: The folders of the expected tables and of the long runs.
+EXPECTED, LONG_RUNS = (Path(__file__).parents[1] / "paper" / n for n in ("expected", "long_run"))
 
 BOX = Box(1.5, 1.0)
 RADII = (0.02, 0.1, 0.2, 0.24, 0.3, 0.36, 0.38)

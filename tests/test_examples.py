@@ -17,8 +17,9 @@ from functools import cache
 import pages
 import pytest
 import yaml
-from checkout import EXPECTED, REPOSITORY, fresh
+from checkout import REPOSITORY, fresh
 from commands import command, python
+from factory import EXPECTED
 from marks import slow
 from snakemake.cli import get_argument_parser
 

@@ -4,11 +4,10 @@ import math
 import re
 from functools import cache
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
-from factory import empty
+from factory import EXPECTED, LONG_RUNS, empty
 from figure_cases import PAPER, bars, draw, points, unclear
 from matplotlib.patches import StepPatch
 
@@ -38,7 +37,6 @@ from twodiscs_paper.studies.tails import figure as tails
 from twodiscs_paper.studies.thresholds.measure import leading_law, near
 from twodiscs_paper.study import select
 
-EXPECTED = Path(__file__).parents[2] / "paper" / "expected"
 TABLES = SCENE_TABLES | STUDY_TABLES
 
 
@@ -137,7 +135,7 @@ def over_cube_root(row):
 
 
 def long_run(name):
-    return read_table(EXPECTED.parent / "long_run" / name / "passages.csv")
+    return read_table(LONG_RUNS / name / "passages.csv")
 
 
 def passage_rows():
@@ -387,7 +385,7 @@ def test_residuals_are_those_of_the_table():
 
 
 def test_the_symbols_of_tori_are_those_of_the_long_run():
-    rows = read_table(EXPECTED.parent / "long_run" / "tori" / "tori.csv")
+    rows = read_table(LONG_RUNS / "tori" / "tori.csv")
     for (reference, discs), (colour, marker, _) in tori.REFERENCE_LOOKS.items():
         own, axes = select(rows, reference=reference, discs=discs), drawn("tori")
         due = {(row["packing_fraction"], row["estimate"]) for row in own}
@@ -402,7 +400,7 @@ def test_the_mean_squares_of_calibration_are_those_of_the_long_run():
     lines = [n for n in drawn("calibration")["calibration"].lines if n.get_marker() in "os^"]
     shown = sorted((round(y), x) for line in lines for x, y in line.get_xydata())
     path, fewest = "calibration/calibration.csv", figure_calibration.FEWEST_SCORES
-    rows = read_table(EXPECTED.parent / "long_run" / path)
+    rows = read_table(LONG_RUNS / path)
     rows = [row for row in rows if row["scores"] >= fewest and row["size"] != "long"]
     due = []
     for level, (call, part) in enumerate(figure_calibration.ESTIMATORS.values()):

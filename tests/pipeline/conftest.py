@@ -3,7 +3,7 @@
 import shutil
 
 import pytest
-from checkout import EXPECTED
+from factory import EXPECTED
 
 from twodiscs_paper.catalogue import STUDY_TABLES, TABLES
 

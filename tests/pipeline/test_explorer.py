@@ -11,8 +11,8 @@ import re
 
 import pytest
 from browser import ABSENT, BROWSER, browser
-from checkout import EXPECTED, REPOSITORY
-from factory import write_rows
+from checkout import REPOSITORY
+from factory import EXPECTED, write_rows
 from py_mini_racer import MiniRacer
 
 from twodiscs.analysis.tables import AreasTable, VolumeTable

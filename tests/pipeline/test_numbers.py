@@ -6,13 +6,12 @@ Without these tests numbers in paper and pages could differ from the tables, or 
 import json
 import re
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_UP, Context, Decimal
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 import typst
-from factory import of
+from factory import EXPECTED, LONG_RUNS, of
 
 from twodiscs.analysis.tables import SCENE_TABLES, MeanTimesTable
 from twodiscs.dynamics.ensemble import REPLICAS
@@ -23,7 +22,7 @@ from twodiscs_paper.configuration.yaml_files import load, read
 from twodiscs_paper.pipeline.documents.manuscript import CONSTANTS
 from twodiscs_paper.pipeline.points import read_point, read_shards
 
-PAPER = Path(__file__).resolve().parents[2] / "paper"
+PAPER = EXPECTED.parent
 SOURCE = (PAPER / "paper.typ").read_text()
 SCENES = [
     {"name": name, "width": width, "height": 1.0, "tables": list(SCENE_TABLES)}
@@ -204,15 +203,14 @@ def test_every_number_and_column_of_cells_has_rows_in_the_expected_tables(printe
 @pytest.fixture(scope="module")
 def expected(results):
     """Return {name: frame} of the same tables and of the long runs."""
-    kept = PAPER / "long_run"
     paths = {name: [results / f"{name}.csv"] for name in STUDY_TABLES}
     for name in SCENE_TABLES:
         paths[name] = [results / scene["name"] / f"{name}.csv" for scene in SCENES]
-    paths["calibration"] = [kept / "calibration" / "calibration.csv"]
+    paths["calibration"] = [LONG_RUNS / "calibration" / "calibration.csv"]
     tables = {name: (TABLES[name], some) for name, some in paths.items() if some[0].exists()}
     for name in ("passages", "files", "displacements"):
-        tables[f"long_{name}"] = TABLES["passages"], [kept / name / "passages.csv"]
-    tables["long_run"] = MeanTimesTable, [kept / "far" / "mean_times.csv"]
+        tables[f"long_{name}"] = TABLES["passages"], [LONG_RUNS / name / "passages.csv"]
+    tables["long_run"] = MeanTimesTable, [LONG_RUNS / "far" / "mean_times.csv"]
     return {
         name: pd.DataFrame([row for path in some for row in table.read(path)])
         for name, (table, some) in tables.items()
@@ -265,7 +263,7 @@ def test_numbers_are_those_of_a_second_method(printed, expected, name):
 
 
 def test_the_long_run_is_what_its_shards_counted_and_agrees():
-    folder = PAPER / "long_run" / "far"
+    folder = LONG_RUNS / "far"
     request = load(read(folder / "config.yaml")).scenes[0]
     job = STAGES["dynamics"], request.box.scene(request.radii[0])
     point = read_point(folder / "dynamics.json", *job, request.arguments("dynamics"))
@@ -280,11 +278,11 @@ def test_the_long_run_is_what_its_shards_counted_and_agrees():
 
 def test_the_page_on_passages_has_the_numbers_of_the_build_and_of_the_long_run():
     """Every value with an error is that of a row, rounded as in the manuscript."""
-    paths = PAPER / "expected" / "passages.csv", *PAPER.glob("long_run/*/passages.csv")
+    paths = EXPECTED / "passages.csv", *LONG_RUNS.glob("*/passages.csv")
     rows = [row for path in paths for row in TABLES["passages"].read(path)]
     rows = [row for row in rows if row["stderr"]]
     printed = [with_error(row["estimate"], row["stderr"]) for row in rows]
-    rows_of_steps = TABLES["brownian"].read(PAPER / "long_run" / "brownian" / "brownian.csv")
+    rows_of_steps = TABLES["brownian"].read(LONG_RUNS / "brownian" / "brownian.csv")
     printed += [with_error(r["estimate"], r["stderr"]) for r in rows_of_steps]
     for row in of(rows, quantity="rate", periodic="x"):  # in files per h/v_th, h = 1
         unit = (2 * row["discs"] - 1) ** 0.5

@@ -6,7 +6,7 @@ Without these tests a comparison beyond its bound, or a table without any, could
 import math
 
 import pytest
-from checkout import EXPECTED
+from factory import EXPECTED
 
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs_paper.catalogue import STUDIES, STUDY_TABLES

@@ -8,9 +8,9 @@ import os
 
 import pandas as pd
 import pytest
-from checkout import EXPECTED, REPOSITORY
+from checkout import REPOSITORY
 from commands import python
-from factory import empty
+from factory import EXPECTED, empty
 
 from twodiscs.analysis.tables import GridTable
 from twodiscs_paper.configuration.yaml_files import load, read

@@ -5,12 +5,11 @@ Without these tests an estimator, an engine or c of what accuracy costs could be
 
 import math
 from itertools import pairwise, product
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from factory import empty, of
+from factory import LONG_RUNS, empty, of
 from figure_cases import points, unclear
 
 from twodiscs.dynamics.engine import find_engine
@@ -24,7 +23,6 @@ from twodiscs_paper.studies.accuracy_cost import figure, figure_by_radius, scala
 from twodiscs_paper.studies.accuracy_cost import measure as costs
 from twodiscs_paper.studies.accuracy_cost.study import AccuracyCostTable
 
-FOLDER = Path(__file__).parents[2] / "paper" / "long_run" / "accuracy_cost"
 PAPER = Scene(1.5, 1.0, 0.2)
 
 #: A false alarm in 6e-7 of all seeds.
@@ -230,7 +228,7 @@ def test_a_long_run_is_made_of_all_methods(given):
 
 @pytest.fixture(scope="module")
 def long():
-    return AccuracyCostTable.read(FOLDER / "accuracy_cost.csv")
+    return AccuracyCostTable.read(LONG_RUNS / "accuracy_cost" / "accuracy_cost.csv")
 
 
 # The figures --------------------------------------------------------------------------------------

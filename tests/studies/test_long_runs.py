@@ -6,12 +6,11 @@ A dozen scores are held to five standard errors: a false alarm in fewer than 1e-
 """
 
 import math
-from pathlib import Path
 
 import pandas as pd
 import pytest
 import yaml
-from factory import empty, of
+from factory import EXPECTED, LONG_RUNS, empty, of
 
 from twodiscs.dynamics.two.hop_clusters import HOPS_PER_BLOCK
 from twodiscs.points.base import read_json
@@ -24,12 +23,10 @@ from twodiscs_paper.studies.passages.study import BrownianTable, PassagesTable
 from twodiscs_paper.studies.tails import measure as tails
 from twodiscs_paper.studies.tails.study import TailsTable
 
-PAPER = Path(__file__).resolve().parents[2] / "paper"
-
 
 def kept(name, table):
     """Return (configuration, rows, counts or None) of a long run."""
-    folder = PAPER / "long_run" / name
+    folder = LONG_RUNS / name
     configuration = yaml.safe_load((folder / "config.yaml").read_text(encoding="utf-8"))
     counts = next((read_json(path) for path in folder.glob("*.json")), None)
     return configuration, table.read(folder / f"{table.name()}.csv"), counts
@@ -69,7 +66,7 @@ def test_counts_are_of_all_blocks_and_points_of_their_configuration():
 def test_a_table_is_that_of_its_counts(name, monkeypatch):
     """``snakemake renew`` writes these rows. The largest radii of tori take seconds."""
     monkeypatch.setattr("twodiscs.model.many_geometry.largest_known_radius", lambda *box: 1.0)
-    (found,) = (one for one in long_run_tables(PAPER / "long_run") if one[0].parent.name == name)
+    (found,) = (one for one in long_run_tables(LONG_RUNS) if one[0].parent.name == name)
     path, table, rows = found
     found = pd.DataFrame([empty(table, **row) for row in rows])
     pd.testing.assert_frame_equal(found, pd.DataFrame(table.read(path)), rtol=1e-9, atol=0)
@@ -152,7 +149,7 @@ def test_both_starts_of_a_small_torus_have_one_pressure():
 )
 def test_long_runs_agree_with_the_build(name, table, quantity, keys, fewest):
     _, found, _ = kept(name, table)
-    rows = of(table.read(PAPER / "expected" / f"{table.name()}.csv"), quantity=quantity)
+    rows = of(table.read(EXPECTED / f"{table.name()}.csv"), quantity=quantity)
     expected = of(rows, scene="paper") or rows
     compared = 0
     for row in of(found, quantity=quantity):

@@ -9,11 +9,10 @@ fewer than 2e-5 of all seeds.
 import math
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import pytest
-from factory import empty, of
+from factory import LONG_RUNS, empty, of
 from marks import slow
 
 from twodiscs.dynamics.two import strip
@@ -246,8 +245,8 @@ def test_the_measured_density_is_the_limit_of_long_waves():
     assert abs(found.value) < 5 * found.stderr < 0.1 * shortest
 
 
-LONG_RUNS = {"kept": []} | {
-    name: PassagesTable.read(Path(__file__).parents[2] / f"paper/long_run/{name}/passages.csv")
+KEPT = {"kept": []} | {
+    name: PassagesTable.read(LONG_RUNS / name / "passages.csv")
     for name in ("files", "displacements")
 }
 
@@ -295,7 +294,7 @@ def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small, monkeypatch):
         limit = [row for row in rows if row["method"] == "limit"]
         for module in (figure, figure_transmission, figure_diffusion):
             for some in (limit, rows):
-                assert module.draw(Box(1.0, 4.0), {"passages": some} | LONG_RUNS)
+                assert module.draw(Box(1.0, 4.0), {"passages": some} | KEPT)
 
 
 # Friction ----------------------------------------------------------------------------------------

@@ -7,12 +7,11 @@ Statistical comparisons are held to five standard errors.
 
 import math
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
-from factory import of, written
+from factory import LONG_RUNS, of, written
 from marks import slow
 from mpmath import mpf
 from scipy.stats import chi2, norm
@@ -30,7 +29,7 @@ from twodiscs_paper.studies.stability import calibration, figure, figure_runs
 from twodiscs_paper.studies.stability import measure as stability
 from twodiscs_paper.studies.stability.study import CalibrationTable, StabilityTable
 
-KEPT = Path(__file__).parents[2] / "paper" / "long_run" / "calibration"
+KEPT = LONG_RUNS / "calibration"
 PAPER = td.Box(1.5, 1.0)
 LARGEST = "largest radius"
 BOXES = [PAPER, td.Box(3.0, 1.0), td.Box(1e6, 1e-6), td.Box(1e-6, 1e6)]

@@ -14,12 +14,12 @@ from pathlib import Path
 import pydantic  # noqa: F401
 import smart_open  # noqa: F401
 import yaml
+from factory import EXPECTED
 from snakemake import cli
 
 cli.get_argument_parser()  # finds the plug-ins, once for all copies
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-EXPECTED = REPOSITORY / "paper" / "expected"
 PARTS = ("workflow", "profiles", "src", "config", "paper", "Snakefile", "CITATION.cff")
 
 MODULE = """
