@@ -22,10 +22,6 @@ def pytest_collection_modifyitems(items):
     """Workers begin with the file of the one build, because the build takes longest."""
     if "PYTEST_XDIST_WORKER" not in os.environ:
         return
-
-    def file_scene(item):
-        return item.nodeid.partition("::")[0]
-
-    built = {file_scene(item) for item in items if "complete" in item.fixturenames}
-    first = min(built, key=lambda file: ("test_build" not in file, file), default=None)
-    items.sort(key=lambda item: file_scene(item) != first)
+    built = {item.path for item in items if "complete" in item.fixturenames}
+    first = min(built, key=lambda file: (file.stem != "test_build", file), default=None)
+    items.sort(key=lambda item: item.path != first)

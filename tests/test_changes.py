@@ -17,6 +17,7 @@ import pytest
 import yaml
 from checkout import Checkout
 from commands import python
+from effect_scenes import SCENES
 from figure_cases import BOXES, OTHERS, draw, tables_of
 from test_examples import blocks, page
 
@@ -127,10 +128,7 @@ def check_event():
     for other in (
         td.Scene(1.5, 1.0, 0.3),
         td.Scene(1.5, 1.0, 0.38),
-        td.Scene(1.5, 1.0, 0.2, field=0.4),
-        td.Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5),
-        td.Scene(1.5, 1.0, 0.15, radius_ratio=0.6, mass_ratio=3.0),
-        td.Scene(1.5, 1.0, 0.2, periodic="x"),
+        *map(SCENES.get, ("field", "rough", "unequal", "channel")),
         td.Scene(1.5, 1.0, 0.15, discs=3),
     ):
         assert {f"{own}_time", f"{own}_area"} <= compared(other)

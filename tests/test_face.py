@@ -103,13 +103,11 @@ def test_results_are_those_of_the_pipeline(simulated, sampled, intervals):
     bins = [row for row in SCENE_TABLES["hop_histogram"].rows(points) if row["bins"] == "equal"]
     assert intervals.mean.value == bins[0]["mean"]
     # The bins of a call widen; where both have an edge, as many intervals are below it.
-    below = dict(
-        zip([b["right"] for b in bins], np.cumsum([b["count"] for b in bins]), strict=True)
-    )
-    found = dict(zip(intervals.edges[1:], np.cumsum(intervals.counts), strict=True))
-    common = below.keys() & found.keys()
+    below = pd.DataFrame(bins).set_index("right")["count"].cumsum()
+    found = pd.Series(intervals.counts, intervals.edges[1:]).cumsum()
+    common = below.index.intersection(found.index)
     assert len(common) > 20
-    assert all(below[edge] == found[edge] for edge in common)
+    assert below[common].equals(found[common])
     followed = SCENE_TABLES["trajectory"].rows(box, 0.2, scene.trajectory_seed)
     path = td.trajectory(SCENE, seed=7, name="one").assign(z1=None, z2=None)
     assert path[[*followed[0]]].to_dict("records") == followed
@@ -120,7 +118,6 @@ def test_seeds_tell_methods_boxes_and_radii_apart():
     scenes = [SCENE, SCENE.with_radius(0.1), td.Scene(1.5, 1.1, 0.2), *SCENES.values()]
     found = [job_seed(scene, m, 1, None) for scene in scenes for m in ("dynamics", "monte_carlo")]
     assert len({*found}) == len(found)
-    assert job_seed(SCENE, "dynamics", 1, "a") != job_seed(SCENE, "dynamics", 2, "a")
 
 
 def test_some_events_and_quantities_are_those_of_all(simulated, sampled):
@@ -254,11 +251,8 @@ def test_the_exact_table_holds_the_exact_numbers():
     assert math.isnan(table["volume"][0.9])
     for radius, row in table.drop(0.9).iterrows():
         scene = td.Scene(1.5, 1.0, radius, field=0.2)
-        assert row["volume"] == td.volume(scene)
-        for quantity, area in td.areas(scene).items():
-            assert row[quantity] == area
-        for quantity, time in td.mean_times(scene).items():
-            assert row[quantity] == time or (time is None and math.isnan(row[quantity]))
+        known = pd.Series({"volume": td.volume(scene), **td.areas(scene), **td.mean_times(scene)})
+        np.testing.assert_array_equal(row[known.index].astype(float), known.astype(float))
 
 
 def test_a_scene_prints_what_it_is():

@@ -12,12 +12,11 @@ import pytest
 from checkout import REPOSITORY
 from snakemake.utils import update_config
 
-from twodiscs.dynamics import runs
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.events import EVENT_AXES, EVENTS, HOPS
 from twodiscs.model.scene import Box, Scene
 from twodiscs.model.seeds import job_seed, stream_seed
-from twodiscs_paper.configuration import scene_block, yaml_files
+from twodiscs_paper.configuration import yaml_files
 from twodiscs_paper.configuration.request import RequestedQuantities
 from twodiscs_paper.configuration.yaml_files import ConfigError, read
 
@@ -287,10 +286,6 @@ def test_what_is_about_a_plain_scene_needs_one():
     with pytest.raises(ConfigError, match="shared must leave out 'stability' unless"):
         yaml_files.load({"scenes": [tiny], "shared": ["stability"]})
     assert yaml_files.load({"scenes": [tiny], "shared": ["errata"]}).main.name == "plain"
-
-
-def test_the_fewest_intervals_are_a_block():
-    assert scene_block.LEAST_INTERVALS == runs.CHAINS_PER_BLOCK * runs.CHAIN_HOPS
 
 
 def test_radii_too_close_to_the_largest_are_refused_for_dynamics_alone():

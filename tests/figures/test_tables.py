@@ -138,6 +138,11 @@ def long_run(name):
     return read_table(LONG_RUNS / name / "passages.csv")
 
 
+#: What rows on the last hop of the first scene have in common, without effects.
+PLAIN_HOPS = {"width": 1.5, "height": 1.0, "event": "horizontal_hop"}
+PLAIN_HOPS |= {"periodic": None, "friction": None}
+
+
 def passage_rows():
     """Return (rows of the build for which a long run has none of the same hop, rows of it)."""
     kept = [row for row in long_run("passages") if row["scene"] != "pause"]
@@ -148,13 +153,11 @@ def passage_rows():
 
 def passage_cases():
     rows, kept = passage_rows()
-    plain = {"width": rows[0]["width"], "height": rows[0]["height"], "event": "horizontal_hop"}
-    plain |= {"periodic": None, "friction": None}
-    ours = select([*rows, *kept], **plain)
+    ours = select([*rows, *kept], **PLAIN_HOPS)
     for inertia, look in passages.INERTIA_LOOKS.items():
         own = select(ours, moment_of_inertia=inertia)
         kappa, times = select(own, quantity="coefficient"), select(own, quantity="passage_time")
-        built = select(table("passages"), quantity="passage_time", **plain)
+        built = select(table("passages"), quantity="passage_time", **PLAIN_HOPS)
         distances = {r["distance"] for r in select(built, moment_of_inertia=inertia)}
         times = [row for row in times if row["distance"] in distances]
         yield "passages", "times", look, columns(times, "distance")
@@ -338,9 +341,7 @@ def test_a_line_across_a_panel_is_at_the_value_that_is_due(name, panel):
 
 def test_what_passages_leave_falls_at_twice_their_rate():
     """The curves κ exp(−2κt/τ) of the figure, at all their times."""
-    first = table("passages")[0]
-    same = {"width": first["width"], "height": first["height"], "event": "horizontal_hop"}
-    rows = select([row for some in passage_rows() for row in some], **same, friction=None)
+    rows = select([row for some in passage_rows() for row in some], **PLAIN_HOPS)
     lines = [n for n in drawn("passages")["curves"].lines if n.get_color() == style.BLACK]
     shown = [line.get_data() for line in lines if len(line.get_xdata()) == 30]
     due = []
