@@ -119,7 +119,7 @@ def test_accuracy_has_three_forms():
     assert asked({"top_wall": 1})["any_wall"] == 3e-4
 
 
-def test_numbers_have_one_form():
+def test_numbers_have_one_form(tmp_path):
     mapping = deepcopy(PLAIN)
     yaml_files.load(mapping)
     assert mapping == PLAIN  # which stays as it was
@@ -134,6 +134,8 @@ def test_numbers_have_one_form():
     assert requests[0].keys["dynamics"] == {"0.1": 0.1, "0.2": 0.2}
     assert type(requests[0].box.height) is float
     assert type(requests[0].event_budget) is int
+    (tmp_path / "huge.yaml").write_text("width: 1.0e+30")  # an integer beyond those of doubles
+    assert read(tmp_path / "huge.yaml") == {"width": 1e30}
 
 
 # Parameters of jobs

@@ -50,6 +50,12 @@ def test_two_discs_among_no_others_are_two_discs(hop, effects):
 
 
 @pytest.mark.parametrize("module", [of_two, of_many])
+def test_the_hop_at_time_0_is_not_among_those_after_it(module):
+    sums, _ = module.hop_sums(Scene(1.5, 1.0, 0.246), HOP, [1e-12], 1, 3)
+    assert not sums.any()
+
+
+@pytest.mark.parametrize("module", [of_two, of_many])
 def test_the_last_size_has_all_larger_clusters_which_are_not_followed(module, monkeypatch):
     clusters = Scene(1.5, 1.0, 0.246), HOP, 6.0, 16, 11
     sizes, events = module.cluster_sizes(*clusters)

@@ -57,6 +57,13 @@ def test_a_trajectory_goes_on_from_its_end(scene):
     np.testing.assert_allclose(rows[-1][4], whole[-1][4], rtol=0, atol=1e-9)
 
 
+@pytest.mark.parametrize("name", ["rough", "combination"])
+def test_a_row_has_the_disc_of_its_wall_or_both_discs(name):
+    for _, event, *discs, _ in follow(SCENES[name], 5, None, 40.0):
+        pair = (1, 2) if event.endswith(("hop", "collision")) else (None, None)
+        assert (*discs,) == ((int(event[-1]), None) if event.startswith("wall") else pair)
+
+
 @pytest.mark.parametrize(("disc", "axis", "ratio"), [*product((0, 1), (0, 1), (0.5, 2.0))])
 def test_each_disc_may_start_at_its_own_walls_and_not_beyond(disc, axis, ratio):
     """All energy is in the spin of this disc, whose mass is 1 or 2."""

@@ -162,11 +162,10 @@ def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes, kicks):
                 events += follow_pair(now, steps, gap, most, net, hops, law, kicks)
                 for l in range(HOPS_PER_BLOCK):
                     falls = states[2 * discs, l] < states[2 * discs + 1, l]
-                    n, m = np.int64(-net[l] if falls else net[l]), np.int64(hops[l])
+                    n = np.int64(-net[l] if falls else net[l])
                     own[0, k] += n
                     own[1, k] += n * n
-                    own[2, k] += m
-                    own[3, k] += m * m
+                    own[2, k] += np.int64(hops[l])
             for l in range(HOPS_PER_BLOCK):
                 size[l] += hops[l]
         for l in range(HOPS_PER_BLOCK):

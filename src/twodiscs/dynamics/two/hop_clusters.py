@@ -49,8 +49,8 @@ from twodiscs.theory import exact
 #: by less than the fraction of hops in it over their number.
 LARGEST_CLUSTER = 2**13
 
-#: The sums at each time after a hop: n = Σ s_0 s_k and n², N hops and N².
-N_HOP_SUMS = 4
+#: The sums at each time after a hop: n = Σ s_0 s_k, n², and N hops.
+N_HOP_SUMS = 3
 
 
 @inlined
@@ -70,8 +70,8 @@ class NetHops(NamedTuple):
     """The experiment: sums over the hops after time 0, at each of the ascending ``times``.
 
     If ``hopping``, the initial states are on the surface of the hop. The hop at time 0 then has the
-    direction s_0 in which they fall through it; otherwise s_0 is 1. ``sums`` are Σ n, Σ n², Σ N and
-    Σ N² over the replicas of each block (blocks, ``N_HOP_SUMS``, times; int64), from the replica
+    direction s_0 in which they fall through it; otherwise s_0 is 1. ``sums`` are Σ n, Σ n² and Σ N
+    over the replicas of each block (blocks, ``N_HOP_SUMS``, times; int64), from the replica
     ``first`` on. N is the number of hops, and n = Σ s_0 s_k.
     """
 
@@ -105,11 +105,10 @@ class NetHops(NamedTuple):
     def ended(self, i, replica, stretch):
         """Add the hops until one of the times; go on to the next one."""
         n = np.int64(self.rises[i] if self.falls[i] == 0.0 else -self.rises[i])
-        m, block = np.int64(self.hops[i]), (replica - self.first) // HOPS_PER_BLOCK
+        block = (replica - self.first) // HOPS_PER_BLOCK
         self.sums[block, 0, stretch] += n
         self.sums[block, 1, stretch] += n * n
-        self.sums[block, 2, stretch] += m
-        self.sums[block, 3, stretch] += m * m
+        self.sums[block, 2, stretch] += np.int64(self.hops[i])
         last = self.times.size - 1
         return self.times[min(stretch + 1, last)] - self.times[stretch]
 
@@ -124,17 +123,15 @@ class Clusters(NamedTuple):
     gap: float
     axis: tuple
     most: float  # hops of the last entry
-    falls: np.ndarray  # (lanes,), 1 if the separation falls at time 0, else 0
     hops: np.ndarray  # (lanes,)
     events: np.ndarray  # (lanes,), wall hits and collisions
     sizes: np.ndarray
     both_ways: bool | None = True
 
     def begin(self, i, state):
-        """Begin a cluster with the hop at time 0."""
-        # Zero counts as positive, so a hop that falls will be counted: begin without it.
-        falls = 1.0 if relative_motion(state, self.axis[0])[1] < 0.0 else 0.0
-        self.hops[i], self.falls[i] = 1.0 - falls, falls
+        """Begin a cluster; its hop at time 0 is counted on the way on which it falls."""
+        # Zero counts as positive, so a hop that falls is counted after time 0.
+        self.hops[i] = 0.0
         return self.gap
 
     def note(self, i, before, after, code, time, left):
@@ -148,10 +145,7 @@ class Clusters(NamedTuple):
 
     def ended(self, i, replica, stretch):
         """Go on from the reversed initial state; after that count the cluster."""
-        if stretch == 0:
-            # The hop at time 0 has been counted. Reversed, it falls if it rose.
-            self.hops[i] -= 1.0 - self.falls[i]
-        else:
+        if stretch == 1:
             self.sizes[min(np.int64(self.hops[i]), self.sizes.size - 1)] += 1
         return -self.gap * (1 - stretch)
 
@@ -197,7 +191,7 @@ def _followed(experiment, scene, hop, blocks, seed, first, on_surface=True):
 def hop_sums(scene, hop, times, blocks, seed, first=0, on_surface=True):
     """Return (sums, events) of ``blocks`` blocks of ``HOPS_PER_BLOCK`` initial states each.
 
-    ``sums`` (blocks, ``N_HOP_SUMS``, times; integers) have Σ n, Σ n², Σ N and Σ N² at the ascending
+    ``sums`` (blocks, ``N_HOP_SUMS``, times; integers) have Σ n, Σ n² and Σ N at the ascending
     ``times``, lengths over unit speed, as in ``NetHops``. Initial states are on the surface of the
     ``hop``, weighted by the flux through it, or of the invariant measure unless ``on_surface``. The
     blocks are those from the ``first`` one on of the streams of ``seed``.
@@ -218,7 +212,7 @@ def cluster_sizes(scene, hop, gap, blocks, seed, first=0):
     a time ``gap``. Arguments are otherwise as for ``hop_sums``.
     """
     scene, hop = hopping_along(scene, hop, "x")
-    falls, hops, events = np.zeros((3, LANES))
+    hops, events = np.zeros((2, LANES))
     most, sizes = float(LARGEST_CLUSTER), np.zeros(LARGEST_CLUSTER + 1, np.int64)
-    clusters = Clusters(float(gap), _axis(hop), most, falls, hops, events, sizes)
+    clusters = Clusters(float(gap), _axis(hop), most, hops, events, sizes)
     return sizes, _followed(clusters, scene, hop, blocks, seed, first)
