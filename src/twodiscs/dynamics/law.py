@@ -22,10 +22,10 @@ from twodiscs.sampling.rejection import RejectionSampler, draw_velocities, rejec
 
 #: The event that ended a free flight. Codes are floats because they travel in the same registers as
 #: the state. Negative codes are no events: a disc leaves its periodic cell and comes back on the
-#: other side, or a kick ends the flight.
+#: other side.
 END_OF_TIME, WALL_X1, WALL_Y1, WALL_X2, WALL_Y2, DISC = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0
 WALL_Z1, WALL_Z2 = 6.0, 7.0
-WRAP_X, WRAP_Y, WRAP_Z, KICK_DUE = -1.0, -2.0, -3.0, -4.0
+WRAP_X, WRAP_Y, WRAP_Z = -1.0, -2.0, -3.0
 
 #: Normal speeds of approach below this (four roundings of the speed scale, 1) are rest. A collision
 #: at such a speed would be lost in the rounding of the velocities, and happen again and again.
