@@ -85,6 +85,18 @@ def test_any_strip_has_the_exact_rate(scene, hop, shorter):
     assert shorter > 1 or all_events == pytest.approx(due, rel=0.2)
 
 
+def test_squares_are_those_of_the_counts_of_a_start():
+    (scene, hop), seen = PLACES[0], set()
+    band = strip.choose_strip(scene, hop)
+    for block in range(100):
+        found, _ = strip.run_blocks(scene, hop, band, 1, block, block + 1, replicas=1)
+        starts, counts, squares = found.reshape(3, -1)
+        assert np.array_equal(squares, counts**2)
+        assert starts[counts > 0].sum() <= starts.sum() == 1
+        seen |= {*counts}
+    assert seen >= {0, 1, 2}
+
+
 @pytest.mark.parametrize(("scene", "hop"), COUNTED)
 def test_strips_of_effects_have_the_exact_rate(scene, hop):
     band = strip.choose_strip(scene, hop)
