@@ -15,6 +15,7 @@ import subprocess
 from functools import cache
 
 import pages
+import pandas as pd
 import pytest
 import yaml
 from checkout import REPOSITORY, fresh
@@ -26,7 +27,6 @@ from snakemake.cli import get_argument_parser
 import twodiscs
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.measure.measurements import STATUSES
-from twodiscs_paper.catalogue import TABLES
 from twodiscs_paper.configuration import yaml_files
 from twodiscs_paper.configuration.yaml_files import read
 from twodiscs_paper.pipeline import job_cost
@@ -275,27 +275,22 @@ def test_make_knows_what_to_do(example):
     assert run.returncode == 0, run.stderr
 
 
-def targets():
-    """Return {options that matter: targets} of all snakemake commands; without any, it is all."""
-    found = {}
-    for example in commands("snakemake"):
-        given = get_argument_parser().parse_args(shlex.split(example)[1:])
-        assert all((REPOSITORY / name / "config.yaml").is_file() for name in given.profile or ())
-        chosen = ("--configfile", str(given.configfile[0])) if given.configfile else ()
-        found.setdefault(chosen, set()).update(given.targets or ["all"])
-    return found
-
-
 def test_snakemake_knows_every_target(tmp_path):
     """Dry runs with the default configuration and the scenes of all pages, one for each options."""
     checkout, mapping = fresh(tmp_path / "checkout"), with_examples()
     # An accuracy that its budget reaches needs no forecast.
     mapping["scenes"] = [scene | {"accuracy": 0.5} for scene in mapping["scenes"]]
     checkout.configuration.write_text(yaml.safe_dump(mapping))
-    assert {"volume", "check", "all"} <= targets()[()]
+    targets = {}  # {options that matter: targets}
+    for example in commands("snakemake"):
+        given = get_argument_parser().parse_args(shlex.split(example)[1:])
+        assert all((REPOSITORY / name / "config.yaml").is_file() for name in given.profile or ())
+        chosen = ("--configfile", str(given.configfile[0])) if given.configfile else ()
+        targets.setdefault(chosen, set()).update(given.targets or ["all"])
+    assert {"volume", "check", "all"} <= targets[()]
     files = ("config/draft.yaml", "config/scenes/field.yaml")
-    assert targets().keys() == {(), *(("--configfile", file) for file in files)}
-    for options, names in targets().items():
+    assert targets.keys() == {(), *(("--configfile", file) for file in files)}
+    for options, names in targets.items():
         assert checkout.jobs(*options, "--", *sorted(names))
 
 
@@ -305,10 +300,8 @@ def test_snakemake_knows_every_target(tmp_path):
 def test_numbers_of_pages_are_those_of_the_expected_results():
     events = re.search(r"^\| 1.5 × 1 \|.*\| (\S+) \|$", page("README.md"), re.MULTILINE)[1]
     assert f"| `paper` | 3e-4 | {events} |" in page("docs/accuracy-and-cost.md")
-    effects = [
-        abs(row["z"]) for row in TABLES["effects"].read(EXPECTED / "effects.csv") if row["z"]
-    ]
-    assert f"largest |z| of the mean times is {max(effects):.3g}." in page("docs/results.md")
+    largest = pd.read_csv(EXPECTED / "effects.csv")["z"].abs().max()
+    assert f"largest |z| of the mean times is {largest:.3g}." in page("docs/results.md")
 
 
 # The check ----------------------------------------------------------------------------------------

@@ -2,14 +2,12 @@
 
 import numpy as np
 import pytest
-from figure_cases import tables_of, unclear
+from figure_cases import PAPER, tables_of, unclear
 from matplotlib.figure import Figure
 
 from twodiscs.analysis.tables import TrajectoryTable
 from twodiscs.figures import motion, style
 from twodiscs.model.scene import Box
-
-BOX = Box(1.5, 1.0)
 
 
 def test_the_panels_beneath_show_most_hops_and_a_hop_that_is_not_undone():
@@ -27,7 +25,7 @@ def test_the_panels_beneath_show_most_hops_and_a_hop_that_is_not_undone():
 @pytest.mark.parametrize(
     ("box", "axis"),
     [
-        (BOX, "x"),
+        (PAPER, "x"),
         (Box(1.0, 1.0), "x"),
         (Box(1.0, 1.5), "y"),
         (Box(1.5, 1.0, periodic="x"), "y"),
@@ -37,7 +35,7 @@ def test_the_panels_beneath_show_most_hops_and_a_hop_that_is_not_undone():
 )
 def test_the_longer_side_that_ends_at_walls_is_shown_with_its_hops(box, axis):
     """The panel beneath enlarges a short trajectory too; a hop that is not undone has its own."""
-    rows = tables_of("paper")["trajectory"][: None if box == BOX else 120]
+    rows = tables_of("paper")["trajectory"][: None if box == PAPER else 120]
     with style.context():
         figure = motion.draw_trajectory(box, rows, radius=0.24)
     assert unclear(figure) == []
@@ -54,10 +52,10 @@ def test_the_longer_side_that_ends_at_walls_is_shown_with_its_hops(box, axis):
     assert start <= first < last <= end
     shaded = [(area.get_x(), area.get_x() + area.get_width()) for area in figure.axes[0].patches]
     np.testing.assert_allclose(shaded, [axes.get_xlim() for axes in figure.axes[1:]], rtol=1e-9)
-    if box == BOX:  # the first three hops are a 50th of a panel apart
+    if box == PAPER:  # the first three hops are a 50th of a panel apart
         assert last - first == pytest.approx(50 * np.diff(times).min())
         assert figure.axes[2].get_xlim() == pytest.approx((times[3] - 25, times[3] + 25))
-    assert len(figure.axes) == 2 + (box == BOX)
+    assert len(figure.axes) == 2 + (box == PAPER)
 
 
 @pytest.mark.parametrize(
@@ -132,5 +130,5 @@ def test_a_density_that_bins_are_too_wide_for_is_not_marked():
     for hop, space in (("vertical_hop", 1.0 - 0.4), ("horizontal_hop", 1.0 - 0.8)):
         for factor in (0.99, 1.01):
             axes, right = Figure().subplots(), factor * space / motion.FINE_BINS
-            motion._mark_zero(axes, BOX, row | {"event": hop, "right": right}, "black")
+            motion._mark_zero(axes, PAPER, row | {"event": hop, "right": right}, "black")
             assert len(axes.lines) == (factor < 1)

@@ -20,7 +20,7 @@ from twodiscs.figures.style import EVENT_LOOKS
 from twodiscs.model.events import HOPS, SHELL_EVENTS
 from twodiscs.model.scene import Box
 from twodiscs.theory import exact
-from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES, read_table
+from twodiscs_paper.catalogue import STUDY_FIGURES, TABLES, read_table
 from twodiscs_paper.draw import DRAW
 from twodiscs_paper.studies.effects import figure as effects
 from twodiscs_paper.studies.more_discs import figure_tori as tori
@@ -37,8 +37,6 @@ from twodiscs_paper.studies.tails import figure as tails
 from twodiscs_paper.studies.thresholds.measure import leading_law, near
 from twodiscs_paper.study import select
 
-TABLES = SCENE_TABLES | STUDY_TABLES
-
 
 @cache
 def table(name):
@@ -48,7 +46,7 @@ def table(name):
         made = enumerate({"variant": v, "ratio": 0.1} for v in variants)
         return [empty(TABLES[name], **row, instructions=4000 + i) for i, row in made]
     folder = EXPECTED / "paper" if name in SCENE_TABLES else EXPECTED
-    return TABLES[name].read(folder / f"{name}.csv")
+    return read_table(folder / f"{name}.csv")
 
 
 @pytest.fixture(autouse=True, scope="module")

@@ -17,7 +17,7 @@ from twodiscs.analysis.tables import SCENE_TABLES, MeanTimesTable
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.points.base import reached
-from twodiscs_paper.catalogue import STUDY_TABLES, TABLES
+from twodiscs_paper.catalogue import read_table
 from twodiscs_paper.configuration.yaml_files import load, read
 from twodiscs_paper.pipeline.documents.manuscript import CONSTANTS
 from twodiscs_paper.pipeline.points import read_point, read_shards
@@ -202,18 +202,15 @@ def test_every_number_and_column_of_cells_has_rows_in_the_expected_tables(printe
 
 @pytest.fixture(scope="module")
 def expected(results):
-    """Return {name: frame} of the same tables and of the long runs."""
-    paths = {name: [results / f"{name}.csv"] for name in STUDY_TABLES}
-    for name in SCENE_TABLES:
-        paths[name] = [results / scene["name"] / f"{name}.csv" for scene in SCENES]
+    """Return {name: frame} of some of the same tables and of long runs."""
+    paths = {name: [results / f"{name}.csv"] for name in ("tails", "more_discs")}
+    paths["check"] = [results / scene["name"] / "check.csv" for scene in SCENES]
     paths["calibration"] = [LONG_RUNS / "calibration" / "calibration.csv"]
-    tables = {name: (TABLES[name], some) for name, some in paths.items() if some[0].exists()}
-    for name in ("passages", "files", "displacements"):
-        tables[f"long_{name}"] = TABLES["passages"], [LONG_RUNS / name / "passages.csv"]
-    tables["long_run"] = MeanTimesTable, [LONG_RUNS / "far" / "mean_times.csv"]
+    paths["long_displacements"] = [LONG_RUNS / "displacements" / "passages.csv"]
+    paths["long_run"] = [LONG_RUNS / "far" / "mean_times.csv"]
     return {
-        name: pd.DataFrame([row for path in some for row in table.read(path)])
-        for name, (table, some) in tables.items()
+        name: pd.DataFrame([row for path in some for row in read_table(path)])
+        for name, some in paths.items()
     }
 
 
@@ -279,10 +276,10 @@ def test_the_long_run_is_what_its_shards_counted_and_agrees():
 def test_the_page_on_passages_has_the_numbers_of_the_build_and_of_the_long_run():
     """Every value with an error is that of a row, rounded as in the manuscript."""
     paths = EXPECTED / "passages.csv", *LONG_RUNS.glob("*/passages.csv")
-    rows = [row for path in paths for row in TABLES["passages"].read(path)]
+    rows = [row for path in paths for row in read_table(path)]
     rows = [row for row in rows if row["stderr"]]
     printed = [with_error(row["estimate"], row["stderr"]) for row in rows]
-    rows_of_steps = TABLES["brownian"].read(LONG_RUNS / "brownian" / "brownian.csv")
+    rows_of_steps = read_table(LONG_RUNS / "brownian" / "brownian.csv")
     printed += [with_error(r["estimate"], r["stderr"]) for r in rows_of_steps]
     for row in of(rows, quantity="rate", periodic="x"):  # in files per h/v_th, h = 1
         unit = (2 * row["discs"] - 1) ** 0.5

@@ -13,7 +13,7 @@ from itertools import pairwise
 import mpmath
 import numpy as np
 import pytest
-from factory import empty, of, written
+from factory import BOX, empty, of, written
 
 from twodiscs.analysis.scores import student_deviate
 from twodiscs.model.events import HOPS
@@ -22,8 +22,6 @@ from twodiscs.theory import laws
 from twodiscs_paper.studies.distributions import measure as distributions
 from twodiscs_paper.studies.distributions.study import DistributionsTable
 from twodiscs_paper.studies.single import tail_constant
-
-BOX = Box(1.5, 1.0)
 
 
 def bins_of(edges, chances, intervals):

@@ -29,8 +29,7 @@ from twodiscs_paper.studies.effects import measure as effects
 from twodiscs_paper.studies.effects.study import SCENES, EffectsCostTable, EffectsTable
 from twodiscs_paper.studies.single import tail_constant
 
-NAMES = [*SCENES]
-FILES = [Path(__file__).parents[2] / "config" / "scenes" / f"{name}.yaml" for name in NAMES]
+FILES = [Path(__file__).parents[2] / "config" / "scenes" / f"{name}.yaml" for name in SCENES]
 PLAIN = Box(1.5, 1.0)
 ROUGH = Scene(1.5, 1.0, 0.24, moment_of_inertia=0.5)
 SEED = 1908
@@ -62,7 +61,7 @@ def test_unmet_starts_are_those_whose_paths_have_no_collision(scene, monkeypatch
 @cache
 def request(name):
     """Return the ``SceneRequest`` of a file."""
-    (scene,) = load({"seed": SEED} | read(FILES[NAMES.index(name)])).scenes
+    (scene,) = load({"seed": SEED} | read(FILES[SCENES.index(name)])).scenes
     return scene
 
 
@@ -76,7 +75,7 @@ def tables_of(*names):
     return tables
 
 
-BOXES = {name: request(name).box.parameters() for name in NAMES}
+BOXES = {name: request(name).box.parameters() for name in SCENES}
 
 
 @pytest.fixture(scope="module")
@@ -86,7 +85,7 @@ def rows(tmp_path_factory):
     def survivors(scene, times, blocks, seed):
         return [2400, 2000, 1900] if scene.effects else [15, 1, 0]
 
-    given = {"tables": tables_of(*NAMES), "scenes": BOXES, "seed": SEED}
+    given = {"tables": tables_of(*SCENES), "scenes": BOXES, "seed": SEED}
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(effects, "survivors", survivors)
         return written(tmp_path_factory.mktemp("effects"), EffectsTable, **given)
@@ -114,7 +113,7 @@ def test_starts_that_have_not_met_are_counted_at_every_radius_where_discs_meet_s
 
 
 def test_rows_have_the_exact_times_with_and_without_effects(rows):
-    for name in NAMES:
+    for name in SCENES:
         asked, seen = request(name), []
         for row in rows:
             if row["scene"] != name or row["quantity"] == "never_met_share":
@@ -158,7 +157,7 @@ RATIOS = {"without_effects": 1.0, "plain": 0.99, "plain_walls": 1.05}
 
 def costs():
     """Return rows of effects_cost.csv: ratios of 0.5, 0.6, … in their order."""
-    ratios = RATIOS | {name: 0.5 + 0.1 * i for i, name in enumerate((*NAMES, *price.ADDITIONS))}
+    ratios = RATIOS | {name: 0.5 + 0.1 * i for i, name in enumerate((*SCENES, *price.ADDITIONS))}
     rows = [{"variant": v, "ratio": r} for v, r in (ratios | {"all effects": 0.007}).items()]
     return [empty(EffectsCostTable, instructions=4000 + i, **row) for i, row in enumerate(rows)]
 
@@ -188,7 +187,7 @@ def test_costs_are_the_times_over_the_package_without_effects():
     numbers = {(text.get_text(), text.xy[1]) for text in axes.texts}
     for i, row in enumerate(costs()):
         assert {(f"{1 / row['ratio']:.3g}", i), (f"{row['instructions']}", i)} <= numbers
-    assert [label.get_text() for label in axes.get_yticklabels()][3:] == [*NAMES, *price.ADDITIONS]
+    assert [label.get_text() for label in axes.get_yticklabels()][3:] == [*SCENES, *price.ADDITIONS]
 
 
 # The cost of an event -----------------------------------------------------------------------------

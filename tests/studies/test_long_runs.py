@@ -73,14 +73,10 @@ def test_a_table_is_that_of_its_counts(name, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("name", "table"),
-    [
-        *(("passages", PassagesTable), ("tails", TailsTable), ("brownian", BrownianTable)),
-        ("tori", ToriTable),
-    ],
+    "table", [PassagesTable, TailsTable, BrownianTable, ToriTable], ids=lambda table: table.name()
 )
-def test_the_parameters_of_a_long_run_are_those_of_a_part(name, table, monkeypatch):
-    configuration, *_ = kept(name, table)
+def test_the_parameters_of_a_long_run_are_those_of_a_part(table, monkeypatch):
+    configuration, *_ = kept(table.name(), table)
     monkeypatch.setitem(measure.PARTS, "long_run", lambda thresholds, limit: (thresholds, limit))
     monkeypatch.setattr(tails, "long_run", lambda *given: given)
     for module in (brownian, tori):

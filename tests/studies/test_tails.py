@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from factory import of, written
+from factory import BOX, of, written
 
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Box
@@ -23,7 +23,6 @@ from twodiscs_paper.studies.single import tail_constant
 from twodiscs_paper.studies.tails import measure as tails
 from twodiscs_paper.studies.tails.study import TailsTable
 
-BOX = Box(1.5, 1.0)
 PAPER = BOX.scene(0.24)
 
 
