@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from effect_scenes import SCENES
 from figure_cases import EFFECTS, unclear
-from PIL import Image
+from PIL import Image, ImageSequence
 
 import twodiscs as td
 from twodiscs.analysis.tables import TrajectoryTable
@@ -33,13 +33,12 @@ def rows():
 
 def unpacked(path):
     """Return [(milliseconds, pixels)] of the frames of a file that repeats for ever."""
-    found = []
     with Image.open(path) as image:
         assert image.info["loop"] == 0
-        for k in range(image.n_frames):
-            image.seek(k)
-            found.append((image.info["duration"], np.asarray(image.convert("RGB"), int)))
-    return found
+        return [
+            (one.info["duration"], np.asarray(one.convert("RGB"), int))
+            for one in ImageSequence.Iterator(image)
+        ]
 
 
 def at(*events, end=1000.0):
