@@ -198,10 +198,11 @@ class TransmissionRun(Run):
     def point(self, ranges):
         """Return estimates by their names in ``Transmission``, from {component: ranges}."""
         ((sums,), blocks), clusters, kappa = reached(ranges["times"]), {}, None
+        sums = sums.reshape(N_HOP_SUMS, len(KAPPA_TIMES))  # raises for sums of another form
         mean, others = self._neighbours
         if "clusters" in ranges:
             (sizes,), _ = reached(ranges["clusters"])
-            sizes = sizes.reshape(LARGEST_CLUSTER + 1)  # raises for sums of another form
+            sizes = sizes.reshape(LARGEST_CLUSTER + 1)
             clusters = {n: int(number) for n, number in enumerate(sizes) if number}
             law = partial(odd_clusters_per_passage, others=others)
             kappa = plateau(cluster_estimate(sizes), self._gap, mean, law)
@@ -212,6 +213,6 @@ class TransmissionRun(Run):
             "exact_mean": exact.mean_times(self.scene)[self.hop],
             "neighbour_mean": mean,
             "times": self._times,
-            "curve": time_estimates(sums.reshape(N_HOP_SUMS, -1), blocks * HOPS_PER_BLOCK),
+            "curve": time_estimates(sums, blocks * HOPS_PER_BLOCK),
             "components": {name: {"sums": sums} for name, sums in ranges.items()},
         }
