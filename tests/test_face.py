@@ -3,7 +3,6 @@
 Without these tests its numbers, texts and errors could be others than those of the pipeline.
 """
 
-import inspect
 import json
 import math
 import pickle
@@ -79,15 +78,6 @@ def test_every_name_is_defined_where_an_editor_looks_for_it():
     for name, module in homes.items():
         if callable(home := getattr(td, name)):
             assert (home.__module__, home.__name__) == (f"twodiscs.{module}", name)
-
-
-def test_defaults_are_those_of_a_configuration():
-    scene = yaml_files.load(
-        {"scenes": [{"name": "a", "box": {"width": 1.5, "height": 1.0}}]}
-    ).scenes[0]
-    sample, simulate = (inspect.signature(f).parameters for f in (td.sample, td.simulate))
-    found = (sample["shell"].default, simulate["budget"].default)
-    assert found == (scene.monte_carlo["shell"], scene.event_budget)
 
 
 # The numbers of the pipeline ----------------------------------------------------------------------
