@@ -155,12 +155,8 @@ class Laws:
         """Return a dynamics point; counts are Poisson, as precise as ``relative`` or more."""
         slowest = max(self.times[event] for event in events if event in self.times)
         duration = 2 * slowest / (relative**2 * replicas)
-        counts = {}
-        for event in events:
-            mean = 0.0
-            if event in self.times:
-                mean = self.scene.copies(event) * duration / self.times[event]
-            counts[event] = rng.poisson(mean, replicas)
+        means = {e: self.scene.copies(e) * duration / time for e, time in self.times.items()}
+        counts = {event: rng.poisson(means.get(event, 0.0), replicas) for event in events}
         if not self.scene.effects:  # as symmetry has it
             first = {}
             for wall in (event for event in events if event in WALLS):

@@ -21,6 +21,7 @@ import sys
 import tempfile
 import threading
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import chdir, contextmanager
 from pathlib import Path
 
@@ -132,13 +133,9 @@ def found_by(program, threads):
         if threads == 1:
             run()
         else:
-            several = [threading.Thread(target=run) for _ in range(threads)]
-            usual, threading.excepthook = threading.excepthook, failed.append
-            for one in several:
-                one.start()
-            for one in several:
-                one.join()
-            threading.excepthook = usual
+            with ThreadPoolExecutor(threads) as pool:
+                several = [pool.submit(run) for _ in range(threads)]
+            failed = [error for one in several if (error := one.exception())]
     after = look()
     if threads > 1:
         after["warnings"] = before["warnings"]

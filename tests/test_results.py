@@ -522,14 +522,12 @@ def test_tables_have_plain_values_beside_them(tmp_path):
 
 def test_bins_of_your_own_are_one_kind_and_may_be_empty():
     """A figure then begins with the first bin that has intervals."""
-    scene = td.Scene(1.5, 1.0, 0.2)
     for bins in ([0, 1e-9, 1, 2], [0, 1e-9]):
-        found = td.intervals(scene, "horizontal_hop", 1, bins=bins)
+        found = td.intervals(SCENE, "horizontal_hop", 1, bins=bins)
         assert found.counts[0] == 0
         assert found.at_zero.exact == pytest.approx(3 * math.sqrt(2) / (16 * 1.1))
         assert [row["bins"] for row in found.rows] == ["own"] * (len(bins) - 1)
-        whole, short = td.plot(found).axes
-        for axes in (whole, short):
+        for axes in td.plot(found).axes:
             steps = [patch.get_data().edges for patch in axes.patches]
             due = [np.array(bins[1:]) / found.mean.exact] * (len(bins) > 2)
             np.testing.assert_allclose(steps, due)
