@@ -4,6 +4,7 @@ Without these tests counts of the ensemble could miss an event, or end before or
 enough.
 """
 
+import math
 from dataclasses import replace
 from itertools import product
 
@@ -66,6 +67,12 @@ def test_products_are_those_of_the_counts_of_a_replica(scene):
     sums, products = find_engine(scene).counts.run_blocks(*given, replicas=1)
     assert np.array_equal(products, np.triu(np.outer(sums, sums)))
     assert len({*sums}) > 3
+
+
+def test_an_error_begins_with_the_first_count():
+    """Of one count in four replicas it is √((1/4 − 1/16)/4)/(1/4)."""
+    errors = runs.relative_errors(np.array([1, 0]), np.diag([1, 0]), 4)
+    assert errors.tolist() == [pytest.approx(math.sqrt(3) / 2), math.inf]
 
 
 def test_packed_counts_do_not_run_over():
