@@ -16,7 +16,7 @@ from theory.antiderivatives import TURNED
 
 from twodiscs.model.events import HOPS, SHELL_EVENTS, WALLS
 from twodiscs.model.scene import Box, Scene
-from twodiscs.sampling import montecarlo
+from twodiscs.sampling import montecarlo, streams
 from twodiscs.theory import exact
 
 
@@ -75,6 +75,37 @@ def test_hits_have_their_exact_probability(scene, thick):
         sampled = found[f"{event}_area"]
         expected = exact.shell_expectation(scene, event, sampled.epsilon)
         assert_binomial(sampled.hits, samples, expected / sampled.measure)
+
+
+def xoroshiro128plus(s0, s1):
+    """Yield the numbers of generators in the states ``s0`` and ``s1`` (n,), uint64."""
+
+    def rotated(bits, by):
+        return (bits << np.uint64(by)) | (bits >> np.uint64(64 - by))
+
+    while True:
+        yield s0 + s1
+        s1 = s0 ^ s1
+        s0, s1 = rotated(s0, 24) ^ s1 ^ (s1 << np.uint64(16)), rotated(s1, 37)
+
+
+@np.errstate(over="ignore")
+def test_samples_have_the_generator_of_its_authors():
+    """The first numbers of the implementation in C, and all hits of a block."""
+    one = xoroshiro128plus(*np.array([[1], [2]], np.uint64))
+    assert [int(next(one)[0]) for _ in range(4)] == [
+        3, 412333834243, 2360170716294286339, 9295852285959843169
+    ]  # fmt: skip
+    seed, block, n = np.uint64(5), 7, montecarlo.GENERATORS
+    steps = streams.open_stream(seed, block)[0] + streams.GOLDEN * np.arange(2 * n + 1, dtype="u8")
+    filled = np.array([streams.splitmix(step) for step in steps[1:]], np.uint64)
+    bits = xoroshiro128plus(filled[::2], filled[1::2] | np.uint64(1))
+    drawn = np.array([next(bits) for _ in range(2 * montecarlo.SAMPLES_PER_BLOCK // n)])
+    apart = (drawn >> np.uint64(32)) - (drawn & np.uint64(2**32 - 1))
+    x, y = np.moveaxis(apart.astype(np.int64).reshape(-1, 2, n) * 2.0**-32, 1, 0)
+    hits = np.count_nonzero((1.1 * x) ** 2 + (0.6 * y) ** 2 >= 0.4**2)
+    found = montecarlo.sample_blocks(seed, block, block + 1, 1.1, 0.6, 0.4, (0.0,) * 5, None)
+    assert found[0] == hits
 
 
 def test_joint_hits_of_two_walls():
