@@ -115,9 +115,7 @@ def test_starts_that_have_not_met_are_counted_at_every_radius_where_discs_meet_s
 def test_rows_have_the_exact_times_with_and_without_effects(rows):
     for name in SCENES:
         asked, seen = request(name), []
-        for row in rows:
-            if row["scene"] != name or row["quantity"] == "never_met_share":
-                continue
+        for row in (r for r in of(rows, scene=name) if r["quantity"] != "never_met_share"):
             event, radius = row["quantity"].removesuffix("_time"), row["radius"]
             seen.append((radius, event))
             assert json.loads(row["effects"]) == asked.effects

@@ -70,7 +70,7 @@ def test_all_radii_fit_and_ordinary_ones_visit_every_regime(box):
         (0.9, {"low": 1.0}, False),
         (1.0, {"low": 0.9, "high": 1.1, "z": -5.1}, False),
         (1.0, {"z": 5.0}, True),
-        (math.inf, {"high": 1.0}, False),
+        (math.nan, {"high": 1.0}, False),
     ],
 )
 def test_a_row_passes_within_its_bounds(value, bounds, passed):
