@@ -39,10 +39,8 @@ def exact_path(scene, state):
             times["disc_collision"] = max((-b - mpmath.sqrt(b**2 - a * c)) / a, mpf(0))
         name = min(times, key=times.get)
         time = times[name]
-        hops = []
-        for hop, gap, speed in (("vertical_hop", dy, dv), ("horizontal_hop", dx, du)):
-            if (gap < 0) != (gap + speed * time < 0):
-                hops.append((-gap / speed, hop))
+        both = ("vertical_hop", dy, dv), ("horizontal_hop", dx, du)
+        hops = [(-gap / u, hop) for hop, gap, u in both if (gap < 0) != (gap + u * time < 0)]
         yield from ((now + until, hop) for until, hop in sorted(hops))
         now += time
         x = [q + u * time for q, u in zip(x, v, strict=True)]
