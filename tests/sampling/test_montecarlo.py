@@ -91,39 +91,32 @@ def xoroshiro128plus(s0, s1):
 
 @np.errstate(over="ignore")
 def test_samples_have_the_generator_of_its_authors():
-    """The first numbers of the implementation in C, and all hits of a block."""
+    """The first numbers of the implementation in C, and all hits of a block with thick shells."""
     one = xoroshiro128plus(*np.array([[1], [2]], np.uint64))
     assert [int(next(one)[0]) for _ in range(4)] == [
         3, 412333834243, 2360170716294286339, 9295852285959843169
     ]  # fmt: skip
-    seed, block, n = np.uint64(5), 7, montecarlo.GENERATORS
-    steps = streams.open_stream(seed, block)[0] + streams.GOLDEN * np.arange(2 * n + 1, dtype="u8")
+    names, n = [f"{event}_area" for event in SHELL_EVENTS], montecarlo.GENERATORS
+    point = sample_point(PAPER, ["volume", *names], 1, 0.3, 5)
+    first = streams.open_stream(np.uint64(5), 0)[0]
+    steps = first + streams.GOLDEN * np.arange(2 * n + 1, dtype="u8")
     filled = np.array([streams.splitmix(step) for step in steps[1:]], np.uint64)
     bits = xoroshiro128plus(filled[::2], filled[1::2] | np.uint64(1))
-    drawn = np.array([next(bits) for _ in range(2 * montecarlo.SAMPLES_PER_BLOCK // n)])
-    apart = (drawn >> np.uint64(32)) - (drawn & np.uint64(2**32 - 1))
-    x, y = np.moveaxis(apart.astype(np.int64).reshape(-1, 2, n) * 2.0**-32, 1, 0)
-    hits = np.count_nonzero((1.1 * x) ** 2 + (0.6 * y) ** 2 >= 0.4**2)
-    found = montecarlo.sample_blocks(seed, block, block + 1, 1.1, 0.6, 0.4, (0.0,) * 5, None)
-    assert found[0] == hits
-
-
-def test_joint_hits_of_two_walls():
-    """Disc 1 in the corner, where the shells of two walls overlap, and disc 2 out of its way."""
-    point = sample_point(PAPER, ["any_wall_area"], 8 * montecarlo.SAMPLES_PER_BLOCK, 0.3, 1)
-    assert point.quantities.keys() == {"right_wall_area", "top_wall_area"}
-    epsilon = point.quantities["right_wall_area"].epsilon
-    assert epsilon == point.quantities["top_wall_area"].epsilon
-    rng = np.random.default_rng(1)
-    n = 2_000_000
-    x1 = PAPER.range_x / 2 - epsilon * rng.random(n)
-    y1 = PAPER.range_y / 2 - epsilon * rng.random(n)
-    x2 = PAPER.range_x * (rng.random(n) - 0.5)
-    y2 = PAPER.range_y * (rng.random(n) - 0.5)
-    free = np.mean((x1 - x2) ** 2 + (y1 - y2) ** 2 >= PAPER.contact_distance**2)
-    probability = free * epsilon**2 / (PAPER.range_x * PAPER.range_y)
-    error = math.sqrt(probability / point.samples + probability**2 * (1 - free) / (free * n))
-    assert abs(point.right_and_top / point.samples - probability) <= 5 * error
+    drawn = np.array([next(bits) for _ in range(2 * point.samples // n)]).reshape(-1, 2, n)
+    ranges = np.array([PAPER.range_x, PAPER.range_y])[:, None]
+    (x1, y1), (x2, y2) = (
+        ranges * (np.swapaxes(half, 0, 1).reshape(2, -1) * 2.0**-32 - 0.5)
+        for half in (drawn >> np.uint64(32), drawn & np.uint64(2**32 - 1))
+    )
+    distance, walls = np.hypot(x1 - x2, y1 - y2), ranges / 2 - [x1, y1]
+    free = distance >= PAPER.contact_distance
+    pairs = np.abs([y1 - y2, x1 - x2, distance - PAPER.contact_distance]) / math.sqrt(2)
+    depths = dict(zip(names, [*pairs, *walls], strict=True))
+    sets = {name: free & (depths[name] <= point.quantities[name].epsilon) for name in names}
+    hits = {name: np.count_nonzero(inside) for name, inside in ({"volume": free} | sets).items()}
+    assert hits == {name: sampled.hits for name, sampled in point.quantities.items()}
+    both = sets["right_wall_area"] & sets["top_wall_area"]
+    assert point.right_and_top == np.count_nonzero(both) > 1000
 
 
 def test_only_what_is_asked_for_is_sampled():
