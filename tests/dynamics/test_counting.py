@@ -5,7 +5,6 @@ enough.
 """
 
 import math
-from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -15,12 +14,11 @@ from effect_scenes import ALL, PAPER, SCENES
 from marks import slow
 
 from twodiscs.dynamics import runs
-from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import WALL_X1, WALL_X2, WALL_Y1, WALL_Y2
 from twodiscs.dynamics.two import event_counts
 from twodiscs.model.events import DECLARED_EVENTS, EVENT_AXES, EVENTS, HOPS, WALLS
-from twodiscs.model.scene import Box, Scene
+from twodiscs.model.scene import Box
 
 #: A radius in each regime, both sides of the thresholds, where the discs hardly fit; other boxes.
 RADII = (0.01, 0.05, 0.2, 0.24, 0.2499, 0.2501, 0.3, 0.36, 0.376, 0.38, 0.3839)
@@ -55,18 +53,6 @@ def test_an_event_is_seen_by_its_disc_its_axis_and_its_side(event, identical, fi
                 axis == 0 or not field or side == DECLARED_EVENTS[event].side
             )
         assert event_counts.DETECTORS[event](code, before, after, identical, field) == due
-
-
-@pytest.mark.parametrize(
-    "scene",
-    [PAPER, SCENES["combination"], replace(PAPER, discs=3), Scene(15.0, 1.0, 0.1, discs=20)],
-    ids=repr,
-)
-def test_products_are_those_of_the_counts_of_a_replica(scene):
-    given = scene, EVENTS, 1, 0, 1, 16.0
-    sums, products = find_engine(scene).counts.run_blocks(*given, replicas=1)
-    assert np.array_equal(products, np.triu(np.outer(sums, sums)))
-    assert len({*sums}) > 3
 
 
 def test_an_error_begins_with_the_first_count():

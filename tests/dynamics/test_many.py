@@ -28,6 +28,8 @@ from twodiscs_paper.studies.more_discs.measure import known_derivatives
 def counted(scene, blocks, seed=1, events=None):
     """Return ({class: rate}, {class: standard error})."""
     duration = many_rates.expected_duration(scene, events)
+    one, products = class_counts.run_classes(scene, seed, 0, 1, duration, replicas=1)
+    assert np.array_equal(products, np.triu(np.outer(one, one)))
     sums, products = class_counts.run_classes(scene, seed, 0, blocks, duration, replicas=REPLICAS)
     found = sums / (blocks * REPLICAS) / duration
     errors = found * np.where(sums > 0, relative_errors(sums, products, blocks * REPLICAS), 0.0)
