@@ -75,6 +75,8 @@ def test_squares_are_those_of_the_counts_of_each_chain():
             PAPER, "vertical_hop", 3, first, stop, 1, (0.25, None, wide), going, **how
         )
         found.append(sums)
+    given = PAPER, "vertical_hop", 3, 0, 8, 1, (0.25, None, wide)
+    assert not returns.record_intervals(*given, ~going, **how)[1].any()  # nobody waits for it
     chains = np.array([counts for counts, _ in found[:-1]])
     assert np.array_equal(found[-1], [chains.sum(axis=0), (chains**2).sum(axis=0)])
     assert (chains[:, :65].sum(axis=1) == 32).all()
@@ -93,8 +95,7 @@ def test_wide_bins_widen():
 def test_intervals_that_a_budget_ends_say_their_error():
     """A block of the usual budget is enough for ten per cent, and not for a thousandth."""
     given = {"seed": 1, "name": None, "bins": None, "hop": "vertical_hop"}
-    short = make_intervals(PAPER, error=0.1, budget=1e6, **given)
-    assert short.note is None
+    assert make_intervals(PAPER, error=0.1, budget=1e6, **given).note is None
     with pytest.warns(td.AccuracyWarning, match=r"an error of 0.001 of the mean, but the budget"):
         short = make_intervals(PAPER, error=1e-3, budget=1e6, **given)
     assert f"ended the run at {short.mean.relative_stderr:.2g}" in short.note

@@ -113,8 +113,7 @@ def test_energy_momentum_and_room_are_kept(scene):
 @pytest.mark.parametrize("scene", LAWS, ids=repr)
 def test_reversed_velocities_lead_back(scene):
     law, first = two_disc_law(scene), start(scene, 2)
-    state, number = first, 8
-    times = []
+    state, times, number = first, [], 8
     for _ in range(number):
         time, code = next_event(state, math.inf, law)
         state, times = after_event(state, time, code, law), [*times, time]
