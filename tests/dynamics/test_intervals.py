@@ -5,6 +5,7 @@ errors.
 """
 
 import math
+from itertools import islice
 from unittest.mock import Mock
 
 import numpy as np
@@ -19,7 +20,9 @@ from twodiscs.dynamics.many import all_pairs, many_intervals, many_paths
 from twodiscs.dynamics.two import hop_clusters, returns, strip
 from twodiscs.measure.intervals import make_intervals
 from twodiscs.points.intervals_point import BIN_GROWTH, N_BINS, wide_edges
+from twodiscs.sampling.initial_states import STATE_ROWS, draw_states, start_sampler
 from twodiscs.sampling.many import many_initial_states
+from twodiscs.sampling.streams import open_stream
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import density_at_zero
 
@@ -61,27 +64,24 @@ def test_hops_are_those_along_their_axis_where_axes_are_not_exchanged(hop, axis,
     assert [samplers[0].prism.neck.axis, *(one.surface for one in samplers[1:])] == [axis] * 3
 
 
-def test_squares_are_those_of_the_counts_of_each_chain():
-    """A chain at a time, its counts are known; in wide bins they are sums over those in others.
-
-    They do not depend on the number of lanes.
-    """
-    edges, found, going = np.array(wide_edges(64)), [], np.ones(1, np.bool_)
-    wide = np.full(65, 65 + edges.size)
-    wide[: edges[-1]] = 65 + np.searchsorted(edges, np.arange(edges[-1]), side="right") - 1
-    for first, stop in (*((i, i + 1) for i in range(8)), (0, 8)):
-        how = {"returns": 32, "lanes": 1 if stop - first == 1 else 5}
-        _, sums = returns.record_intervals(
-            PAPER, "vertical_hop", 3, first, stop, 1, (0.25, None, wide), going, **how
-        )
-        found.append(sums)
-    given = PAPER, "vertical_hop", 3, 0, 8, 1, (0.25, None, wide)
-    assert not returns.record_intervals(*given, ~going, **how)[1].any()  # nobody waits for it
-    chains = np.array([counts for counts, _ in found[:-1]])
-    assert np.array_equal(found[-1], [chains.sum(axis=0), (chains**2).sum(axis=0)])
-    assert (chains[:, :65].sum(axis=1) == 32).all()
-    joined = np.add.reduceat(chains[:, : edges[-1]], edges[:-1], axis=1)
-    assert np.array_equal(chains[:, 65 : 64 + edges.size], joined)
+def test_intervals_of_two_are_those_of_trajectories():
+    """In equal and wide bins with the squares of the counts of chains, in any number of lanes."""
+    wide, number, going = 65 + np.arange(65) // 8, 32, np.ones(1, np.bool_)
+    given = PAPER, "vertical_hop", 3, 4, 6, 4, (0.25, None, wide)
+    times, sums = returns.record_intervals(*given, going, returns=number, lanes=3)
+    assert not returns.record_intervals(*given, ~going, returns=number)[1].any()  # it is stopped
+    drawn, due = np.zeros((2, STATE_ROWS, 4)), np.zeros_like(sums)
+    for block, states in enumerate(drawn, 4):
+        draw_states(open_stream(np.uint64(3), block), start_sampler(PAPER, surface=1), states)
+    for time, state in zip(times, np.hstack(drawn)[:8].T, strict=True):
+        rows = path_events(PAPER, tuple(state), math.inf)
+        hops = (at for at, name, *_ in rows if name == "vertical_hop" and at > 0)
+        own = np.diff([0.0, *islice(hops, number)])
+        assert own.sum() == pytest.approx(time, rel=1e-12)
+        bins = np.minimum(own / 0.25, 64).astype(int)
+        c = np.bincount(np.concatenate([bins, wide[bins]]), minlength=wide[-1] + 1)
+        due += [c, c * c]
+    assert np.array_equal(sums, due)
 
 
 def test_wide_bins_widen():
