@@ -123,15 +123,17 @@ class Clusters(NamedTuple):
     gap: float
     axis: tuple
     most: float  # hops of the last entry
+    falls: np.ndarray  # (lanes,), 1 if the separation falls at time 0, else 0
     hops: np.ndarray  # (lanes,)
     events: np.ndarray  # (lanes,), wall hits and collisions
     sizes: np.ndarray
     both_ways: bool | None = True
 
     def begin(self, i, state):
-        """Begin a cluster; its hop at time 0 is counted on the way on which it falls."""
-        # Zero counts as positive, so a hop that falls is counted after time 0.
-        self.hops[i] = 0.0
+        """Begin a cluster with the hop at time 0."""
+        # Zero counts as positive, so a hop that falls will be counted: begin without it.
+        falls = 1.0 if relative_motion(state, self.axis[0])[1] < 0.0 else 0.0
+        self.hops[i], self.falls[i] = 1.0 - falls, falls
         return self.gap
 
     def note(self, i, before, after, code, time, left):
@@ -145,7 +147,10 @@ class Clusters(NamedTuple):
 
     def ended(self, i, replica, stretch):
         """Go on from the reversed initial state; after that count the cluster."""
-        if stretch == 1:
+        if stretch == 0:
+            # The hop at time 0 has been counted. Reversed, it falls if it rose.
+            self.hops[i] -= 1.0 - self.falls[i]
+        else:
             self.sizes[min(np.int64(self.hops[i]), self.sizes.size - 1)] += 1
         return -self.gap * (1 - stretch)
 
@@ -212,7 +217,7 @@ def cluster_sizes(scene, hop, gap, blocks, seed, first=0):
     a time ``gap``. Arguments are otherwise as for ``hop_sums``.
     """
     scene, hop = hopping_along(scene, hop, "x")
-    hops, events = np.zeros((2, LANES))
+    falls, hops, events = np.zeros((3, LANES))
     most, sizes = float(LARGEST_CLUSTER), np.zeros(LARGEST_CLUSTER + 1, np.int64)
-    clusters = Clusters(float(gap), _axis(hop), most, hops, events, sizes)
+    clusters = Clusters(float(gap), _axis(hop), most, falls, hops, events, sizes)
     return sizes, _followed(clusters, scene, hop, blocks, seed, first)
