@@ -190,7 +190,6 @@ def test_a_sentence_says_what_was_not_reached(rows, said):
     """And if a component had too small a share of the budget, or no budget was given."""
     assert shortfall(rows, 2 * 10**9, 2e9, 20.0) == said
     found = shortfall([row("any_wall", 1.004e-5)], 10**9, 1e8)
-    assert found.startswith("You asked for an error of 1e-5, but")
     assert "ended the run at 1.1e-5 (any_wall_time)" in found
     found = shortfall([row("any_wall", 2e-5)], 10**9, 1e8)
     assert found.endswith("ended the run at 2e-5 (any_wall_time). A budget of 4.8e9 is enough.")
@@ -217,11 +216,10 @@ def test_times_are_written_in_their_unit(seconds, text):
 @pytest.mark.parametrize("fewest", [7, 1])
 def test_a_pilot_has_at_least_its_fewest_blocks(fewest):
     work = Mock(side_effect=lambda first, stop: stop)
-    sums, number, each = cost.timed(work, 0.0, fewest)
+    sums, number, _ = cost.timed(work, 0.0, fewest)
     assert (sums, number) == (fewest, fewest)
     # The first call compiles, the second measures one block.
     assert work.mock_calls == [call(0, 1), call(0, 1), call(0, fewest)]
-    assert each >= 0
 
 
 @pytest.mark.parametrize("periodic", ["", "xy"])
@@ -282,8 +280,11 @@ def test_an_event_that_no_pilot_counted_has_no_price_and_no_forecast():
     [(SCENE, 1e-15), (td.Scene(1.5, 1.0, 0.15, discs=3), 1e-14),
      (td.Scene(4.0, 1.0, 0.3, discs=4), 1e-12)],
 )  # fmt: skip
-def test_exact_values_have_the_precision_of_their_theory(scene, floor):
+def test_exact_values_have_the_precision_of_their_theory(scene, floor, monkeypatch):
+    """Those of another scene are timed, because none of its values is in a cache."""
+    monkeypatch.setattr(exact, "exact", calls := Mock())
     assert [*cost._price_of_exact(td.Scene(1.5, 1.0, 0.12, discs=4))] == []
     (price,) = cost._price_of_exact(scene)
+    assert [one.args[0] == scene for one in calls.call_args_list] == [True, False]
     assert (price.floor, price.c) == (floor, floor**2 * price.least_seconds)
     assert price.seconds(floor * 1.01) == price.least_seconds
