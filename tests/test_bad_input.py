@@ -217,7 +217,7 @@ observe(lambda a, b: b) → an array with the fields x1, y1, x2, y2, u1, v1
 observe(lambda a, b: b['x1'].astype(str)) → of shape (4096,) and kind <U
 observe(lambda a, b: {'x': b['x1'], 'x_stderr': b['x1']}) → none of them another one with _stderr
 observe({1: x1}) → names of what function returns must be texts, none … with _stderr, not [1]
-observe({'x': 1}) → function must take two arrays of states, not be {'x': 1}
+observe({'x': x1, 'y': 1}) → function must take two arrays of states, not be {'x': <function
 observe({}) → function must take two arrays of states, not be {}
 observe(lambda a, b: b['x1'] * 1e150) → finite numbers, below 1e140, not
 td.diffusion(RING, [1], 1).more(function=x1) → function must be left out for a result of diffusion

@@ -192,8 +192,9 @@ REFERENCES = [scene if i in (0, 3, 6, 12, 15) else slow(scene) for i, scene in e
 
 @pytest.mark.parametrize("scene", REFERENCES, ids=repr)
 def test_reference(scene):
-    """All volumes and areas agree with the reference."""
+    """All volumes and areas agree with the reference; the part of all separations is the whole."""
     assert_close(numbers(scene), reference(scene))
+    assert_close(weighted.areas_near(scene, "x", scene.side("x")), weighted.areas(scene))
 
 
 BITS = """
