@@ -134,7 +134,7 @@ def test_numbers_have_one_form(tmp_path):
     assert requests[0].keys["dynamics"] == {"0.1": 0.1, "0.2": 0.2}
     assert type(requests[0].box.height) is float
     assert type(requests[0].event_budget) is int
-    (tmp_path / "huge.yaml").write_text("width: 1.0e+30")  # an integer beyond those of doubles
+    (tmp_path / "huge.yaml").write_text("width: 1.0e+30")  # no double is this integer
     assert read(tmp_path / "huge.yaml") == {"width": 1e30}
 
 

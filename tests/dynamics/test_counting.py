@@ -56,7 +56,7 @@ def test_an_event_is_seen_by_its_disc_its_axis_and_its_side(event, identical, fi
 
 
 def test_an_error_begins_with_the_first_count():
-    """Of one count in four replicas it is √((1/4 − 1/16)/4)/(1/4)."""
+    """One count in four replicas has the relative error √((1/4 − 1/16)/4)/(1/4)."""
     errors = runs.relative_errors(np.array([1, 0]), np.diag([1, 0]), 4)
     assert errors.tolist() == [pytest.approx(math.sqrt(3) / 2), math.inf]
 

@@ -65,7 +65,7 @@ def test_hops_are_those_along_their_axis_where_axes_are_not_exchanged(hop, axis,
 
 
 def test_intervals_of_two_are_those_of_trajectories():
-    """In equal and wide bins with the squares of the counts of chains, in any number of lanes."""
+    """Equal and wide bins have the counts of all chains and the squares of each, in few lanes."""
     wide, number, going = 65 + np.arange(65) // 8, 32, np.ones(1, np.bool_)
     given = PAPER, "vertical_hop", 3, 4, 6, 4, (0.25, None, wide)
     times, sums = returns.record_intervals(*given, going, returns=number, lanes=3)

@@ -136,7 +136,7 @@ def long_run(name):
     return read_table(LONG_RUNS / name / "passages.csv")
 
 
-#: What rows on the last hop of the first scene have in common, without effects.
+#: Rows of the last hop in the first scene have these keys if it has no effects.
 PLAIN_HOPS = {"width": 1.5, "height": 1.0, "event": "horizontal_hop"}
 PLAIN_HOPS |= {"periodic": None, "friction": None}
 

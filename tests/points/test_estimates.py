@@ -115,7 +115,7 @@ def test_a_score_far_from_what_is_due_is_finite():
 
 
 def test_weights_below_their_resolution_have_no_error():
-    """Squares of weights are rounded to units: 2^20 of them is one, here weights are of 2^−10."""
+    """Squares are rounded to units, 2^−20. Weights have an error from eight times 2^−10 on."""
     unit, samples = 2**20, 10**6
     for weight, known in ((2.0**-7, True), (2.0**-8, False)):
         total = round(1000 * weight * unit)

@@ -34,7 +34,7 @@ class Places(NamedTuple):
 
 
 def make_grid(scene):
-    """Return the ``CellGrid``, up to 4 N columns or rows, of a ``Scene`` that can be followed."""
+    """Return the ``CellGrid`` of a ``Scene`` that can be followed: up to 4 N columns or rows."""
     a, b, least = scene.range_x, scene.range_y, LEAST_CELL_SIDE * scene.contact_distance
     # Along a very long box there would be far more cells of this area than discs.
     side = max(least, 1.25 * math.sqrt(a * b / scene.discs), max(a, b) / scene.discs / 4)
