@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from factory import EXPECTED, LONG_RUNS, empty
 from figure_cases import PAPER, bars, draw, points, unclear
+from marks import slow
 from matplotlib.patches import StepPatch
 
 import twodiscs as td
@@ -51,10 +52,10 @@ def table(name):
 
 @pytest.fixture(autouse=True, scope="module")
 def rough_curves():
-    """Exact curves have every fourth of their nodes: with effects each takes milliseconds."""
+    """Exact curves have every eighth of their nodes: with effects each takes milliseconds."""
     fine = curves.branches
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(curves, "branches", lambda *given: [one[::4] for one in fine(*given)])
+        patch.setattr(curves, "branches", lambda *given: [one[::8] for one in fine(*given)])
         yield
 
 
@@ -307,8 +308,16 @@ def test_every_figure_of_a_study_is_compared():
     assert {name for name, *_ in CASES} | {*elsewhere.split()} >= STUDY_FIGURES.keys()
 
 
+#: Figures whose texts are fast to compare: the fullest ones, and one with several columns.
+FAST = {"passages", "brownian", "transmission", "tails"}
+
+
 @pytest.mark.parametrize(
-    "name", sorted({*STUDY_FIGURES} - {"accuracy_cost_by_radius", "accuracy_cost"})
+    "name",
+    [
+        name if name in FAST else slow(name)
+        for name in sorted({*STUDY_FIGURES} - {"accuracy_cost_by_radius", "accuracy_cost"})
+    ],
 )
 def test_texts_of_studies_stand_clear_and_symbols_are_named(name):
     (axes, *_) = drawn(name).values()
