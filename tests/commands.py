@@ -16,6 +16,16 @@ def command(monkeypatch, *words):
             return leave.code or 0
 
 
+def refused(monkeypatch, capsys, *words):
+    """Return the one sentence that ``twodiscs`` prints when it refuses some ``words``."""
+    assert command(monkeypatch, *words) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    (sentence,) = printed.err.splitlines()
+    assert sentence.startswith("error: ")
+    return sentence.removeprefix("error: ")
+
+
 def python(*words, **options):
     """Return the completed process of Python with some ``words``, and what it printed."""
     words = [sys.executable, *map(str, words)]

@@ -17,7 +17,8 @@ import numpy as np
 import pandas as pd  # noqa: F401 - for a line of CALLS
 import pytest
 import yaml
-from commands import command, python
+from commands import python, refused
+from effect_scenes import PAPER
 from matplotlib.figure import Figure  # noqa: F401 - for a line of CALLS
 
 import twodiscs as td
@@ -32,8 +33,6 @@ from twodiscs_paper.configuration import schema
 from twodiscs_paper.configuration.model import Model
 from twodiscs_paper.configuration.yaml_files import ConfigError, load, read
 
-BOX = Box(1.5, 1.0)
-PAPER = BOX.scene(0.2)
 RING, FIELD = Scene(1.5, 1.0, 0.2, periodic="x"), Scene(1.5, 1.0, 0.2, field=0.4)
 FOUR = Scene(6.0, 1.0, 0.2, discs=4, periodic="x")
 ROUGH, CENTRES = Scene(1.5, 1.0, 0.2, moment_of_inertia=0.4), [[0.3, 0.5], [1.2, 0.5]]
@@ -83,7 +82,6 @@ def pattern(sentence):
 #: Keys of a scene: the face, the shell and the configuration say the same.
 SCENES = """
 discs: 1 → discs must be an integer from 2 to 16384, not 1
-discs: 16385 → discs must be an integer from 2 to 16384, not 16385
 discs: 3, field: 1 → field must be left out with 3 discs
 discs: 3, depth: 1 → depth must be left out with 3 discs
 discs: 3, periodic: xy, moment_of_inertia: 0.5 → moment_of_inertia must be left out in a box without
@@ -103,11 +101,9 @@ depth: 1, moment_of_inertia: 0.4 → moment_of_inertia must be left out in a box
 #: Calls of the face.
 CALLS = """
 Scene(1.5, 1, 0.1, depth=1e50) → depth must lie between … and 1e45
-Scene(1.5, 1, 0.1, periodic='x,y') → periodic must be some of the axes x and y (z needs a depth), …
 Scene(1.5, 1, 0.1, depth=1, periodic='x,y') → periodic must be some of the axes x, y and z, each
 Scene('0,3', 1, 0.1) → width must be a positive number, not '0,3'; decimals follow a point, 0.3
 Scene(1.5, 1, 0.1, n_discs=3) → 'n_discs'; did you mean discs?
-Scene(1.5, 1, np.array([0.1, 0.2])) → radius must be
 td.sample(Scene(20, 20, 0.5, discs=64)) → … double holds the volume …: divide all lengths by 16.0
 td.simulate() → missing 1 required positional argument: 'scene'
 td.simulate(PAPER, 0.5, progress=1) → progress must be True, False or None, not 1
@@ -179,9 +175,9 @@ td.pressure(td.sample(PAPER, 1)) → a Scene or a result of simulate, not a resu
 td.free_energy(FIELD) → field must be 0 for the free energy of hard discs, not 0.4
 td.sample(Scene(9, 9, 0.1, discs=65)) → discs must be at most 64 for Monte Carlo by insertion, not
 td.transmission(RING, 'horizontal_hop') → hop 'horizontal_hop' must be between walls for a trans…
-td.transmission(BOX.scene(0.3), 'horizontal_hop') → must be open for passages, but is blocked at
+td.transmission(PAPER.with_radius(0.3), 'horizontal_hop') → must be open for passages, but is
 td.trajectory(ROUGH, start=[CENTRES, CENTRES]) → must have the spins of rough discs, s of each disc
-from_file(BOX.scene(0.21)) → must have the box and the discs of the scene, not 2 discs of the rad…
+from_file(PAPER.with_radius(0.21)) → must have the box and the discs of the scene, not 2 discs
 from_file(Box(1.6, 1).scene(0.2)) → not 2 discs of the radii [0.2, 0.2] in a box of [1.5,
 from_file(Scene(1.5, 1, 0.2, discs=3)) → must have the box and the discs of the scene, not 2 discs
 td.simulate(Scene(1, 9, 0.24999999, discs=20, periodic='x'), 1) → not exceed 0.249999… for 20 discs
@@ -194,7 +190,6 @@ start(x1=0.2) → have the discs apart, with 0.4 or more between their centres, 
 td.trajectory(td.Scene(1.5e-15, 1e-15, 2e-16), start=[-6e-16, 0, 5e-16, 0, 1, 0, 0, 0]) → inside
 start(x1=-0.6) → disc 1 inside the box, with x1 between -0.55 and 0.55, not -0.6
 td.trajectory(RING, start=[-0.8, 0, 0, 0.31, 1, 0, 0, 0]) → disc 2 inside the box, with y2
-start(u1=2.0) → start must have a total energy of 0.5, not 2.0
 fall() → not bring disc 1 to rest on the floor, as it does at the time 0.0: in a field a disc
 fall(v1=-1e-17) → not bring disc 1 to rest on the floor, as it does at the time 0.0
 fall(x1=0.4, v1=0.68**0.5, u2=0) → not bring disc 1 to rest on the floor, as it does at the
@@ -244,7 +239,6 @@ td.animate(td.trajectory(PAPER, 0.01), 'a.gif') → trajectory must last two fra
 #: Command lines; after the minus sign only the sides of the box are given, not the radius.
 SHELL = """
 exact - --radius ٠.٢ → radius must be a positive number, not '٠.٢'
-exact - --radius 0,2 → not '0,2'; decimals follow a point, 0.2
 simulate --seed 1_000 → seed must be an integer of at least 0, not '1_000'
 exact - → the following arguments are required: --radius
 exact - --radious 1 → unrecognized arguments: --radious; did you mean --radius?
@@ -289,11 +283,9 @@ name: tails → .name must not be 'tails', the name of a target, a folder of res
 gravity: 1 →  has an unknown key 'gravity'; field belongs in 'effects'
 radii: [٠.٢] → .radii[0] must be a positive length …, not '٠.٢'
 width: 1 →  has an unknown key 'width'; it belongs in 'box'
-box: {discs: 3} → .box has an unknown key 'discs'; it belongs in a scene
 box: {width: 1,5, height: 1} → .box has an unknown key 5; decimals have a point
 box: {width: 1.5, height: 1, none: } → .box has an unknown key 'none'; its keys are width, heig…
 effects: {gravity: 1} → .effects has an unknown key 'gravity'; did you mean field?
-box: {width: 1.5, heigth: 1} → .box has an unknown key 'heigth'; did you mean height?
 box: {width: 1, height: '1,2'} → .box.height must be a positive length …; decimals …, 1.2
 discs: 2.5 → .discs must be an integer from 2 to 16384, not 2.5
 discs: 65⏎radii: [0.01]⏎watch: {volume: true} → .watch.volume must be false for more than 64 discs…
@@ -330,23 +322,13 @@ def refusal(path, text):
     return str(caught.value).replace(str(path), "FILE")
 
 
-def refused_in_shell(monkeypatch, capsys, *words):
-    """Return the sentence of the shell about ``words``."""
-    assert command(monkeypatch, *words) == 2
-    shown = capsys.readouterr()
-    assert shown.out == ""
-    assert shown.err.startswith("error: ")
-    assert shown.err.count("\n") == 1
-    return shown.err
-
-
 @pytest.mark.parametrize(("keys", "sentence"), rows(SCENES))
 def test_a_mistake_in_a_scene_is_one_sentence_everywhere(keys, sentence, monkeypatch, capsys):
     keys = {"width": 1.5, "height": 1, "radius": 0.1} | yaml.safe_load(f"{{{keys}}}")
     with pytest.raises(InputError) as caught:
         Scene(**keys)
     words = [w for key, value in keys.items() for w in (f"--{key.replace('_', '-')}", value)]
-    shell = refused_in_shell(monkeypatch, capsys, "exact", *words)
+    shell = refused(monkeypatch, capsys, "exact", *words)
     scene = {"name": "one", "radii": [keys.pop("radius")]}
     scene |= {key: keys.pop(key) for key in ("discs",) if key in keys}
     scene["box"] = {key: keys.pop(key) for key in ("width", "height", "depth") if key in keys}
@@ -375,7 +357,7 @@ def test_a_mistake_on_the_command_line_is_one_sentence(line, sentence, monkeypat
     if name != "run":
         radius = [] if "-" in words else ["--radius", "0.1"]
         words = ["--width", "1.5", "--height", "1", *radius, *(w for w in words if w != "-")]
-    assert sentence in refused_in_shell(monkeypatch, capsys, name, *words)
+    assert sentence in refused(monkeypatch, capsys, name, *words)
 
 
 @pytest.mark.parametrize(("text", "sentence"), rows(FILES))
@@ -421,7 +403,7 @@ RIGHT = [
     (PAPER.with_radius, {"radius": 0.1}),
     (PAPER.is_possible, {"event": "any_wall"}),
     (Box, {"width": 1.5, "height": 1.0, "field": 0.1, "periodic": "x", "radius_ratio": 0.5}),
-    (BOX.threshold, {"event": "any_wall"}),
+    (PAPER.box.threshold, {"event": "any_wall"}),
     *((f, {"scene": PAPER}) for f in (td.volume, td.areas, td.mean_times, td.exact)),
     (td.rate, {"scene": PAPER, "event": "any_wall"}),
     (estimates.normal_quantile, {"confidence": 0.95}),
@@ -441,7 +423,7 @@ RIGHT = [
 
 #: Wrong values for each of these arguments, one of each kind.
 LENGTH = [-1.0, 0.0, INF, 1e-61, 1e61, "1", True]
-RADIUS = [*LENGTH, 0.4, BOX.largest_radius]
+RADIUS = [*LENGTH, 0.4, PAPER.box.largest_radius]
 COUNT = [0, 1.5, 2**64, "1", True]
 PART = [0.0, 1.0, -0.1, "0.1", True]
 EVENT = ["", "hop", b"any_wall", PAPER]

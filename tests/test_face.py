@@ -17,7 +17,7 @@ import pytest
 import yaml
 from checkout import REPOSITORY
 from commands import python
-from effect_scenes import SCENES
+from effect_scenes import PAPER, SCENES
 from figure_cases import unclear
 
 import twodiscs as td
@@ -32,8 +32,6 @@ from twodiscs.sampling.initial_states import components
 from twodiscs_paper.configuration import yaml_files
 from twodiscs_paper.pipeline import job_cost
 
-SCENE = td.Scene(1.5, 1.0, 0.2)
-
 #: A configuration of one scene, small.
 CONFIGURATION = yaml.safe_load("""
 seed: 7
@@ -46,17 +44,17 @@ scenes:
 
 @pytest.fixture(scope="module")
 def simulated():
-    return td.simulate(SCENE, 0.05, seed=7, budget=1e6, name="one")
+    return td.simulate(PAPER, 0.05, seed=7, budget=1e6, name="one")
 
 
 @pytest.fixture(scope="module")
 def sampled():
-    return td.sample(SCENE, 1e6, seed=7, name="one")
+    return td.sample(PAPER, 1e6, seed=7, name="one")
 
 
 @pytest.fixture(scope="module")
 def intervals():
-    return td.intervals(SCENE, "vertical_hop", 1e5, seed=7, name="one")
+    return td.intervals(PAPER, "vertical_hop", 1e5, seed=7, name="one")
 
 
 # Names ------------------------------------------------------------------------------------------
@@ -84,7 +82,7 @@ def test_every_name_is_defined_where_an_editor_looks_for_it():
 
 
 def test_results_are_those_of_the_pipeline(simulated, sampled, intervals):
-    box, scene = SCENE.box, yaml_files.load(CONFIGURATION).scenes[0]
+    box, scene = PAPER.box, yaml_files.load(CONFIGURATION).scenes[0]
     stages = ("dynamics", "monte_carlo", "intervals")
     points = [job_cost.run_at(scene, stage, 0.2).run() for stage in stages]
     assert simulated.rows == SCENE_TABLES["mean_times"].rows(points)
@@ -99,13 +97,13 @@ def test_results_are_those_of_the_pipeline(simulated, sampled, intervals):
     assert len(common) > 20
     assert below[common].equals(found[common])
     followed = SCENE_TABLES["trajectory"].rows(box, 0.2, scene.trajectory_seed)
-    path = td.trajectory(SCENE, seed=7, name="one").assign(z1=None, z2=None)
+    path = td.trajectory(PAPER, seed=7, name="one").assign(z1=None, z2=None)
     assert path[[*followed[0]]].to_dict("records") == followed
 
 
 def test_seeds_tell_methods_boxes_and_radii_apart():
     """A scan with one seed has independent errors, unless the scene has a name."""
-    scenes = [SCENE, SCENE.with_radius(0.1), td.Scene(1.5, 1.1, 0.2), *SCENES.values()]
+    scenes = [PAPER, PAPER.with_radius(0.1), td.Scene(1.5, 1.1, 0.2), *SCENES.values()]
     found = [job_seed(scene, m, 1, None) for scene in scenes for m in ("dynamics", "monte_carlo")]
     assert len({*found}) == len(found)
 
@@ -113,11 +111,11 @@ def test_seeds_tell_methods_boxes_and_radii_apart():
 def test_some_events_and_quantities_are_those_of_all(simulated, sampled):
     asked = {"seed": 7, "name": "one"}
     for errors in ({"error": {"any_wall": 0.05}}, {"error": 0.05, "events": "any_wall"}):
-        some = td.simulate(SCENE, **errors, budget=1e6, **asked)
+        some = td.simulate(PAPER, **errors, budget=1e6, **asked)
         assert list(some) == ["any_wall_time"]
         assert some.rows == [row for row in simulated.rows if row["event"] == "any_wall"]
     for names in (["volume"], "volume"):
-        assert td.sample(SCENE, 1e6, quantities=names, **asked).rows == sampled.rows[:1]
+        assert td.sample(PAPER, 1e6, quantities=names, **asked).rows == sampled.rows[:1]
 
 
 # Texts of results ---------------------------------------------------------------------------------
@@ -125,7 +123,7 @@ def test_some_events_and_quantities_are_those_of_all(simulated, sampled):
 
 def test_measurements_know_their_errors_and_print_themselves(simulated, sampled):
     found = simulated["vertical_hop_time"]
-    assert found.exact == td.mean_times(SCENE)["vertical_hop_time"]
+    assert found.exact == td.mean_times(PAPER)["vertical_hop_time"]
     assert found.relative_stderr == found.stderr / found.value
     ends = found.value - found.stderr, found.value + found.stderr
     assert found.interval(0.6826894921370859) == pytest.approx(ends, rel=1e-12)
@@ -181,7 +179,7 @@ def test_a_bound_that_says_nothing_is_no_perfect_match():
         (0.0, "normal", 0.0, "+0.00"),
         (-1.5, "cluster-bound", -1.5, "-1.50"),
     ):
-        found = measurement(SCENE, row | {"z": z, "test": test, "status": "too-few"})
+        found = measurement(PAPER, row | {"z": z, "test": test, "status": "too-few"})
         assert found.z == known
         assert found.cells()[5] == text
         assert ("z = " in str(found)) == (known is not None)
@@ -198,13 +196,13 @@ def test_columns_of_a_printed_table_keep_apart(radius):
 
 def test_a_quantity_has_one_name(simulated, sampled):
     times, areas = ([f"{event}_{of}" for event in td.EVENTS] for of in ("time", "area"))
-    assert list(simulated) == list(td.mean_times(SCENE)) == list(simulated.frame().index) == times
+    assert list(simulated) == list(td.mean_times(PAPER)) == list(simulated.frame().index) == times
     assert [m.quantity for m in simulated.values()] == times
     assert list(sampled) == list(sampled.frame().index) == ["volume", *areas]
-    assert list(td.areas(SCENE)) == list(td.exact(SCENE)["areas"]) == areas
+    assert list(td.areas(PAPER)) == list(td.exact(PAPER)["areas"]) == areas
     columns = ["regime", "ergodic_components", "volume", *areas, *times]
     assert list(td.exact_table(1.5, 1.0, [0.2])) == columns
-    for found in (simulated, sampled, td.mean_times(SCENE), td.areas(SCENE)):
+    for found in (simulated, sampled, td.mean_times(PAPER), td.areas(PAPER)):
         assert "any_wall" not in found
         with pytest.raises(KeyError, match=r"; did you mean any_wall_(time|area)\?"):
             found["any_wall"]
@@ -212,9 +210,9 @@ def test_a_quantity_has_one_name(simulated, sampled):
     for wrong, said in (("hop", "is none of vertical_hop_time, "), ("any_wal", "mean any_wall_t")):
         with pytest.raises(KeyError, match=said):
             simulated[wrong]
-    assert simulated.get("vertical_hop_area") is td.mean_times(SCENE).get("hop") is None
-    assert pickle.loads(pickle.dumps(td.areas(SCENE))) == td.areas(SCENE)
-    assert td.mean_times(SCENE)["any_wall_time"] == 1 / td.rate(SCENE, "any_wall")
+    assert simulated.get("vertical_hop_area") is td.mean_times(PAPER).get("hop") is None
+    assert pickle.loads(pickle.dumps(td.areas(PAPER))) == td.areas(PAPER)
+    assert td.mean_times(PAPER)["any_wall_time"] == 1 / td.rate(PAPER, "any_wall")
 
 
 def test_intervals_have_a_mean_and_a_density_at_zero(intervals):
@@ -249,8 +247,8 @@ def test_a_scene_prints_what_it_is():
     scene = td.Scene(1.5, 1.0, 0.2, periodic=["y", "x"], mass_ratio=2)
     assert repr(scene) == "Scene(1.5, 1.0, 0.2, mass_ratio=2.0, periodic='xy')"
     assert str(scene).endswith("in a box of 1.5 × 1.0, mass ratio 2.0, periodic xy")
-    assert td.Scene(1.5, 1.0, 0.2, periodic=[]) == SCENE
-    assert str(td.Scene(1.5, 1, 0.2, discs=3)) == str(SCENE).replace("Two", "3")
+    assert td.Scene(1.5, 1.0, 0.2, periodic=[]) == PAPER
+    assert str(td.Scene(1.5, 1, 0.2, discs=3)) == str(PAPER).replace("Two", "3")
     assert td.Scene(1.5, 1, 0.15, discs=12).unit("volume") == "length²⁴"
     assert str(SCENES["balls"]) == "Two balls of radius 0.2 in a box of 1.5 × 1.0 × 1.2"
 
@@ -260,7 +258,7 @@ def test_a_scene_prints_what_it_is():
 
 @pytest.mark.parametrize("name", ["plain", "rough", "combination"])
 def test_starts_are_states(name):
-    scene = SCENES.get(name, SCENE)
+    scene = SCENES.get(name, PAPER)
     found = td.starts(scene, 5, seed=3)
     assert found.dtype.names == components(scene)
     for start in found:
@@ -272,13 +270,13 @@ def test_starts_are_states(name):
 
 def test_a_state_is_a_start():
     """Names of numbers decide, not their order."""
-    (named,) = td.trajectory(SCENE, duration=1).states_at([1])
+    (named,) = td.trajectory(PAPER, duration=1).states_at([1])
     known = {name: float(named[name]) for name in sorted(named.dtype.names)}
     record = np.array([(*known.values(),)], [(name, float) for name in known])[0]
     pair = namedtuple("Start", known)(*known.values())
-    due = td.trajectory(SCENE, start=named, duration=1)
+    due = td.trajectory(PAPER, start=named, duration=1)
     for other in (known, record, pair, pd.Series(known)):
-        assert td.trajectory(SCENE, start=other, duration=1).equals(due)
+        assert td.trajectory(PAPER, start=other, duration=1).equals(due)
 
 
 # Figures and tables -------------------------------------------------------------------------------
@@ -288,7 +286,7 @@ def test_what_changes_with_time_is_drawn_with_its_errors(tmp_path):
     def seen(start, now):
         return np.stack([start["u1"] * now["u1"], (now["x1"] - start["x1"]) ** 2], axis=1)
 
-    averages = td.observe(SCENE, seen, [0, 1, 2], replicas=1)
+    averages = td.observe(PAPER, seen, [0, 1, 2], replicas=1)
     (axes,) = td.plot(averages, tmp_path / "averages.png").axes
     moved = td.diffusion(td.Scene(1.5, 1.0, 0.2, periodic="x"), [1, 2], 1)
     panels = td.plot(moved).axes
@@ -303,11 +301,11 @@ def test_what_changes_with_time_is_drawn_with_its_errors(tmp_path):
         for panel in td.plot(small).axes:
             panel.figure.draw_without_rendering()
             assert panel.yaxis.get_offset_text().get_text() == ""
-    eight = td.observe(SCENE, lambda a, b: np.stack([b["x1"]] * 8, axis=1), [1], replicas=1)
+    eight = td.observe(PAPER, lambda a, b: np.stack([b["x1"]] * 8, axis=1), [1], replicas=1)
     symbols = [drawn.lines[0] for drawn in td.plot(eight).axes[0].containers]
     looks = {(s.get_color(), s.get_marker(), s.get_markerfacecolor()) for s in symbols}
     assert len(looks) == 8
-    for some in (SCENE, SCENES["combination"]):
+    for some in (PAPER, SCENES["combination"]):
         figure = td.plot(td.observe(some, lambda a, b: b["x1"], [1], replicas=1))
         assert figure.axes[0].get_legend() is None
         with style.context():
@@ -337,7 +335,7 @@ def test_tables_come_back_with_units_and_provenance(simulated, sampled, tmp_path
 @pytest.mark.parametrize(
     ("scene", "error", "method"),
     [
-        (SCENE, {"vertical_hop_area": 4e-3, "volume": 1e-4}, "rejection"),
+        (PAPER, {"vertical_hop_area": 4e-3, "volume": 1e-4}, "rejection"),
         (td.Scene(1.5, 1.0, 0.37), {"volume": 3e-4, "disc_collision_area": 0.02}, "conditioned"),
         (td.Scene(1.5, 1.0, 0.2, field=0.5), {"volume": 1e-3}, "rejection"),
         (td.Scene(1.5, 1.0, 0.2, discs=3), 0.02, "insertions"),
@@ -380,17 +378,17 @@ def test_a_method_whose_price_was_printed_can_be_taken():
 
 
 NOTES = """
-td.sample(SCENE, 10) → You asked for 10 samples and got 1048576, because work is done in
+td.sample(PAPER, 10) → You asked for 10 samples and got 1048576, because work is done in
 td.sample(td.Scene(1.5, 1, 0.38), 1e7) → You asked for 10000000 samples and got 196608
-td.sample(SCENE, error=0.5) → You asked for an error of 0.5 and got 0.01, because the
-td.sample(SCENE, error=0.01, budget=1e6, shell=2e-5, quantities="top_wall_area") → You asked
-td.sample(SCENE, error=0.5, budget=10) → You asked for a budget of 10, but the smallest
-td.intervals(SCENE, "vertical_hop", 10) → You asked for 10 intervals and got 65536
-td.observe(SCENE, lambda a, b: b["x1"], [1], 10) → You asked for 10 replicas and
-td.observe(SCENE, lambda a, b: b["x1"], [1], 8192) →
-td.simulate(SCENE, 0.5) → You asked for an error of 0.5 and got 0.0028, because the smallest run
-td.simulate(SCENE, 0.5, budget=1) → You asked for a budget of 1, but the smallest run has 250000
-td.simulate(SCENE, duration=100) → You asked for a duration of 100 and got 65536: 1024
+td.sample(PAPER, error=0.5) → You asked for an error of 0.5 and got 0.01, because the
+td.sample(PAPER, error=0.01, budget=1e6, shell=2e-5, quantities="top_wall_area") → You asked
+td.sample(PAPER, error=0.5, budget=10) → You asked for a budget of 10, but the smallest
+td.intervals(PAPER, "vertical_hop", 10) → You asked for 10 intervals and got 65536
+td.observe(PAPER, lambda a, b: b["x1"], [1], 10) → You asked for 10 replicas and
+td.observe(PAPER, lambda a, b: b["x1"], [1], 8192) →
+td.simulate(PAPER, 0.5) → You asked for an error of 0.5 and got 0.0028, because the smallest run
+td.simulate(PAPER, 0.5, budget=1) → You asked for a budget of 1, but the smallest run has 250000
+td.simulate(PAPER, duration=100) → You asked for a duration of 100 and got 65536: 1024
 td.transmission(td.Scene(1.5, 1, 0.249), "horizontal_hop", 10) → You asked for 10
 """
 
@@ -406,7 +404,7 @@ def test_a_result_says_what_was_done_instead(line):
 @pytest.mark.parametrize(
     ("scene", "error", "budget"),
     [
-        (SCENE, 1e-3, 1e7), (SCENE.with_radius(0.1), 2e-3, 1e6), (td.Scene(2, 1, 0.22), 1e-3, 1e7),
+        (PAPER, 1e-3, 1e7), (PAPER.with_radius(0.1), 2e-3, 1e6), (td.Scene(2, 1, 0.22), 1e-3, 1e7),
         (td.Scene(2, 1, 0.22), 2e-3, 2e6), (td.Scene(1.5, 1, 0.2, field=0.5), 2e-3, 2e7),
     ],
     ids=str,
@@ -427,7 +425,7 @@ def test_a_budget_that_ends_a_run_is_a_warning_and_the_budget_that_it_names_is_e
 
 def test_a_time_is_simulated_whatever_the_errors_are():
     """Scores of 12 mean times and a rare hop at 5 sigma: one false alarm in 140,000."""
-    found = td.simulate(SCENE, duration=2e5, seed=3)
+    found = td.simulate(PAPER, duration=2e5, seed=3)
     frame = found.frame()
     total = frame["replicas"] * frame["duration"]
     assert (total >= 2e5).all()
@@ -435,7 +433,7 @@ def test_a_time_is_simulated_whatever_the_errors_are():
     assert {*frame["status"]} == {"counted"}
     assert frame["target"].isna().all()
     assert all(abs(m.z) < 5 for m in found.values())
-    assert found.more(duration=4e5).rows == td.simulate(SCENE, duration=4e5, seed=3).rows
+    assert found.more(duration=4e5).rows == td.simulate(PAPER, duration=4e5, seed=3).rows
     # Without strips the rare hop is counted as everything else.
     rare = td.simulate(td.Scene(1.5, 1.0, 0.24), duration=1e5, seed=3)
     assert {*rare.frame()["starts"]} == {"invariant"}
@@ -465,7 +463,7 @@ def test_an_error_that_is_not_known_is_no_number(radius):
     assert all(error == pytest.approx(stderr) for stderr, error in numbers.items())
 
 
-@pytest.mark.parametrize("scene", [SCENE, td.Scene(1.5, 1.0, 0.2, discs=3)])
+@pytest.mark.parametrize("scene", [PAPER, td.Scene(1.5, 1.0, 0.2, discs=3)])
 def test_numbers_of_one_run_are_correlated_as_its_counts_are(scene):
     """All hits are those of the right and the top wall, in every replica: no error is left."""
     md = td.simulate(scene, duration=1e4, seed=3)

@@ -20,7 +20,7 @@ from unittest.mock import Mock, call, create_autospec
 import numpy as np
 import pandas as pd
 import pytest
-from effect_scenes import SCENES
+from effect_scenes import PAPER, SCENES
 from matplotlib.backend_bases import FigureCanvasBase
 from numba.core.compiler_lock import global_compiler_lock
 
@@ -34,7 +34,6 @@ from twodiscs.points.base import file_content, write_json
 from twodiscs.sampling import rounds
 from twodiscs.sampling.threads import call_in_thread
 
-SCENE = td.Scene(1.5, 1.0, 0.2)
 NARROW = td.Scene(1.5, 1.0, 0.249)
 THREE = td.Scene(1.5, 1.0, 0.15, discs=3)
 RING = replace(THREE, periodic="x")
@@ -51,13 +50,13 @@ MADE = {
         lambda: td.simulate(NARROW, 0.3, seed=5, events=["horizontal_hop", "any_wall"]),
         "error", 0.02,
     ),
-    "sample": (lambda: td.sample(SCENE, 1e6, seed=5), "samples", 5e6),
-    "intervals": (lambda: td.intervals(SCENE, "vertical_hop", 1e5, seed=5), "number", 4e5),
+    "sample": (lambda: td.sample(PAPER, 1e6, seed=5), "samples", 5e6),
+    "intervals": (lambda: td.intervals(PAPER, "vertical_hop", 1e5, seed=5), "number", 4e5),
     "transmission": (
         lambda: td.transmission(NARROW, "horizontal_hop", 2**12, seed=5), "hops", 2**14,
     ),
     "sample of three": (lambda: td.sample(THREE, 1e3, seed=5), "samples", 1e4),
-    "simulate a time": (lambda: td.simulate(SCENE, duration=1, seed=5), "duration", 1e5),
+    "simulate a time": (lambda: td.simulate(PAPER, duration=1, seed=5), "duration", 1e5),
     "scan": (
         lambda: td.scan(1.5, [1, 2], [0.2, 0.9], 1e-3, seed=5, budget=1e5, events="any_wall"),
         "budget", 2e7,
@@ -68,11 +67,11 @@ MADE = {
         "replicas", 2e4,
     ),
     "sample to an error": (
-        lambda: td.sample(SCENE, error=0.1, seed=5, quantities=["volume", "any_wall_area"]),
+        lambda: td.sample(PAPER, error=0.1, seed=5, quantities=["volume", "any_wall_area"]),
         "error", 1e-3,
     ),
     "observe": (
-        lambda replicas=5e3: td.observe(SCENE, seen, [0, 1], replicas, seed=5), "replicas", 2e4,
+        lambda replicas=5e3: td.observe(PAPER, seen, [0, 1], replicas, seed=5), "replicas", 2e4,
     ),
     "diffusion": (
         lambda replicas=1: td.diffusion(RING, [1, 3], replicas, seed=5), "replicas", 2e4,
@@ -157,16 +156,16 @@ def test_a_point_of_the_pipeline_goes_on(stage, tmp_path):
 def test_a_file_is_replaced_whole_or_not_at_all(name, tmp_path):
     """A limit on the size of files stands for a full disk."""
     path, link = tmp_path / f"old.{name}", tmp_path / f"link.{name}"
-    trajectory = td.trajectory(SCENE, duration=0.3)
+    trajectory = td.trajectory(PAPER, duration=0.3)
     path.write_text("old")
     path.chmod(0o640)
     link.symlink_to(path)
     write = {
-        "json": td.sample(SCENE, 1).save,
+        "json": td.sample(PAPER, 1).save,
         "xyz": trajectory.to_xyz,
         "gif": lambda path: td.animate(trajectory, path),
         "html": lambda path: td.animate(trajectory, path),
-    }.get(name, lambda path: td.plot(SCENE, path))
+    }.get(name, lambda path: td.plot(PAPER, path))
     usual = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (100, usual[1]))
     try:
@@ -240,22 +239,22 @@ def test_files_of_something_else_are_refused(tmp_path):
 
 def test_errors_that_are_not_given_and_presets_are_those_of_the_pages():
     assert td.scan(1.5, 1.0, [0.2], budget=1).settings["error"] == 1e-2
-    assert td.simulate(SCENE, budget=1).settings["error"] == 1e-3
-    found = td.simulate(SCENE, "draft", events=["any_wall"])
+    assert td.simulate(PAPER, budget=1).settings["error"] == 1e-3
+    found = td.simulate(PAPER, "draft", events=["any_wall"])
     assert found.settings["error"] == NAMED_ERRORS["draft"]
-    assert td.simulate(SCENE, 1, budget=1)["any_wall_time"].status == "reached"
+    assert td.simulate(PAPER, 1, budget=1)["any_wall_time"].status == "reached"
 
 
 # Shown --------------------------------------------------------------------------------------------
 
 
 def test_notebooks_show_tables_and_complete_keys():
-    found = td.simulate(SCENE, 0.5, budget=1)
+    found = td.simulate(PAPER, 0.5, budget=1)
     html = found._repr_html_()
     assert found._ipython_key_completions_() == [*found]
     assert html.count("<tr>") == len(found) == len(td.EVENTS)
     assert "<td>vertical_hop_time</td>" in html
-    assert "<table " in td.intervals(SCENE, "vertical_hop", 1)._repr_html_()
+    assert "<table " in td.intervals(PAPER, "vertical_hop", 1)._repr_html_()
 
 
 def test_a_scan_is_a_sequence_a_table_and_a_figure(tmp_path):
@@ -287,13 +286,13 @@ def test_a_window_opens_at_a_plain_prompt_alone(monkeypatch):
     monkeypatch.setitem(sys.modules, "windows", SimpleNamespace(FigureCanvas=canvas))
     monkeypatch.setattr("matplotlib.get_backend", lambda: "module://windows")
     monkeypatch.delitem(sys.modules, "IPython", raising=False)
-    td.plot(SCENE)
+    td.plot(PAPER)
     opened.assert_not_called()
     monkeypatch.setattr(sys, "ps1", ">>> ", raising=False)
-    figure = td.plot(SCENE)
+    figure = td.plot(PAPER)
     assert opened.mock_calls == [call(figure, 1), call().show()]
     canvas.required_interactive_framework = None  # no window there
-    td.plot(SCENE)
+    td.plot(PAPER)
     opened.assert_called_once()
 
 
@@ -301,9 +300,9 @@ def test_a_window_opens_at_a_plain_prompt_alone(monkeypatch):
 def test_progress_is_shown_where_someone_looks(progress, monkeypatch, capsys):
     pytest.importorskip("tqdm", reason="tqdm shows progress")
     monkeypatch.setattr(progress_module, "BAR_DELAY", 0.0)
-    td.simulate(SCENE, 0.02, progress=progress)
-    td.starts(SCENE, 10, progress=progress)
-    td.trajectory(SCENE, duration=1, progress=progress)
+    td.simulate(PAPER, 0.02, progress=progress)
+    td.starts(PAPER, 10, progress=progress)
+    td.trajectory(PAPER, duration=1, progress=progress)
     said = capsys.readouterr()
     assert said.out == ""
     assert ("simulate r = 0.2" in said.err) == (progress is True)
@@ -332,7 +331,7 @@ def test_a_bar_is_where_the_work_is(monkeypatch):
 # States -------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("scene", [SCENE, SCENES["combination"]], ids=str)
+@pytest.mark.parametrize("scene", [PAPER, SCENES["combination"]], ids=str)
 def test_states_between_rows_lead_from_one_to_the_next(scene):
     path = td.trajectory(scene, seed=2, duration=30)
     names = [name for name in path.columns if name not in ("time", "event", "first", "second")]
@@ -358,7 +357,7 @@ def test_averages_over_states_have_honest_errors():
         energy = sum(now[name] ** 2 for name in ("u1", "v1", "u2", "v2"))
         return np.stack([energy, start["u1"] * now["u1"], now["x1"] - start["x1"]], axis=1)
 
-    found = td.observe(SCENE, seen, [0, 1, 7.5], 20000, seed=3)
+    found = td.observe(PAPER, seen, [0, 1, 7.5], 20000, seed=3)
     assert found.mean.shape == found.stderr.shape == (3, 3)
     assert found.replicas == 20480
     assert np.allclose(found.mean[:, 0], 1, rtol=0, atol=1e-12)
@@ -366,11 +365,11 @@ def test_averages_over_states_have_honest_errors():
     assert np.all(np.abs(found.mean[:, 2]) <= 5 * found.stderr[:, 2])
     # ⟨u⁴⟩ = 1/8 on the sphere in four dimensions.
     assert math.isclose(found.stderr[0, 1], math.sqrt((1 / 8 - 1 / 16) / 20480), rel_tol=0.05)
-    assert found == td.observe(SCENE, seen, [0, 1, 7.5], 20000, seed=3, cores=2)
-    assert found != td.observe(SCENE, seen, [0, 1, 7.5], 20000, seed=4)
+    assert found == td.observe(PAPER, seen, [0, 1, 7.5], 20000, seed=3, cores=2)
+    assert found != td.observe(PAPER, seen, [0, 1, 7.5], 20000, seed=4)
     assert list(found.frame().columns) == [f"{n}_{k}" for n in ("mean", "stderr") for k in range(3)]
-    given = np.sort(td.starts(SCENE, 5000), order="x1")  # more than a block; their means differ
-    found = td.observe(SCENE, lambda start, now: now["x1"], [0], starts=given)
+    given = np.sort(td.starts(PAPER, 5000), order="x1")  # more than a block; their means differ
+    found = td.observe(PAPER, lambda start, now: now["x1"], [0], starts=given)
     error = given["x1"].std(ddof=1) / math.sqrt(5000)
     assert (found.replicas, found.mean[0]) == (5000, pytest.approx(given["x1"].mean()))
     assert found.stderr[0] == pytest.approx(error, rel=1e-12)
@@ -381,7 +380,7 @@ def test_what_is_observed_has_names():
     parts = {"x": lambda start, now: now["x1"], "u²": lambda start, now: now["u1"] ** 2}
     labelled = namedtuple("Labelled", ["x", "u"])
     columns, listed, packed, made, named, table, fields = (
-        td.observe(SCENE, form, [0, 1], 1)
+        td.observe(PAPER, form, [0, 1], 1)
         for form in (
             lambda *of: np.stack([part(*of) for part in parts.values()], axis=1),
             lambda *of: [part(*of) for part in parts.values()],
@@ -403,7 +402,7 @@ def test_what_is_observed_has_names():
     texts = [text for pair in pairs for text in texts_with_error(*pair)]
     assert str(named).splitlines()[3].split() == ["0", *texts]
     assert "± error" in named._repr_html_()
-    small = td.observe(SCENE, lambda start, now: now["x1"] * 1e-203, [0, 1], 1)
+    small = td.observe(PAPER, lambda start, now: now["x1"] * 1e-203, [0, 1], 1)
     assert np.all(small.stderr > np.abs(small.mean))
 
 
@@ -453,14 +452,14 @@ def test_what_is_handed_over_is_read_only(which):
         states[which]["x1"] += 1
 
     with pytest.raises(ValueError, match="read-only"):
-        td.observe(SCENE, seen, [0, 1], 1)
+        td.observe(PAPER, seen, [0, 1], 1)
 
 
 def test_times_are_any_iterable():
-    averages = td.observe(SCENE, lambda start, now: now["x1"], [0, 1], 1)
-    path = td.trajectory(SCENE, duration=3)
+    averages = td.observe(PAPER, lambda start, now: now["x1"], [0, 1], 1)
+    path = td.trajectory(PAPER, duration=3)
     for times in ((0, 1), range(2), map(float, range(2)), (t for t in (0, 1)), {0: 1, 1: 0}.keys()):
-        assert td.observe(SCENE, lambda start, now: now["x1"], times, 1) == averages
+        assert td.observe(PAPER, lambda start, now: now["x1"], times, 1) == averages
     for times in (iter([0.5, 2]), {0.5: 0, 2: 0}.keys(), np.array([0.5, 2])):
         assert np.array_equal(path.states_at(times), path.states_at([0.5, 2]))
     assert path.states_at(np.array(2.0)) == path.states_at(2)
@@ -468,7 +467,7 @@ def test_times_are_any_iterable():
 
 @pytest.mark.parametrize(
     "scene",
-    [SCENE, *map(SCENES.get, ("combination", "rough", "friction")), td.Scene(6, 1, 0.2, discs=5)],
+    [PAPER, *map(SCENES.get, ("combination", "rough", "friction")), td.Scene(6, 1, 0.2, discs=5)],
     ids=str,
 )
 def test_states_show_that_rows_are_missing(scene, tmp_path):
@@ -521,7 +520,7 @@ def test_tables_have_plain_values_beside_them(tmp_path):
 def test_bins_of_your_own_are_one_kind_and_may_be_empty():
     """A figure then begins with the first bin that has intervals."""
     for bins in ([0, 1e-9, 1, 2], [0, 1e-9]):
-        found = td.intervals(SCENE, "horizontal_hop", 1, bins=bins)
+        found = td.intervals(PAPER, "horizontal_hop", 1, bins=bins)
         assert found.counts[0] == 0
         assert found.at_zero.exact == pytest.approx(3 * math.sqrt(2) / (16 * 1.1))
         assert [row["bins"] for row in found.rows] == ["own"] * (len(bins) - 1)

@@ -15,9 +15,6 @@ from scipy.stats import norm
 from twodiscs_paper.studies.passages import brownian as study
 from twodiscs_paper.studies.passages.models import brownian_steps
 
-SIGMA = 5
-
-
 # Laws that can be solved ------------------------------------------------------------------------
 
 
@@ -72,7 +69,7 @@ def test_first_passages_in_a_wide_channel_are_those_of_a_random_walk(program):
     for name, due in zip(("first", "passage"), times_of_a_walk(length), strict=True):
         total, square = counts[name]
         error = math.sqrt((square / 4000 - (total / 4000) ** 2) / 4000)
-        assert abs(total / 4000 - due) < SIGMA * error, (name, total / 4000, due)
+        assert abs(total / 4000 - due) < 5 * error, (name, total / 4000, due)
 
 
 # The motion -------------------------------------------------------------------------------------
@@ -97,7 +94,7 @@ def test_positions_stay_uniform(program):
         lambda s: abs(s[:, 0]) < 0.3, lambda s: abs(s[:, 1] - s[:, 2]),
     ):  # fmt: skip
         change = value(states).astype(float) - value(before)
-        assert abs(change.mean()) < SIGMA * change.std() / math.sqrt(len(change))
+        assert abs(change.mean()) < 5 * change.std() / math.sqrt(len(change))
 
 
 # Two ways to each number ------------------------------------------------------------------------
@@ -117,9 +114,9 @@ def test_both_methods_agree(program):
     for quantity, one in near.items():
         other = far[quantity]
         off = abs(one.value - other.value) / math.hypot(one.stderr, other.stderr)
-        assert off < SIGMA, (quantity, one, other)
+        assert off < 5, (quantity, one, other)
     rate = far["crossing_rate"]
-    assert program != "reflected" or abs(rate.value - 1) < SIGMA * rate.stderr < 0.2
+    assert program != "reflected" or abs(rate.value - 1) < 5 * rate.stderr < 0.2
 
 
 def test_clusters_hold_each_crossing_once():

@@ -1,6 +1,8 @@
 """The limit of smooth discs at a threshold, and its constant c.
 
 Without these tests the limit of smooth discs at a threshold, and so c, could be wrong.
+
+Comparisons are held to five standard errors: false alarms in fewer than one of a million each.
 """
 
 import math
@@ -11,9 +13,6 @@ from scipy.integrate import dblquad
 
 from twodiscs.model.checks import InputError
 from twodiscs_paper.studies.passages.models import limit
-
-#: False alarms of a comparison with an error bar: one in a million.
-SIGMA = 5
 
 
 def test_reversed_velocities_retrace_the_motion():
@@ -40,12 +39,12 @@ def test_early_turns_pass_with_the_exact_probability():
     exact, _ = dblquad(integrand, 0, 1, math.sqrt(0.5), 1)
     found = limit.amplitude(24, 5, near=1e9)
     longest = limit.UNIFORM_TURNS * limit.FARTHEST_TURN
-    assert abs(found.value / longest - exact) < SIGMA * found.stderr / longest
+    assert abs(found.value / longest - exact) < 5 * found.stderr / longest
 
 
 def test_c_does_not_depend_on_where_invariants_are_kept():
     early, late = limit.amplitude(24, 6, near=0.25), limit.amplitude(48, 7, near=0.45)
-    assert abs(early.value - late.value) < SIGMA * math.hypot(early.stderr, late.stderr)
+    assert abs(early.value - late.value) < 5 * math.hypot(early.stderr, late.stderr)
 
 
 def test_one_block_has_no_error():
