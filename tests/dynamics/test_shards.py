@@ -86,10 +86,13 @@ def test_blocks_add_up_in_any_number_of_lanes(name):
 MORE = {
     **SCENES,
     "narrow": PAPER.with_radius(0.249),
+    "upright": Scene(1.0, 1.5, 0.24),
     "three": Scene(1.5, 1.0, 0.15, discs=3),
     "many, friction": Scene(1.5, 1.0, 0.15, discs=3, friction=2.0),
     "many, ring": Scene(1.5, 1.0, 0.15, discs=4, periodic="x"),
     "many, torus": Scene(2.0, 2.0, 0.2, discs=6, periodic="xy"),
+    "many, crowded": Scene(1.5, 1.0, 0.2, discs=6),
+    "many, upright": Scene(0.6, 2.3, 0.18, discs=8),
     "many, cells, torus": Scene(4.0, 4.0, 0.2, discs=CELL_DISCS, periodic="xy"),
 }
 
