@@ -362,6 +362,12 @@ def test_samples_are_drawn_until_their_errors_are_reached(scene, error, method):
     assert short["volume"].status == "budget"
 
 
+def test_a_volume_of_hardly_any_overlap_is_not_short_of_a_budget():
+    """Too few samples miss it for an error, and the error that they would have is small."""
+    dilute = td.sample(td.Scene(1.5, 1.0, 1e-3), error=1e-6, budget=1e6, quantities="volume")
+    assert (dilute["volume"].status, dilute.note) == ("too-few", None)
+
+
 def test_a_method_whose_price_was_printed_can_be_taken():
     """The prices of a rare hop and of the volume; the default is the first or the fastest one."""
     near = td.Scene(1.5, 1.0, 0.249)
