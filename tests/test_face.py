@@ -26,7 +26,6 @@ from twodiscs.dynamics.paths import check_start
 from twodiscs.figures import style
 from twodiscs.measure.measurements import Measurement, measurement
 from twodiscs.model.formats import texts_with_error
-from twodiscs.model.seeds import job_seed
 from twodiscs.points.monte_carlo_point import InsertionPoint
 from twodiscs.sampling.initial_states import components
 from twodiscs_paper.configuration import yaml_files
@@ -99,13 +98,6 @@ def test_results_are_those_of_the_pipeline(simulated, sampled, intervals):
     followed = SCENE_TABLES["trajectory"].rows(box, 0.2, scene.trajectory_seed)
     path = td.trajectory(PAPER, seed=7, name="one").assign(z1=None, z2=None)
     assert path[[*followed[0]]].to_dict("records") == followed
-
-
-def test_seeds_tell_methods_boxes_and_radii_apart():
-    """A scan with one seed has independent errors, unless the scene has a name."""
-    scenes = [PAPER, PAPER.with_radius(0.1), td.Scene(1.5, 1.1, 0.2), *SCENES.values()]
-    found = [job_seed(scene, m, 1, None) for scene in scenes for m in ("dynamics", "monte_carlo")]
-    assert len({*found}) == len(found)
 
 
 def test_some_events_and_quantities_are_those_of_all(simulated, sampled):
