@@ -31,11 +31,8 @@ from twodiscs_paper.configuration import yaml_files
 from twodiscs_paper.configuration.yaml_files import read
 from twodiscs_paper.pipeline import job_cost
 
-PAGES = [
-    *(REPOSITORY / name for name in ("README.md", "CONTRIBUTING.md")),
-    *sorted((REPOSITORY / "docs").glob("*.md")),
-]
-NAMES = [path.relative_to(REPOSITORY).as_posix() for path in PAGES]
+DOCS = sorted(path.name for path in (REPOSITORY / "docs").glob("*.md"))
+NAMES = ["README.md", "CONTRIBUTING.md", *(f"docs/{name}" for name in DOCS)]
 
 FENCED = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 INDENTED = re.compile(r"(?:(?<=\n\n) {4}.+\n(?:(?: {4}.+)?\n)*)")

@@ -47,9 +47,9 @@ def points():
     }
 
 
-def text_table(points, theory):
+def text_table(points, theory=None):
     points = [point for some in points.values() for point in some]
-    with as_theory(theory):
+    with as_theory(theory or exact_values()):
         compared = check.comparisons(
             VolumeTable.rows(points),
             AreasTable.rows(points),
@@ -60,11 +60,6 @@ def text_table(points, theory):
     return check.check_rows(compared)
 
 
-@pytest.fixture
-def theory():
-    return exact_values()
-
-
 def failed(rows):
     names = "comparison", "quantity", "radius"
     return {tuple(row[name] for name in names) for row in rows if row["passed"] is False}
@@ -73,8 +68,8 @@ def failed(rows):
 # When all is right ----------------------------------------------------------------------------
 
 
-def test_all_that_was_measured_is_compared(points, theory):
-    found = text_table(points, theory)
+def test_all_that_was_measured_is_compared(points):
+    found = text_table(points)
     assert all(row["passed"] for row in found)
     n = len(RADII)
     assert Counter(row["comparison"] for row in found) == {
@@ -112,7 +107,7 @@ ALSO |= {f"{wall}_area": "any_wall_area" for wall in WALLS}
 @pytest.mark.parametrize(
     "name", ["volume", *(f"{e}_time" for e in EVENTS), *(f"{e}_area" for e in SHELL_EVENTS)]
 )
-def test_a_number_off_by_one_percent_is_named(points, theory, name, monkeypatch):
+def test_a_number_off_by_one_percent_is_named(points, name, monkeypatch):
     true = exact.shell_expectation
 
     def shell_expectation(scene, of, epsilon):
@@ -121,6 +116,7 @@ def test_a_number_off_by_one_percent_is_named(points, theory, name, monkeypatch)
     monkeypatch.setattr(exact, "shell_expectation", shell_expectation)
     event, _, kind = name.rpartition("_")
     radii = possible_radii(event or "any_wall")
+    theory = exact_values()
     for radius in radii if kind != "area" else ():
         theory[radius, name] *= 0.99 if event in HOPS else 1.01
     found = failed(text_table(points, theory))
@@ -179,31 +175,31 @@ def with_hops(point, number):
     return replace(point, counts=point.counts | {event: number}, products=products)
 
 
-def test_what_is_blocked_must_not_be_seen(points, theory):
+def test_what_is_blocked_must_not_be_seen(points):
     seen = with_hops(points["dynamics"][RADII.index(0.38)], 1)
-    found = text_table({**points, "dynamics": [seen]}, theory)
+    found = text_table({**points, "dynamics": [seen]})
     assert failed(found) == {("mean_time", "vertical_hop_time", 0.38)}
 
 
-def test_what_is_due_must_be_seen(points, theory):
+def test_what_is_due_must_be_seen(points):
     dynamics = [with_hops(point, 0) for point in points["dynamics"]]
     radii = possible_radii("vertical_hop")
-    assert failed(text_table({**points, "dynamics": dynamics}, theory)) == {
+    assert failed(text_table({**points, "dynamics": dynamics})) == {
         ("mean_time", "vertical_hop_time", radius) for radius in radii
     }
     monte_carlo = [
         replace(p, quantities=p.quantities | {"volume": replace(p.quantities["volume"], hits=0)})
         for p in points["monte_carlo"]
     ]
-    found = text_table({**points, "monte_carlo": monte_carlo}, theory)
+    found = text_table({**points, "monte_carlo": monte_carlo})
     assert ("volume", "volume", 0.38) in failed(found)
 
 
-def test_what_cannot_be_compared_is_there_and_not_passed(theory):
+def test_what_cannot_be_compared_is_there_and_not_passed():
     rng = np.random.default_rng(6)
     interval = LAWS[1].intervals(rng, chains=50)
     dynamics = LAWS[1].dynamics(rng, replicas=64, relative=1e-2)
-    found = text_table({"dynamics": [dynamics], "intervals": [interval]}, theory)
+    found = text_table({"dynamics": [dynamics], "intervals": [interval]})
     untested = [row for row in found if row["passed"] is None]
     assert {row["comparison"] for row in untested} == {"hop_interval", "sum_rule"}
     for row in untested:
@@ -228,8 +224,8 @@ def test_the_sum_rule_is_for_equal_discs_between_walls():
 # Independent rows -----------------------------------------------------------------------------
 
 
-def test_independent_rows_could_fail_and_follow_from_no_other(points, theory):
-    good = text_table(points, theory)
+def test_independent_rows_could_fail_and_follow_from_no_other(points):
+    good = text_table(points)
     independent = [row for row in good if row["independent"]]
     compared = {row["comparison"] for row in independent}
     assert compared == {"volume", "area", "mean_time", "hop_interval"}
@@ -241,14 +237,14 @@ def test_independent_rows_could_fail_and_follow_from_no_other(points, theory):
     assert len(independent) == TESTED
 
 
-def test_walls_are_tests_of_their_own_where_they_are_not_counted_alone(theory):
+def test_walls_are_tests_of_their_own_where_they_are_not_counted_alone():
     """The whole of the walls is a sum of others only if those are watched, or has a shell."""
     rng, row = np.random.default_rng(7), empty(AreasTable, quantity="any_wall_area", radius=0.2)
     for epsilon in (None, 0.004):
         (one,) = check.comparisons([], [row | {"epsilon": epsilon, "z": 0.0}], [], [], [])
         assert one["independent"] == (epsilon is not None)
     for events in (("any_wall",), ("right_wall", "any_wall"), ("disc_collision", "any_wall")):
-        found = text_table({"dynamics": [LAWS[1].dynamics(rng, events=events)]}, theory)
+        found = text_table({"dynamics": [LAWS[1].dynamics(rng, events=events)]})
         assert [row["quantity"] for row in found if row["independent"]] == [
             f"{event}_time" for event in events
         ]

@@ -11,10 +11,8 @@ from twodiscs.figures import configuration_space, style
 from twodiscs.model.scene import Box
 from twodiscs.theory import exact
 
-UPRIGHT = BOXES["tall"]
 
-
-@pytest.mark.parametrize("box", [PAPER, UPRIGHT, Box(3.0, 1.0), Box(1.0, 4.0)], ids=str)
+@pytest.mark.parametrize("box", [PAPER, BOXES["tall"], Box(3.0, 1.0), Box(1.0, 4.0)], ids=str)
 def test_the_largest_discs_touch_each_other_and_walls(box):
     jammed, regimes = draw("largest_radius", box, {}).axes
     discs = [patch for patch in jammed.patches if isinstance(patch, Circle)]
@@ -39,7 +37,7 @@ def test_the_largest_discs_touch_each_other_and_walls(box):
     assert ("$2r$" in {text.get_text() for text in jammed.texts}) == (shape < 2)
 
 
-@pytest.mark.parametrize("box", [PAPER, UPRIGHT, Box(2.5, 1.0)], ids=str)
+@pytest.mark.parametrize("box", [PAPER, BOXES["tall"], Box(2.5, 1.0)], ids=str)
 def test_the_regimes_have_the_areas_of_their_hops(box):
     """The coloured segments on the axes are A − σ and B − σ long; the arc ends on the rectangle."""
     for axes in draw("integration_regimes", box, {}).axes:
@@ -62,7 +60,7 @@ def test_the_regimes_have_the_areas_of_their_hops(box):
             assert length == pytest.approx(due, rel=1e-9)
 
 
-@pytest.mark.parametrize("box", [PAPER, UPRIGHT], ids=str)
+@pytest.mark.parametrize("box", [PAPER, BOXES["tall"]], ids=str)
 def test_both_shells_are_equally_thick(box):
     hop, collision = draw("surface_shell", box, {}).axes
     diagonal, *edges = sorted(

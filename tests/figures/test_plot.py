@@ -8,11 +8,11 @@ from functools import cache
 
 import numpy as np
 import pytest
-from effect_scenes import SCENES
+from effect_scenes import PAPER, SCENES
 from factory import of
 from figure_cases import bars, points
 from matplotlib.figure import Figure
-from PIL import Image
+from matplotlib.image import imread
 
 import twodiscs as td
 from twodiscs.figures import curves, style
@@ -57,7 +57,7 @@ def test_all_events_of_a_scan_are_drawn_with_their_errors():
 
 
 def test_a_warning_names_what_is_not_drawn():
-    found = td.sample(td.Scene(1.5, 1.0, 0.2), 2**20)
+    found = td.sample(PAPER, 2**20)
     said = r"volume does not show vertical_hop_area, .*areas"
     with pytest.warns(UserWarning, match=said) as all_:
         td.plot(found)
@@ -105,25 +105,20 @@ def test_what_a_transmission_leaves_falls_at_twice_its_rate():
 # The user's process and axes ----------------------------------------------------------------------
 
 
-def pixels(path):
-    return np.asarray(Image.open(path).convert("RGB"))
-
-
 def test_a_returned_figure_is_saved_as_plot_saves_it(tmp_path):
     """By its own method, also after it was pickled."""
-    figure = td.plot(scan(HOPS), tmp_path / "ours.png")
+    figure = td.plot(PAPER, tmp_path / "ours.png")
     pickle.loads(pickle.dumps(figure)).savefig(tmp_path / "own.png")
-    np.testing.assert_array_equal(pixels(tmp_path / "own.png"), pixels(tmp_path / "ours.png"))
+    np.testing.assert_array_equal(imread(tmp_path / "own.png"), imread(tmp_path / "ours.png"))
     figure.savefig(tmp_path / "own.pdf")
     assert b"/Type3" not in (tmp_path / "own.pdf").read_bytes()
 
 
 def test_plots_in_threads_are_those_of_one_thread():
     """As a notebook shows them; a copy can be changed. test_process looks at the settings."""
-    table = td.exact_table(1.5, 1.0, [0.1])
     with ThreadPoolExecutor(2) as pool:
-        first, second = pool.map(lambda _: td.plot(table, figure="volume")._repr_png_(), range(2))
-    figure = td.plot(table, figure="volume")
+        first, second = pool.map(lambda _: td.plot(PAPER)._repr_png_(), range(2))
+    figure = td.plot(PAPER)
     assert first == second == figure._repr_png_()
     other = copy.deepcopy(figure)
     other.axes[0].set_title("another")

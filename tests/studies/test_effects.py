@@ -11,7 +11,7 @@ from subprocess import CalledProcessError
 import numpy as np
 import pytest
 from exact_motion import path_events
-from factory import Laws, empty, of, written
+from factory import BOX, Laws, empty, of, written
 from marks import slow
 
 from twodiscs.analysis.tables import MeanTimesTable
@@ -30,7 +30,6 @@ from twodiscs_paper.studies.effects.study import SCENES, EffectsCostTable, Effec
 from twodiscs_paper.studies.single import tail_constant
 
 FILES = [Path(__file__).parents[2] / "config" / "scenes" / f"{name}.yaml" for name in SCENES]
-PLAIN = Box(1.5, 1.0)
 ROUGH = Scene(1.5, 1.0, 0.24, moment_of_inertia=0.5)
 SEED = 1908
 
@@ -38,7 +37,7 @@ SEED = 1908
 # Scenes and counts --------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("scene", [ROUGH, ROUGH.with_radius(0.1), slow(PLAIN.scene(0.24))], ids=str)
+@pytest.mark.parametrize("scene", [ROUGH, ROUGH.with_radius(0.1), slow(BOX.scene(0.24))], ids=str)
 def test_unmet_starts_are_those_whose_paths_have_no_collision(scene, monkeypatch):
     """Against the trajectories that are written for people, start by start."""
     times, replicas = (2.0, 6.0, 15.0), 48
@@ -100,7 +99,7 @@ def test_starts_that_have_not_met_are_counted_at_every_radius_where_discs_meet_s
     scenes = [
         scene
         for radius in request("rough").radii
-        for scene in (Box(**BOXES["rough"]).scene(radius), PLAIN.scene(radius))
+        for scene in (Box(**BOXES["rough"]).scene(radius), BOX.scene(radius))
         if exact.mean_times(scene)["disc_collision"] <= 5
     ]
     assert [(row["radius"], row["effects"], row["replicas"]) for row in rows] == [
@@ -141,7 +140,7 @@ def test_rows_of_shares(rows):
     assert smooth["stderr"] is None
     assert rows[5]["estimate"] is None
     # P(none within t) is the integral of P(T > s)/τ beyond t, with P → C/s³.
-    scene, s = PLAIN.scene(0.24), np.geomspace(100.0, 1e7, 4001)
+    scene, s = BOX.scene(0.24), np.geomspace(100.0, 1e7, 4001)
     tail = tail_constant(scene, "disc_collision") / s**3
     assert smooth["plain"] == pytest.approx(
         np.trapezoid(tail * s, np.log(s)) / exact.mean_times(scene)["disc_collision"], rel=1e-4

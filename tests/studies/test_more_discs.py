@@ -14,10 +14,8 @@ from twodiscs_paper.studies.more_discs.study import MoreDiscsTable
 @pytest.fixture(scope="module")
 def rows(tmp_path_factory):
     path = tmp_path_factory.mktemp("more") / "more_discs.csv"
-    given = {"events": 300_000, "samples": 60_000, "seed": 1}
-    rows = measure.rows(**given, discs=(2, 3, 4), radii=(0.1,), on_tori=((3, 0.3),))
-    channel = measure.rows(**given, discs=(4,), radii=(0.28,), on_tori=())
-    MoreDiscsTable.write(path, [*rows, *channel])
+    scenes = {"discs": (2, 3, 4), "radii": (0.1, 0.28), "on_tori": ((3, 0.3),)}
+    MoreDiscsTable.write(path, measure.rows(events=300_000, samples=60_000, seed=1, **scenes))
     return MoreDiscsTable.read(path)
 
 

@@ -11,7 +11,8 @@ from functools import partial
 import numpy as np
 import pytest
 import yaml
-from factory import LONG_RUNS, of, written
+from effect_scenes import PAPER
+from factory import BOX, LONG_RUNS, of, written
 from marks import slow
 from mpmath import mpf
 from scipy.stats import chi2, norm
@@ -30,9 +31,8 @@ from twodiscs_paper.studies.stability import measure as stability
 from twodiscs_paper.studies.stability.study import CalibrationTable, StabilityTable
 
 KEPT = LONG_RUNS / "calibration"
-PAPER = td.Box(1.5, 1.0)
 LARGEST = "largest radius"
-BOXES = [PAPER, td.Box(3.0, 1.0), td.Box(1e6, 1e-6), td.Box(1e-6, 1e6)]
+BOXES = [BOX, td.Box(3.0, 1.0), td.Box(1e6, 1e-6), td.Box(1e-6, 1e6)]
 #: The reference of theory takes half a second for a box.
 OTHERS = [td.Box(1.0, 1.5), td.Box(1.0, 1.0), td.Box(2.0, 1.0), td.Box(1.98, 1.0)]
 any_box = pytest.mark.parametrize("box", [*BOXES, *map(slow, OTHERS)], ids=str)
@@ -84,7 +84,9 @@ def test_theory_holds_where_closed_forms_fail(box):
     stable = of(rows, method="stable")
     assert len(stable) >= 100
     assert all(row["passed"] for row in stable)
-    near, *_ = of(rows, method="closed-form", quantity="volume", distance=-1e-9, case=LARGEST)
+    near, *_ = of(
+        rows, method="closed-form", quantity="volume", distance=-1e-9, case="largest radius"
+    )
     # Two powers of the room are lost even where the discs lie in a row.
     assert near["value"] > 1e-4 or max(box.sides) > 10 * min(box.sides)
 
@@ -92,7 +94,7 @@ def test_theory_holds_where_closed_forms_fail(box):
 def test_an_error_in_a_formula_shows(monkeypatch):
     volume = exact.volume
     monkeypatch.setattr(exact, "volume", lambda scene: volume(scene) * (1 + 1e-12))
-    wrong = failed(stability.theory_rows(PAPER))
+    wrong = failed(stability.theory_rows(BOX))
     assert {row["quantity"] for row in wrong} == {"volume"}
     # A zero must be met exactly.
     assert stability.relative_error({"a": 0.0}, {"a": mpf(0)}) == 0
@@ -116,7 +118,7 @@ def test_sampling_and_estimates_hold(box, monkeypatch):
 # Times of events ----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("box", [PAPER, td.Box(1e6, 1e-6)], ids=str)
+@pytest.mark.parametrize("box", [BOX, td.Box(1e6, 1e-6)], ids=str)
 def test_predicted_times_are_right_to_a_few_roundings(box):
     rows = list(stability.time_rows(box, seed=4))
     ours = of(rows, method="stable")
@@ -159,7 +161,7 @@ def test_the_extremes_are_those_of_every_effect():
 
 def test_rows_of_extremes_are_their_mean_times(monkeypatch):
     """A plain box of 1e6 × 1e-6, where most events are never seen, and an ordinary one."""
-    scenes = {"long": stability.EXTREMES["1e6 by 1e-6"], "ordinary": stability.PAPER_SCENE}
+    scenes = {"long": stability.EXTREMES["1e6 by 1e-6"], "ordinary": PAPER}
     rows = list(stability.extreme_rows(1, scenes))
     assert failed(rows) == []
     own = {(row["case"], row["quantity"]): row for row in rows}
@@ -175,7 +177,7 @@ def test_rows_of_extremes_are_their_mean_times(monkeypatch):
     times = exact.mean_times
     wrong = {"mean_times": lambda scene: {e: 1.05 * t for e, t in times(scene).items()}}
     monkeypatch.setattr(exact, *wrong.popitem())
-    found = failed(stability.extreme_rows(1, {"ordinary": stability.PAPER_SCENE}))
+    found = failed(stability.extreme_rows(1, {"ordinary": PAPER}))
     assert {row["quantity"] for row in found} >= {"any_wall_time", "disc_collision_time"}
 
 
@@ -186,14 +188,12 @@ def test_a_bound_that_says_something_is_judged(monkeypatch):
     found = [cells | {"quantity": "a_time", "z": 6.0}, cells | {"quantity": "b_time", "z": 0.0}]
     found.append(cells | {"quantity": "c_time", "z": 0.0, "test": "certain"})
     monkeypatch.setattr(stability, "comparisons", lambda *_: found)
-    rows = stability.extreme_rows(1, {"ordinary": stability.PAPER_SCENE})
+    rows = stability.extreme_rows(1, {"ordinary": PAPER})
     judged = [(row["quantity"], row["z"], row["passed"]) for row in rows]
     assert judged == [("a_time", 6.0, False), ("b_time", None, None)]
 
 
 # Long runs and paths back ------------------------------------------------------------------------
-
-SCENE = td.Scene(1.5, 1.0, 0.2)
 
 
 @pytest.mark.parametrize("box", [*BOXES, td.Box(1e40, 1.5e40), *map(slow, OTHERS)], ids=str)
@@ -209,13 +209,13 @@ def test_energy_error_grows_like_a_random_walk():
     The exponent of a walk fluctuates; the largest of 64 lanes over a factor of 64 in the number of
     events grows by 8, and by 64 for a drift. Halfway, on a logarithmic scale, is 23.
     """
-    short, long = (stability.run(SCENE, n, 2)["energy_error"] for n in (10**6, 64 * 10**6))
+    short, long = (stability.run(PAPER, n, 2)["energy_error"] for n in (10**6, 64 * 10**6))
     assert long / short < 23
 
 
 def audited(starts, shortest=0.0):
     columns = np.array(starts, float).T.copy()
-    return stability.audit(columns, 1, 50, two_disc_law(SCENE), shortest)
+    return stability.audit(columns, 1, 50, two_disc_law(PAPER), shortest)
 
 
 GOOD = (-0.4, 0.1, 0.4, -0.1, 0.6, 0.48, -0.64, 0.0)
@@ -256,7 +256,7 @@ def test_events_retraced_are_those_the_exponent_allows(monkeypatch):
 
 def test_growth_is_that_of_the_tangent_space_and_ends_where_the_events_differ():
     """It is the same for separations of 1e-7, 1e-8 and 1e-9."""
-    starts, law = states(SCENE, 50, 1), two_disc_law(SCENE)
+    starts, law = states(PAPER, 50, 1), two_disc_law(PAPER)
     logs = [np.log(stability.growth(starts, 5, 20, size, law)) for size in (1e-7, 1e-8, 1e-9)]
     assert np.median(logs[1]) > 3
     for other in (logs[0], logs[2]):
@@ -281,13 +281,14 @@ def test_scores_of_values_with_errors_that_are_right_and_wrong():
     assert (z.tolist(), withheld) == ([1.0], 2)
 
 
-def test_a_row_of_calibration_counts_what_the_face_prints():
+def test_a_row_of_calibration_counts_what_the_face_prints(monkeypatch):
     """One seed of few bodies: scores of simulate are the deviations over the printed errors."""
+    monkeypatch.setitem(calibration.CALL_SIZES, "simulate", {"least": {"budget": 1}})
     rows, name, z = calibration.rows(2, 5, ("r = 0.2",), ("simulate",)), "disc_collision_time", []
     for seed in (5, 6):
-        one = td.simulate(td.Scene(1.5, 1.0, 0.2), budget=1, seed=seed)[name]
+        one = td.simulate(PAPER, budget=1, seed=seed)[name]
         z.append((one.value - one.exact) / one.stderr)
-    (row,) = of(rows, quantity=name, size="least")
+    (row,) = of(rows, quantity=name)
     assert (row["scores"], row["withheld"]) == (2, 0)
     assert row["mean"] == pytest.approx(np.mean(z))
     assert row["mean_square"] == pytest.approx(np.mean(np.square(z)))
@@ -312,12 +313,12 @@ def test_errors_are_what_they_say(call, cases):
 
 def few_intervals(seed):
     """Return rows of distributions.csv from few intervals."""
-    return distributions.measured({}, PAPER.scene(0.1), "vertical_hop", seed, 2**17)
+    return distributions.measured({}, BOX.scene(0.1), "vertical_hop", seed, 2**17)
 
 
 def few_passages(seed):
     """Return rows of passages.csv by ``NearThreshold`` from few hops, at two distances."""
-    rows = [*near_threshold.one_hop("", PAPER, "horizontal_hop", (6, 7), None, 2**12, seed)]
+    rows = [*near_threshold.one_hop("", BOX, "horizontal_hop", (6, 7), None, 2**12, seed)]
     return [*rows, *powers.fits([dict.fromkeys(powers.HOP_COLUMNS) | row for row in rows])]
 
 
@@ -362,7 +363,7 @@ def test_table_and_figure_of_any_box(tmp_path, monkeypatch):
         monkeypatch.setattr(stability, name, montecarlo.PROPOSALS_PER_BLOCK)
     monkeypatch.setattr(stability, "REVERSED_PATHS", 200)
     monkeypatch.setattr(stability, "WINDOW_EVENTS", 64)
-    one = partial(stability.extreme_rows, scenes={"ordinary": stability.PAPER_SCENE})
+    one = partial(stability.extreme_rows, scenes={"ordinary": PAPER})
     monkeypatch.setattr(stability, "extreme_rows", one)
     box = td.Box(1e-6, 1e6)
     rows = written(tmp_path, StabilityTable, box=box, seed=1, ordinary=2000, hard=1000)
