@@ -86,13 +86,6 @@ def test_the_first_lone_hop_of_the_rarer_kind_is_shown(rows, discs, hop, centre,
     assert times.tolist() == [*frames]
 
 
-def test_a_file_of_another_kind_and_a_wrong_radius_are_refused():
-    with pytest.raises(ValueError, match=r"path must be a \.gif, .*\.mp4 file, not 'a\.avi'"):
-        animation.animate(BOX, RADIUS, [], ["a.gif", "a.avi"])
-    with pytest.raises(ValueError, match="radius must be a positive"):
-        animation.animate(BOX, -1, at(end=9.5), ["a.gif"])
-
-
 # Content of the frames ---------------------------------------------------------------------------
 
 

@@ -9,6 +9,7 @@ import json
 from pathlib import Path
 
 import pytest
+from checkout import one_scene
 
 from twodiscs.model.effects import EFFECTS
 from twodiscs_paper.catalogue import STUDIES
@@ -50,8 +51,7 @@ def test_parameters_are_plain_values_that_its_table_takes(study, default):
 
 def test_studies_read_only_what_there_is(default):
     """A scene that measures no times has no part in the thresholds."""
-    scene = {"name": "paper", "box": {"width": 1.5, "height": 1}, "watch": {"volume": True}}
-    little = load({"scenes": [scene | {"radii": [0.1]}]})
+    little = load(one_scene("paper", watch={"volume": True}, radii=[0.1]))
     assert STUDIES["thresholds"].reads(little) == {"distributions": (None, "distributions")}
     checked = {"paper/check": ("paper", "check"), "effects": (None, "effects")}
     assert STUDIES["agreement"].reads(little) == checked
@@ -61,9 +61,8 @@ def test_studies_read_only_what_there_is(default):
 
 def test_budgets_follow_the_main_scene_within_limits():
     def parameters(study, budget):
-        scene = {"name": "a", "box": {"width": 1.5, "height": 1}}
-        scene |= {} if budget is None else {"event_budget": budget}
-        return STUDIES[study].parameters(load({"scenes": [scene | {"radii": [0.1]}]}))
+        keys = {} if budget is None else {"event_budget": budget}
+        return STUDIES[study].parameters(load(one_scene("a", radii=[0.1], **keys)))
 
     tails = [parameters("tails", budget) for budget in (10**4, 10**8, 10**12)]
     assert [one["replicas"] for one in tails] == [4_000, 5_000, 100_000]

@@ -6,7 +6,7 @@ Without these tests a mistake in the configuration could be a traceback, or begi
 import shutil
 
 import pytest
-from checkout import Checkout, folder
+from checkout import Checkout, folder, one_scene
 
 #: One mistake for each place that can find one; other tests check the sentences.
 MISTAKES = {
@@ -48,12 +48,11 @@ def test_a_file_that_cannot_be_read_and_a_mistake_on_the_command_line(unbuilt, t
 
 
 #: A scene that takes days, and does not reach its accuracy.
-LONG = {"name": "a", "box": {"width": 1.5, "height": 1}, "radii": [0.2]}
-LONG |= {"watch": {"mean_times": ["any_wall"]}, "accuracy": 1e-7, "event_budget": 1e13}
+LONG = {"watch": {"mean_times": ["any_wall"]}, "accuracy": 1e-7, "event_budget": 1e13}
 
 
 def test_a_dry_run_names_the_closest_target_the_days_and_accuracies_not_reached(unbuilt, tmp_path):
-    place = folder(tmp_path, unbuilt, {"shared": [], "scenes": [LONG]})
+    place = folder(tmp_path, unbuilt, one_scene("a", radii=[0.2], **LONG))
     words = "--dry-run", "mean_wall_times", "--report", "report.zip"
     run = place.snakemake(*words, passes=False)
     assert "'mean_wall_times' is no target; did you mean 'mean_wall_time'?" in run.stdout
