@@ -52,13 +52,9 @@ def sample_point(scene, quantities, samples, shell, seed):
     return sampler.point({(0, blocks): [sampler.count(0, blocks)]})
 
 
-def scenes(radii=RADII):
-    return [BOX.scene(radius) for radius in radii]
-
-
-def exact_values(radii=RADII):
+def exact_values():
     """Return {(radius, quantity): exact value}, as theory.csv has them."""
-    rows = tables.TheoryTable.rows(BOX, radii)
+    rows = tables.TheoryTable.rows(BOX, RADII)
     return {(row["radius"], row["quantity"]): row["exact"] for row in rows}
 
 
@@ -199,7 +195,7 @@ class Laws:
 
 
 #: The laws of all ``RADII``.
-LAWS = [Laws(scene) for scene in scenes()]
+LAWS = [Laws(BOX.scene(radius)) for radius in RADII]
 
 
 def written(folder, table, **given):

@@ -46,10 +46,10 @@ EFFECTS = {"radius_ratio": 0.625, "mass_ratio": 0.125, "moment_of_inertia": 0.37
 OTHERS = {"effects": Box(1.55, 1.05, periodic="x", **EFFECTS), "five": Box(1.5, 1.0, discs=5)}
 
 
-def draw(name, box, tables):
+def draw(name, box, tables, **more):
     """Draw a figure of the catalogue as its job does, with the table that it reads."""
     with style.context():
-        return draw_figure(name, box, *(tables[table] for table in FIGURES[name].tables))
+        return draw_figure(name, box, *(tables[table] for table in FIGURES[name].tables), **more)
 
 
 # Tables -------------------------------------------------------------------------------------------

@@ -4,14 +4,13 @@ Without these tests links could be dead, entries without a place, and lines of t
 """
 
 import re
-import subprocess
-import sys
 from itertools import product
 
 import made
 import pytest
 from browser import ABSENT, BROWSER, browser
 from checkout import REPOSITORY
+from commands import python
 
 import twodiscs as td
 from twodiscs_paper.catalogue import ALL_FIGURES, TABLES
@@ -26,12 +25,9 @@ WIDTHS = 1280, 768, 390
 def site(tmp_path_factory):
     """The folder of the site, as ``make docs`` builds it."""
     folder = tmp_path_factory.mktemp("site")
-    command = [
-        *(sys.executable, "-m", "sphinx", "--conf-dir", "docs/make"),
-        *("--doctree-dir", folder / "doctrees", "--fail-on-warning", "--keep-going", "--quiet"),
-        *(".", folder / "site"),
-    ]
-    done = subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True, check=False)
+    options = "--conf-dir", "docs/make", "--fail-on-warning", "--keep-going", "--quiet"
+    places = "--doctree-dir", folder / "doctrees", ".", folder / "site"
+    done = python("-m", "sphinx", *options, *places, cwd=REPOSITORY)
     assert done.returncode == 0, done.stderr
     return folder / "site"
 

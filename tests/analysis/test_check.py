@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from effect_scenes import SCENES
-from factory import LAWS, RADII, Laws, as_theory, counts_point, empty, exact_values, scenes
+from factory import LAWS, RADII, Laws, as_theory, counts_point, empty, exact_values
 
 from twodiscs.analysis import check, scores
 from twodiscs.analysis.tables import AreasTable, HopHistogramTable, MeanTimesTable, VolumeTable
@@ -33,7 +33,7 @@ MIRRORED = [
 #: How many quantities have scores at several radii: volume, areas, times, intervals, the sum rule.
 SCORED = 3 + 2 * len(EVENTS)
 
-BLOCKED = sum(not scene.is_possible(hop) for scene in scenes() for hop in HOPS)
+BLOCKED = sum(not law.scene.is_possible(hop) for law in LAWS for hop in HOPS)
 TESTED = len(RADII) * (1 + 2 * len(SHELL_EVENTS) - len(MIRRORED)) + 4 - 2 * BLOCKED
 
 
@@ -96,7 +96,7 @@ def test_all_that_was_measured_is_compared(points):
 
 
 def possible_radii(event):
-    return {scene.radius for scene in scenes() if scene.is_possible(event)}
+    return {law.scene.radius for law in LAWS if law.scene.is_possible(event)}
 
 
 #: {wrong number: another one that fails with it}.

@@ -78,8 +78,7 @@ def test_both_shells_are_equally_thick(box):
 def test_a_prism_hides_three_edges_and_a_cylinder_its_other_half(monkeypatch, azimuth, elevation):
     monkeypatch.setattr(configuration_space, "AZIMUTH", azimuth)
     monkeypatch.setattr(configuration_space, "ELEVATION", elevation)
-    with style.context():
-        axes = configuration_space.draw(Box(1.5, 1.0)).axes[0]
+    axes = draw("configuration_space", PAPER, {}).axes[0]
     edges = [line for line in axes.lines if len(line.get_xdata()) == 2]
     assert len(edges) == 12
     assert sum(line.is_dashed() for line in edges) == 3

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from figure_cases import PAPER, tables_of, unclear
+from figure_cases import PAPER, draw, tables_of, unclear
 from matplotlib.figure import Figure
 
 from twodiscs.analysis.tables import TrajectoryTable
@@ -36,8 +36,7 @@ def test_the_panels_beneath_show_most_hops_and_a_hop_that_is_not_undone():
 def test_the_longer_side_that_ends_at_walls_is_shown_with_its_hops(box, axis):
     """The panel beneath enlarges a short trajectory too; a hop that is not undone has its own."""
     rows = tables_of("paper")["trajectory"][: None if box == PAPER else 120]
-    with style.context():
-        figure = motion.draw_trajectory(box, rows, radius=0.24)
+    figure = draw("hopping_trajectory", box, {"trajectory": rows}, radius=0.24)
     assert unclear(figure) == []
     hop = "horizontal_hop" if axis == "x" else "vertical_hop"
     times = [row["time"] for row in rows if row["event"] == hop]
@@ -67,8 +66,7 @@ def test_lines_of_many_discs_are_those_of_the_trajectory(box):
     """Few enough bends to follow. Hops are no bends: without them the lines are the same."""
     discs, axis = box.discs, "x" if box.width > box.height else "y"
     rows = TrajectoryTable.rows(box, 0.1, 1908)
-    with style.context():
-        figure = motion.draw_trajectory(box, rows, radius=0.1)
+    figure = draw("hopping_trajectory", box, {"trajectory": rows}, radius=0.1)
     assert unclear(figure) == []
     whole, close = figure.axes
     times = [row["time"] for row in rows if row["time"] <= whole.get_xlim()[1]]
@@ -91,8 +89,7 @@ def test_of_very_many_discs_some_lines_are_drawn():
     starts = np.sort(rng.uniform(-4.5, 4.5, 50))
     places = {f"x{n}": x for n, x in enumerate(rng.permutation(starts), 1)}
     rows = [{"time": float(t), "event": "disc_collision", **places} for t in range(400)]
-    with style.context():
-        whole, close = motion.draw_trajectory(box, rows).axes
+    whole, close = draw("hopping_trajectory", box, {"trajectory": rows}).axes
     assert close.get_xlim()[1] < whole.get_xlim()[1] / 2
     drawn = np.sort([line.get_ydata()[0] for line in whole.lines])
     assert len(drawn) == len(close.lines) == motion.LINES_PER_PANEL

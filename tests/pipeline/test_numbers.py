@@ -115,7 +115,6 @@ def rows(tmp_path):
 def test_a_number_takes_its_rows_and_is_written_as_by_physicists(rows):
     cases = {
         'value(of(rows, event: "wall"), "estimate", 2)': "$8$",  # an empty cell is no row
-        'value(of(rows, event: "hop", law: given), "estimate", 2)': "$-6$",
         'value(of(rows, law: none, estimate: given), "estimate", 2)': "$5$",
         'value(of(rows, event: other-than("hop")), "estimate", 2)': "$8$",
         "count(of(rows, time: 2))": "2",
