@@ -114,19 +114,13 @@ def test_some_events_and_quantities_are_those_of_all(simulated, sampled):
 
 
 def test_measurements_know_their_errors_and_print_themselves(simulated, sampled):
+    """test_tutorial has their texts."""
     found = simulated["vertical_hop_time"]
     assert found.exact == td.mean_times(PAPER)["vertical_hop_time"]
     assert found.relative_stderr == found.stderr / found.value
     ends = found.value - found.stderr, found.value + found.stderr
     assert found.interval(0.6826894921370859) == pytest.approx(ends, rel=1e-12)
-    said = str(found)
-    assert said.startswith("vertical_hop_time = 1.3")
-    assert "± 0.0" in said
-    assert " time, exact 1.3" in said
-    lines = str(simulated).splitlines()
-    assert lines[0] == "Two discs of radius 0.2 in a box of 1.5 × 1.0"
-    table = lines[3 : 3 + len(td.EVENTS)]
-    assert [line.split()[0] for line in table] == [f"{event}_time" for event in td.EVENTS]
+    table = str(simulated).splitlines()[3 : 3 + len(td.EVENTS)]
     assert len({line.index("time", 24) for line in table}) == 1
     assert sampled.frame().loc["volume", "estimate"] == sampled["volume"].value
     assert "length⁴" in str(sampled["volume"])
