@@ -47,6 +47,17 @@ def test_the_box_on_its_side_has_the_same_numbers():
         assert euler == pytest.approx(6 * volume, abs=BOUND * (volume + sigma * contact))
 
 
+def test_triangles_that_begin_to_reach_around_a_torus_are_small():
+    """At three diameters, where arguments of arc cosines round to more than 1."""
+    for side in np.linspace(1, 2, 40):
+        below, above = (
+            three.torus_derivatives(Scene(side, side, side / 6 * share, discs=3, periodic="xy"))
+            for share in (1 - 1e-12, 1 + 1e-12)
+        )
+        assert above.log_volume == pytest.approx(below.log_volume, abs=1e-9)
+        assert above.per_contact == pytest.approx(below.per_contact, abs=1e-9)
+
+
 @pytest.mark.parametrize(
     ("width", "height", "radius"),
     [(1.5, 1.0, 0.16), (1.5, 1.0, 0.249), (1.0, 1.02, 0.2499), (0.5, 2.0, 0.12), (9.0, 1.0, 0.2)],
