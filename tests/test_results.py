@@ -92,6 +92,7 @@ def test_results_go_on_and_come_back(name, tmp_path, monkeypatch):
     read = td.load_result(path)
     assert type(read) is type(less)
     assert read == less
+    assert repr(less) == str(less)  # at a prompt
     with monkeypatch.context() as patch:  # another third digit
         patch.setattr(td, "__version__", f"{td.__version__}1")
         assert bits(td.load_result(path)) == bits(read) == bits(less)

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from commands import python
 from effect_scenes import exchanged
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from marks import slow
 from mpmath import mp, mpf
@@ -297,7 +297,7 @@ def scenes(draw):
         "radius_ratio": draw(st.just(1.0) | RATIO),
         "mass_ratio": draw(st.just(1.0) | RATIO),
         "periodic": draw(st.sampled_from(["", "x", "y", "xy"])),
-        "moment_of_inertia": draw(st.none() | st.just(0.5)),
+        **draw(st.sampled_from([{}, {"moment_of_inertia": 0.5}, {"depth": 1.2}])),
     }
     if "y" not in effects["periodic"]:
         effects["field"] = draw(st.just(0.0) | st.floats(1e-3, 10.0))
@@ -309,8 +309,15 @@ def scenes(draw):
         assume(False)
 
 
+#: At the farthest separation roundings leave less energy than none.
+DEEP = {"depth": 0.9229272789199455, "mass_ratio": 0.07570448860003967, "field": 7.40900563223356}
+
+
 @given(scenes())
-@settings(max_examples=60, deadline=None, derandomize=True)
+@example(
+    Scene(2.604030445959969, 1.0, 0.021269303162353943, radius_ratio=3.9046523771265402, **DEEP)
+)
+@settings(max_examples=40, deadline=None, derandomize=True)
 def test_what_is_possible(scene):
     """An area is positive where the event is possible, and 0 elsewhere; all is finite."""
     assert 0 < weighted.volume(scene) < math.inf
@@ -321,7 +328,7 @@ def test_what_is_possible(scene):
 
 
 @given(scenes(), st.floats(0.01, 1.4))
-@settings(max_examples=30, deadline=None, derandomize=True)
+@settings(max_examples=20, deadline=None, derandomize=True)
 def test_no_number_depends_on_which_disc_and_which_axis_is_the_first(scene, share):
     """Disc 2 as the first, in units of its mass, then x and y exchanged."""
     other, speed = exchanged(scene)
@@ -346,7 +353,8 @@ def test_no_number_depends_on_which_disc_and_which_axis_is_the_first(scene, shar
     # Both discs hit two walls of an axis.
     walls = {EVENT_AXES[wall]: wall for wall in WALLS if wall in scene.events}.values()
     both = sum(exact.rate(scene, wall) + exact.rate(other, wall) / speed for wall in walls)
-    agree(2 * both, exact.rate(scene, "any_wall"))
+    if not scene.depth:
+        agree(2 * both, exact.rate(scene, "any_wall"))
     turned = scene.turned()
     agree(exact.volume(turned), exact.volume(scene))
     for event in TURNED.keys() & scene.events:
