@@ -5,9 +5,9 @@ Without these tests the manuscript could have typed numbers, or need more than t
 
 import re
 import shutil
-from pathlib import Path
 
 import pytest
+from checkout import REPOSITORY, copy_tables
 from typst import TypstError
 
 from twodiscs.analysis.tables import SCENE_TABLES
@@ -16,7 +16,7 @@ from twodiscs.figures.scene_figures import FIGURES
 from twodiscs_paper.catalogue import ALL_FIGURES, STUDY_FIGURES, STUDY_TABLES
 from twodiscs_paper.pipeline.documents import manuscript
 
-PAPER = Path(__file__).resolve().parents[2] / "paper"
+PAPER = REPOSITORY / "paper"
 SOURCE = (PAPER / "paper.typ").read_text()
 
 #: Comments, code and labels of Typst.
@@ -60,7 +60,7 @@ def test_no_figure_is_shown_twice_and_those_that_are_shown_are_there_and_spoken_
 
 
 @pytest.fixture(scope="module")
-def paper(tmp_path_factory, tables_of):
+def paper(tmp_path_factory):
     """Return a function that typesets the manuscript from the expected tables.
 
     It returns the bytes and {name: text} of the numbers. ``figures`` are those of a scene, and
@@ -76,7 +76,7 @@ def paper(tmp_path_factory, tables_of):
         tmp_path = tmp_path_factory.mktemp("paper")
         results, folder = tmp_path / "results", tmp_path / "elsewhere"
         names = ["paper", "other", "third"][:scenes]
-        tables_of(results, {"paper": "paper"}, empty)
+        copy_tables(results, {"paper": "paper"}, empty)
         for own, some in {**dict.fromkeys(names, figures), ".": common}.items():
             (results / own / "figures").mkdir(parents=True)
             for name in some:

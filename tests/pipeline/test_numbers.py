@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import typst
+from checkout import copy_tables
 from factory import EXPECTED, LONG_RUNS, of
 
 from twodiscs.analysis.tables import SCENE_TABLES, MeanTimesTable
@@ -164,10 +165,10 @@ def test_two_rows_in_place_of_one_and_unknown_columns_stop_the_compiler(rows, ex
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory, tables_of):
+def results(tmp_path_factory):
     """Return a folder with the tables of the default configuration; those with times are empty."""
     folder = tmp_path_factory.mktemp("results")
-    tables_of(folder, {scene["name"]: scene["name"] for scene in SCENES})
+    copy_tables(folder, {scene["name"]: scene["name"] for scene in SCENES})
     return folder
 
 

@@ -8,7 +8,7 @@ from io import BytesIO
 from pathlib import PurePosixPath
 
 import pytest
-from checkout import REPOSITORY
+from checkout import REPOSITORY, copy_tables
 from factory import write_rows
 from PIL import Image
 
@@ -41,8 +41,8 @@ def test_the_largest_deviation_has_the_digits_of_the_verdict(z):
     assert [*map(report.relative_error, (1e-3, 2.8e-4))] == errors
 
 
-def test_the_events_of_the_agreement_are_those_of_dynamics(tmp_path, tables_of):
-    tables_of(tmp_path, {"paper": "paper"})
+def test_the_events_of_the_agreement_are_those_of_dynamics(tmp_path):
+    copy_tables(tmp_path, {"paper": "paper"})
     counts = {"dynamics": 7, "monte_carlo": 100}
     write_rows(tmp_path / "paper", CostTable, ("stage", "events"), counts.items(), radius=0.1)
     assert report.agreement(tmp_path, {"name": "paper"})["events"] == 7

@@ -11,7 +11,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from checkout import one_scene
+from checkout import REPOSITORY, one_scene
 from snakemake.iocontainers import Namedlist
 
 from twodiscs.analysis.tables import SCENE_TABLES
@@ -24,7 +24,6 @@ from twodiscs_paper.pipeline.points import read_point
 
 gc.enable()  # a job begins without
 
-SCRIPTS = Path(__file__).resolve().parents[2] / "workflow" / "scripts"
 WATCHED = {"volume": True, "areas": ["top_wall"], "mean_times": ["vertical_hop", "top_wall"]}
 REQUEST = load(
     {"seed": 7}
@@ -52,7 +51,7 @@ def run(monkeypatch, tmp_path):
             params=Namedlist(fromdict=params), wildcards=Namedlist(fromdict=wildcards or {}),
             log=["job.log"],
         )  # fmt: skip
-        runpy.run_path(str(SCRIPTS / f"{script}.py"), {"snakemake": snakemake})
+        runpy.run_path(REPOSITORY / f"workflow/scripts/{script}.py", {"snakemake": snakemake})
 
     return run
 

@@ -6,17 +6,16 @@ Without these tests a job could fail by what its study hands to it, or reads.
 import dataclasses
 import inspect
 import json
-from pathlib import Path
 
 import pytest
-from checkout import one_scene
+from checkout import REPOSITORY, one_scene
 
 from twodiscs.model.effects import EFFECTS
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.yaml_files import load, read
 from twodiscs_paper.draw import DRAW
 
-CONFIG = Path(__file__).parents[2] / "config"
+CONFIG = REPOSITORY / "config"
 every_study = pytest.mark.parametrize("study", STUDIES.values(), ids=STUDIES)
 
 

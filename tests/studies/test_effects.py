@@ -5,11 +5,11 @@ Without these tests shares of unmet starts, plain times or costs of effects coul
 
 import json
 from functools import cache
-from pathlib import Path
 from subprocess import CalledProcessError
 
 import numpy as np
 import pytest
+from checkout import REPOSITORY
 from exact_motion import path_events
 from factory import BOX, Laws, empty, of, written
 from marks import slow
@@ -29,7 +29,6 @@ from twodiscs_paper.studies.effects import measure as effects
 from twodiscs_paper.studies.effects.study import SCENES, EffectsCostTable, EffectsTable
 from twodiscs_paper.studies.single import tail_constant
 
-FILES = [Path(__file__).parents[2] / "config" / "scenes" / f"{name}.yaml" for name in SCENES]
 ROUGH = Scene(1.5, 1.0, 0.24, moment_of_inertia=0.5)
 SEED = 1908
 
@@ -59,8 +58,8 @@ def test_unmet_starts_are_those_whose_paths_have_no_collision(scene, monkeypatch
 
 @cache
 def request(name):
-    """Return the ``SceneRequest`` of a file."""
-    (scene,) = load({"seed": SEED} | read(FILES[SCENES.index(name)])).scenes
+    """Return the ``SceneRequest`` of the file of a scene."""
+    (scene,) = load({"seed": SEED} | read(REPOSITORY / f"config/scenes/{name}.yaml")).scenes
     return scene
 
 

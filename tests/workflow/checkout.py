@@ -17,6 +17,8 @@ import yaml
 from factory import EXPECTED
 from snakemake import cli
 
+from twodiscs_paper.catalogue import STUDY_TABLES, TABLES
+
 cli.get_argument_parser()  # finds the plug-ins, once for all copies
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -227,6 +229,22 @@ def folder(path, home, configuration):
     place.configuration.parent.mkdir(parents=True, exist_ok=True)
     place.configuration.write_text(yaml.safe_dump(configuration))
     return place
+
+
+def copy_tables(folder, scenes, empty=()):
+    """Write the tables of a build to a folder, as they are expected.
+
+    ``scenes`` are {name in the folder: name in the expected results}. Tables that are not expected
+    because of their seconds, and the ``empty`` ones, {name}, have no rows.
+    """
+    for own, kept in scenes.items() | {(".", ".")}:
+        (folder / own).mkdir(parents=True, exist_ok=True)
+        for path in (EXPECTED / kept).glob("*.csv"):
+            if path.stem not in empty:
+                shutil.copy(path, folder / own)
+        for name in {*empty, "cost", "accuracy_cost"} & TABLES.keys():
+            if (name in STUDY_TABLES) == (own == "."):
+                TABLES[name].write(folder / own / f"{name}.csv", [])
 
 
 def use(place, configuration, more):

@@ -50,7 +50,6 @@ CALLED = {
     "field": ALL - {"pressure"},
     "friction": ALL - {"hop_histogram"},
     "rough": ALL - {"hop_histogram"},
-    "three": ALL,
     "channel-of-eight": ALL - {"hop_histogram"},
 }
 
