@@ -105,12 +105,9 @@ def scenes(name):
 
 def with_examples():
     """Return the default configuration with the scenes of all pages."""
-    mapping = read(DEFAULT)
+    mapping = read(REPOSITORY / "config" / "config.yaml")
     mapping["scenes"] += [scene for name in NAMES for scene in scenes(name)]
     return mapping
-
-
-DEFAULT = REPOSITORY / "config" / "config.yaml"
 
 
 # Pages ------------------------------------------------------------------------------------------

@@ -164,8 +164,7 @@ def test_a_file_is_replaced_whole_or_not_at_all(name, tmp_path):
     write = {
         "json": td.sample(PAPER, 1).save,
         "xyz": trajectory.to_xyz,
-        "gif": lambda path: td.animate(trajectory, path),
-        "html": lambda path: td.animate(trajectory, path),
+        **dict.fromkeys(("gif", "html"), lambda path: td.animate(trajectory, path)),
     }.get(name, lambda path: td.plot(PAPER, path))
     usual = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (100, usual[1]))

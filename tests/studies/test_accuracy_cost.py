@@ -211,21 +211,16 @@ def test_rows_are_those_of_all_methods_and_of_all_distances(monkeypatch):
     assert given[-long:] == [(math.inf, 8)] * len(costs.methods(1))
 
 
-# The long run -------------------------------------------------------------------------------------
-
-
-@pytest.fixture(scope="module")
-def long():
-    return AccuracyCostTable.read(LONG_RUNS / "accuracy_cost" / "accuracy_cost.csv")
-
-
 # The figures --------------------------------------------------------------------------------------
 
 
+LONG = AccuracyCostTable.read(LONG_RUNS / "accuracy_cost" / "accuracy_cost.csv")
+
+
 @pytest.fixture(scope="module")
-def rows(long):
+def rows():
     """The errors of the long run at twice the times, exact values and c by distance."""
-    build = [row | {"seconds": 2 * row["seconds"]} for row in long]
+    build = [row | {"seconds": 2 * row["seconds"]} for row in LONG]
     generator = np.random.default_rng(1)
     prices = [
         ("dynamics", "vertical_hop_time"), ("dynamics", "any_wall_time"),
@@ -241,8 +236,8 @@ def rows(long):
 
 
 @pytest.fixture(scope="module")
-def panels(long, rows):
-    tables = {"accuracy_cost": rows, "kept": long}
+def panels(rows):
+    tables = {"accuracy_cost": rows, "kept": LONG}
     with style.context():
         both = [*figure.draw(None, tables).axes, *figure_by_radius.draw(None, tables).axes]
     return {axes.get_label(): axes for axes in both}
@@ -253,12 +248,10 @@ ALL = [("a", one) for one in figure.TIME_CURVES] + [("b", one) for one in figure
 
 
 @pytest.mark.parametrize(("panel", "one"), ALL, ids=lambda value: getattr(value, "name", value))
-def test_symbols_are_errors_and_times_and_lines_are_c_over_the_square(
-    long, rows, panels, panel, one
-):
+def test_symbols_are_errors_and_times_and_lines_are_c_over_the_square(rows, panels, panel, one):
     """Full ones of the long run, open ones of the build; the longest run is always there."""
     mine = [line for line in panels[panel].lines if line.get_color() == one.colour]
-    for table, full in ((long, one.colour), (rows, "white")):
+    for table, full in ((LONG, one.colour), (rows, "white")):
         look = one.marker, full
         own = [line for line in mine if (line.get_marker(), line.get_markerfacecolor()) == look]
         shown = {point for line in own for point in zip(*line.get_data(), strict=True)}
@@ -266,7 +259,7 @@ def test_symbols_are_errors_and_times_and_lines_are_c_over_the_square(
             thinned = [*some[::-1][:: figure.SYMBOL_DOUBLINGS], some[-1]]
             assert {(row["error"], row["seconds"]) for row in thinned} <= shown
     curves = [line.get_xydata() for line in mine if len(line.get_xdata()) > 100]
-    for first, *_ in figure.by_setting(long, one, RADII).values():
+    for first, *_ in figure.by_setting(LONG, one, RADII).values():
         c, floor = first["c"], first["floor"]
         far = [xy[(xy[:, 0] > 2 * floor) & (xy[:, 0] < 0.5)].T for xy in curves]
         assert any(np.allclose(c / y, x**2 - floor**2, rtol=1e-9) for x, y in far)
