@@ -40,6 +40,14 @@ def test_volume_and_areas_are_exact(scene):
         assert not z.size or abs(z_mean(z)) < 5 > abs(z_spread(z))
 
 
+@pytest.mark.parametrize(("side", "discs"), [(1.5, 3), (10.0, 7)])
+def test_a_variance_that_rounds_below_zero_is_no_error(side, discs):
+    """Nearly all insertions have room."""
+    _, errors = insertions.sample(Scene(side, 0.7 * side, 1e-5 * side, discs=discs), 1, 1)
+    assert errors.log_volume == 0
+    assert min(errors) >= 0
+
+
 WITHOUT_THEORY = [Scene(1.5, 1.0, 0.12, discs=4, periodic=axes) for axes in ("", "x")]
 WITHOUT_THEORY += [Scene(1.2, 1.0, 0.25, discs=3, periodic="x")]
 
