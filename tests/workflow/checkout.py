@@ -81,7 +81,7 @@ QUICKER = {
     ),
     # The nodes of a curve, and the frames around a hop, see tests/figures.
     "src/twodiscs/figures/curves.py": ("else (32, 1e-5)", "else (4, 1e-5)"),
-    "src/twodiscs/figures/animation.py": ("= 110, 60, 20, 20", "= 24, 24, 20, 20"),
+    "src/twodiscs/figures/animation.py": ("= 110, 60, 20, 20", "= 4, 4, 20, 20"),
     # Tables of long runs are not renewed, see test_long_runs.py and test_verify.py.
     "src/twodiscs_paper/pipeline/results/verify.py": ("in long_run_tables(kept)", "in []"),
 }  # fmt: skip

@@ -77,7 +77,7 @@ def test_the_report_opens_on_verdict_and_agreement(front, complete):
         assert said in plain(front["verdict"])
     full, walls = front["rows"][1:]
     counts = [str(len(compared[0])), str(single[0])]
-    assert full[:5] == ["1.5 × 1 (scene “full”)", "3", *counts, f"{largest[0]:.3g}"]
+    assert full[:5] == ["1.5 × 1 (scene “full”)", "2", *counts, f"{largest[0]:.3g}"]
     assert walls[:2] == ["3 × 1 (scene “walls”)", "1"]
     cost = pd.read_csv(results / "full/cost.csv").set_index("stage")
     events = f"{cost.loc['dynamics', 'events'].sum():.1e}"
@@ -116,8 +116,8 @@ def test_keyboards_and_readers_of_screens_reach_everything(front):
 
 
 def test_it_has_all_mean_times_and_its_links_lead_to_files_and_sections(front, complete):
-    # Six events at each of three radii, two at one.
-    assert front["numbers"] == [[1 + 6] * 3, [1 + 2]]
+    # Six events at each of two radii, two at one.
+    assert front["numbers"] == [[1 + 6] * 2, [1 + 2]]
     assert front["anchors"] == sorted(front["anchors"])
     assert len(front["anchors"]) == 6  # accuracy, mean times, two scenes, studies, how it was made
     files = {link for link in front["links"] if not link.startswith("#")}
