@@ -2,8 +2,8 @@
 
 Without these tests a formula could be called wrong that is right, or a correction be wrong itself.
 
-The verdicts are computed; here they are compared with those of the expected table, all of which
-were found by hand as well, and formulas are spoilt to see them turn.
+The verdicts are computed; here they are compared with those found by hand, and formulas are spoilt
+to see them turn.
 """
 
 import dataclasses
@@ -20,6 +20,16 @@ from twodiscs_paper.errata import measure as errata
 from twodiscs_paper.errata.statements import LIMITS, NUMERATOR, REGIMES, STATEMENTS
 from twodiscs_paper.errata.study import ErrataTable
 from twodiscs_paper.reference import MpScene, mean_time
+
+WRONG = {
+    "axis of the cylinder", "volumewhd", "factor of 2 or 4", "VolumenCasoFeo", "eq:surface-area",
+    "AreaH", "caption on the hop area", "hoptau", "hoptaulimit", "hop time near w/4",
+    "collision time is smooth", "impactwall", "range of two components", "range of four components",
+    "hop surface orthogonal to Y", "pasoraro", "app:colgeneral, first line",
+    "app:colgeneral with b = 0", "app:colgeneral as a quarter", "vertical hops excluded", "A_whole",
+    "lower triangle of the wall", "limit of thin shells",
+}  # fmt: skip
+RIGHT_IN_RANGE = {"AreaChoque", "colltau", "collision time goes to zero", "exponential tails"}
 
 BY_LABEL = {statement.label: statement for statement in STATEMENTS}
 
@@ -42,6 +52,13 @@ def judged(label, printed):
 
 
 # Verdicts -----------------------------------------------------------------------------------------
+
+
+def test_verdicts_are_those_found_by_hand():
+    found = {label: row["verdict"] for label, row in verdicts().items()}
+    assert {label for label in found if found[label] == "wrong"} == WRONG
+    assert {label for label in found if found[label] == "right-in-range"} == RIGHT_IN_RANGE
+    assert len(found) == len(STATEMENTS)
 
 
 def test_every_statement_says_where_and_whatever_is_not_right_says_what_is():
