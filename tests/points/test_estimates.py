@@ -127,9 +127,8 @@ def test_weights_below_their_resolution_have_no_error():
             spread = weight * math.sqrt(1e-3 * (1 - 1e-3) / samples)
             assert estimate.stderr == pytest.approx(2 * spread)
     # All of one weight, with squares that are rounded down, and none of a hundred without any.
-    for less in (0, 1):
-        total = unit * samples
-        assert estimates.effective_misses(total, total - less, unit, samples) == 0
+    for squares in (unit * samples, unit * samples - 1):
+        assert estimates.effective_misses(unit * samples, squares, unit, samples) == 0
     hits = samples - 90
     assert estimates.effective_misses(unit * hits, unit * hits, unit, samples) == pytest.approx(90)
     assert estimates.effective_misses(5, 0, unit, samples) == 0
