@@ -148,6 +148,11 @@ def test_what_cannot_be_followed_is_refused_in_a_sentence(scene, hop, said, monk
         of_many.require_coefficient(scene, hop)
 
 
+def test_all_tiny_discs_on_the_surface_of_a_hop_are_apart():
+    accepted, proposals = of_many.surface_fraction(Scene(1.5, 1.0, 1e-6, discs=3), HOP)
+    assert accepted == proposals
+
+
 @pytest.mark.parametrize("periodic", ["", "x"])
 def test_neighbours_share_as_many_hops_as_pairs_have_a_disc_in_common(periodic, monkeypatch):
     monkeypatch.setattr(of_many, "hop_rate", lambda scene, hop: 2.0)

@@ -54,8 +54,7 @@ def test_triangles_that_begin_to_reach_around_a_torus_are_small():
             three.torus_derivatives(Scene(side, side, side / 6 * share, discs=3, periodic="xy"))
             for share in (1 - 1e-12, 1 + 1e-12)
         )
-        assert above.log_volume == pytest.approx(below.log_volume, abs=1e-9)
-        assert above.per_contact == pytest.approx(below.per_contact, abs=1e-9)
+        assert above[:4] == pytest.approx(below[:4], abs=1e-9)
 
 
 @pytest.mark.parametrize(
