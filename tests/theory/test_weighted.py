@@ -309,14 +309,9 @@ def scenes(draw):
         assume(False)
 
 
-#: At the farthest separation roundings leave less energy than none.
-DEEP = {"depth": 0.9229272789199455, "mass_ratio": 0.07570448860003967, "field": 7.40900563223356}
-
-
 @given(scenes())
-@example(
-    Scene(2.604030445959969, 1.0, 0.021269303162353943, radius_ratio=3.9046523771265402, **DEEP)
-)
+# At the farthest separation roundings leave less energy than none.
+@example(Scene(2.7, 1.0, 0.13, depth=1.0, radius_ratio=2.3, field=0.6))
 @settings(max_examples=40, deadline=None, derandomize=True)
 def test_what_is_possible(scene):
     """An area is positive where the event is possible, and 0 elsewhere; all is finite."""
