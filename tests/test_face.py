@@ -3,6 +3,7 @@
 Without these tests its numbers, texts and errors could be others than those of the pipeline.
 """
 
+import inspect
 import json
 import math
 import pickle
@@ -75,6 +76,8 @@ def test_every_name_is_defined_where_an_editor_looks_for_it():
     for name, module in homes.items():
         if callable(home := getattr(td, name)):
             assert (home.__module__, home.__name__) == (f"twodiscs.{module}", name)
+            for one in {"seed", "cores"} & inspect.signature(home).parameters.keys():
+                assert inspect.signature(home).parameters[one].default == 1
 
 
 # The numbers of the pipeline ----------------------------------------------------------------------

@@ -97,20 +97,16 @@ MORE = {
 }
 
 
-def hops(scene):
-    return [hop for hop in HOPS if scene.is_possible(hop)]
-
-
 def intervals(scene):
     """Return the times of chains and the sums in bins, for each hop."""
-    for hop in hops(scene):
+    for hop in filter(scene.is_possible, HOPS):
         yield from runs.record_blocks(scene, hop, 3, 0, 2, np.ones(1, np.bool_))
 
 
 def clusters(scene):
     """Return the sums of hops at two times and the sizes of clusters, for each hop."""
     follow = find_engine(scene).clusters
-    for hop in hops(scene):
+    for hop in filter(scene.is_possible, HOPS):
         yield from follow.hop_sums(scene, hop, (0.5, 2.0), 2, 3)
         yield from follow.cluster_sizes(scene, hop, 1.0, 2, 3)
 
