@@ -210,7 +210,8 @@ def test_a_new_configuration_is_one_and_is_not_written_over(tmp_path, monkeypatc
     targets = re.findall(r"^# twodiscs run my.yaml *(\w*)", text, re.MULTILINE)
     assert targets[0] == ""
     assert {*targets[1:]} <= {*build.TARGETS}
-    assert "exists already and is not overwritten" in refused(monkeypatch, capsys, "new", "my.yaml")
+    said = "my.yaml exists already and is not overwritten"
+    assert refused(monkeypatch, capsys, "new", "my.yaml") == said
     assert Path("my.yaml").read_text() == text
     assert not command(monkeypatch, "new", "b c.yaml")
     assert load(read("b c.yaml")).results == "results-b-c"

@@ -213,14 +213,19 @@ def test_make_keeps_an_environment_that_it_did_not_make(tmp_path):
 
 def test_an_archive_holds_what_git_tracks_and_the_results(tmp_path):
     """``make archive``, with other results than those of a build, which it would wait for."""
-    checkout = tmp_path / "checkout"
+    checkout, results = tmp_path / "checkout", tmp_path / "checkout/results"
     git = ["git", "clone", "--quiet", "--depth", "1", f"file://{REPOSITORY}", checkout]
     subprocess.run(git, check=True, capture_output=True)
-    (checkout / "results/a.csv").write_text("1\n")
+    (results / "a.csv").write_text("1\n")
+    sums = subprocess.check_output(["sha256sum", "a.csv"], cwd=results)
+    (results / "manifest.sha256").write_bytes(sums)
     (checkout / "left-over").touch()
     subprocess.run(["make", "--old-file", "all", "archive"], cwd=checkout, check=True)
     with tarfile.open(checkout / "build/twodiscs.tar.gz") as archive:
         names = {name.removeprefix("twodiscs/") for name in archive.getnames()}
+        archive.extractall(tmp_path, filter="data")
     tracked = subprocess.check_output(["git", "ls-files"], cwd=checkout, text=True).split("\n")
     assert {*filter(None, tracked), "results/a.csv"} <= names
     assert "left-over" not in names
+    check = ["sha256sum", "--check", "--quiet", "manifest.sha256"]
+    subprocess.run(check, cwd=tmp_path / "twodiscs/results", check=True)

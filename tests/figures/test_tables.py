@@ -308,7 +308,7 @@ def test_every_figure_of_a_study_is_compared():
     assert {name for name, *_ in CASES} | {*elsewhere.split()} >= STUDY_FIGURES.keys()
 
 
-#: Figures whose texts are fast to compare: the fullest ones, and one with several columns.
+#: The fast half compares the texts of these figures: the fullest ones.
 FAST = {"passages", "brownian", "transmission", "tails"}
 
 

@@ -15,7 +15,7 @@ from twodiscs.model.checks import InputError
 from twodiscs.model.effects import EFFECTS as DECLARED
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.scene import Box, Scene
-from twodiscs.model.seeds import seed_text, stream_seed
+from twodiscs.model.seeds import key, seed_text, stream_seed
 from twodiscs_paper.configuration.radii import even_radii, radii
 
 EFFECTS = [
@@ -147,6 +147,23 @@ def test_any_box_gets_its_radii(height, ratio, fraction, count):
     assert all(map(box.fits, grid))
     assert not {width / 4, height / 4, largest} & set(grid[1:])
     assert all(type(radius) is float for radius in grid)
+
+
+def test_points_crowd_on_both_sides_of_every_threshold():
+    grid = radii(1.5, 1.0, 0.01, 46)
+    typical = 0.38 / 46
+    assert [float(key(radius)) for radius in grid] == list(grid)
+    assert max(len(key(radius)) for radius in grid) <= len("0.37507")
+    for threshold in (0.25, 0.375):
+        for side in (-1, 1):
+            distances = sorted(d for r in grid if (d := side * (r - threshold)) > 0)
+            assert distances[0] < typical / 8
+            assert distances[1] < typical / 2
+            # The gaps widen from the threshold outwards.
+            assert distances[0] < distances[1] - distances[0] < distances[3] - distances[2]
+    room = [Box(1.5, 1.0).largest_radius - radius for radius in reversed(grid)]
+    assert room[0] < typical / 50
+    assert room[0] < room[1] - room[0] < room[3] - room[2]
 
 
 def test_seeds_are_those_of_published_numbers():

@@ -83,8 +83,11 @@ def small(monkeypatch):
         "MOST_HOPS": 2**12, "LIMIT_BLOCKS": 4, "PORE_BLOCKS": 8, "PORE_REPLICAS": 2**12,
         "LONG_FILE": 18, "LONG_REPLICAS": 8, "RECORDS": 64,
     }.items():  # fmt: skip
-        for module in (near, in_long_file, in_pore, in_the_limit, near_threshold, on_ring):
-            monkeypatch.setattr(module, name, value, raising=False)  # some lack the name
+        modules = near, in_long_file, in_pore, in_the_limit, near_threshold, on_ring
+        own = [module for module in modules if hasattr(module, name)]
+        assert own, name
+        for module in own:
+            monkeypatch.setattr(module, name, value)
     monkeypatch.setattr("twodiscs_paper.studies.passages.study.INERTIAS", (0.5, 1.0))
     monkeypatch.setattr("twodiscs_paper.studies.passages.study.BLOCKED_RADII", (0.28,))
 

@@ -84,9 +84,7 @@ def test_theory_holds_where_closed_forms_fail(box):
     stable = of(rows, method="stable")
     assert len(stable) >= 100
     assert all(row["passed"] for row in stable)
-    near, *_ = of(
-        rows, method="closed-form", quantity="volume", distance=-1e-9, case="largest radius"
-    )
+    near, *_ = of(rows, method="closed-form", quantity="volume", distance=-1e-9, case=LARGEST)
     # Two powers of the room are lost even where the discs lie in a row.
     assert near["value"] > 1e-4 or max(box.sides) > 10 * min(box.sides)
 
