@@ -82,6 +82,7 @@ def pattern(sentence):
 #: Keys of a scene: the face, the shell and the configuration say the same.
 SCENES = """
 discs: 1 → discs must be an integer from 2 to 16384, not 1
+discs: 16385 → discs must be an integer from 2 to 16384, not 16385
 discs: 3, field: 1 → field must be left out with 3 discs
 discs: 3, depth: 1 → depth must be left out with 3 discs
 discs: 3, periodic: xy, moment_of_inertia: 0.5 → moment_of_inertia must be left out in a box without
@@ -160,6 +161,7 @@ td.observe(PAPER, x1, [1], starts=np.ones((2, 2, 4))) → must have disc 1 insid
 td.observe(PAPER, x1, [1], starts=np.zeros((2, 3, 4))) → must be states as starts or frames returns
 td.observe(PAPER, x1, [1], starts=np.full((2, 2, 4), NAN)) → must be states as starts or frames
 td.trajectory(PAPER, start=map(float, '12')) → start must be the numbers x1, …, not <map object at
+td.trajectory(PAPER, start='no.xyz') → start must be a file to read, not 'no.xyz': No such file
 td.trajectory(PAPER, start=__file__) → start must be an extended XYZ file with the columns pos and
 td.trajectory(PAPER, start=([[0.3, 0.5], [1.2, 0.5]], np.zeros((2, 2)))) → energy of 0.5, not 0.0
 td.trajectory(PAPER, 1e9) → must be below 2.71e6, where 1e7 events are due and fill 0.98 GB
@@ -282,6 +284,7 @@ name: tails → .name must not be 'tails', the name of a target, a folder of res
 gravity: 1 →  has an unknown key 'gravity'; field belongs in 'effects'
 radii: [٠.٢] → .radii[0] must be a positive length …, not '٠.٢'
 width: 1 →  has an unknown key 'width'; it belongs in 'box'
+box: {discs: 3} → .box has an unknown key 'discs'; it belongs in a scene
 box: {width: 1,5, height: 1} → .box has an unknown key 5; decimals have a point
 box: {width: 1.5, height: 1, none: } → .box has an unknown key 'none'; its keys are width, heig…
 effects: {gravity: 1} → .effects has an unknown key 'gravity'; did you mean field?

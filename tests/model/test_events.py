@@ -1,16 +1,31 @@
 """The declarations of events, by kind.
 
-Without it an event could be counted where its axis has no walls, or a kind be forgotten.
+Without it a new event could replace a published one, or a kind be forgotten.
 """
 
 import re
 
 import pytest
 
-from twodiscs.model.events import DECLARED_EVENTS, by_kind
+from twodiscs.model.events import DECLARED_EVENTS, Event, by_kind
 from twodiscs.model.scene import Scene
 
+#: The names in published tables, in the order of their columns.
+PUBLISHED = (
+    Event("vertical_hop", "hop", "y"),
+    Event("horizontal_hop", "hop", "x"),
+    Event("disc_collision", "collision"),
+    Event("right_wall", "wall", "x", +1),
+    Event("top_wall", "wall", "y", +1),
+    Event("any_wall", "walls"),
+)
+
 KINDS = ("hop", "collision", "wall", "walls")
+
+
+def test_what_was_published_stays_and_keeps_its_order():
+    names = [event.name for event in PUBLISHED]
+    assert [event for event in DECLARED_EVENTS.values() if event.name in names] == [*PUBLISHED]
 
 
 @pytest.mark.parametrize("event", DECLARED_EVENTS.values(), ids=DECLARED_EVENTS)
