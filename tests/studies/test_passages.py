@@ -24,7 +24,7 @@ from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.yaml_files import load
 from twodiscs_paper.studies.estimates import sample_mean
 from twodiscs_paper.studies.passages import figure, figure_diffusion, figure_transmission, near
-from twodiscs_paper.studies.passages.models import file
+from twodiscs_paper.studies.passages.models import file, plane
 from twodiscs_paper.studies.passages.near import passing_rate
 from twodiscs_paper.studies.passages.parts import (
     displacements,
@@ -324,3 +324,10 @@ def test_the_limit_of_long_necks_is_that_of_diffusion_in_the_plane(halvings):
     share = math.sqrt(room * sigma) / a
     due = 3 / 4 * (1 - 1.880 * share + 0.75 * room / sigma)
     assert abs(with_friction.diffusive_limit(scene, HOP) - due) < 2 * share**2
+
+
+def test_the_limit_of_long_necks_does_not_depend_on_roundings():
+    """Other units have others. The room of the shortest neck is 3e-5 of the contact distance."""
+    lengths = np.array([1.5 - 2 * 0.249996185, 1.526e-5, 2 * 0.249996185])
+    found = [plane.scaled_coefficient(*(lengths * unit)) for unit in (1.0, 0.3, 7.0)]
+    assert found == pytest.approx([found[0]] * 3, rel=1e-12)

@@ -46,7 +46,8 @@ def _solved(along, room, sigma, n):
         i, j = (i, j) if upper else (part[i < j] for part in (i, j))
         right, low, high = (i, j + 1) if upper else (i + 1, j), (i, j), (i + 1, j + 1)
         u = corners[i] + sides[i] * (1 if upper else 2) / 3
-        size = (room + sigma - np.sqrt(np.maximum(sigma**2 - u**2, 0))) ** 2
+        near = np.minimum(u, sigma)
+        size = (room + near**2 / (sigma + np.sqrt(sigma**2 - near**2))) ** 2
         across, along_w = (high, low) if upper else (low, high)
         pairs.append((number[right], number[across], size * sides[j] / sides[i] / 2))
         pairs.append((number[right], number[along_w], size * sides[i] / sides[j] / 2))
@@ -60,7 +61,12 @@ def _solved(along, room, sigma, n):
     # In u and w the Laplacian is twice the sum of their second derivatives; the square is twice
     # the sum of all masses.
     parts = stiffness.tocsc(), diags_array(mass[free]).tocsc()
-    # The start is given, because a random one changes the last digits.
-    (slowest,), _ = eigsh(parts[0], 1, parts[1], sigma=0, v0=np.ones(free.size))
+    # The start is given, because a random one changes the last digits. Roundings of the largest
+    # weights are as large as the smallest ones, and change 1e-8 of the eigenvalue; the quotient of
+    # Rayleigh is a sum of squares, with the square of the error of the mode.
+    _, modes = eigsh(parts[0], 1, parts[1], sigma=0, v0=np.ones(free.size))
+    mode = np.zeros(number.size)
+    mode[free] = modes[:, 0]
+    slowest = (weight * (mode[one] - mode[other]) ** 2).sum() / (mass * mode**2).sum()
     tau = 3 * math.pi / 4 * 2 * mass.sum() / (math.sqrt(2) * along * room**2)
     return float(2 * slowest * tau * neck / 8)
