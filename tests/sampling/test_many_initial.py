@@ -217,3 +217,10 @@ def test_the_way_to_the_next_state_is_longer_in_a_long_box(width, height, discs,
         assert 2.0**chain.scales > min(2**61, width / (scene.largest_radius - 0.1))
         assert chain.scales <= 62
         assert not chain.grid or (chain.grid.x.size - 1) * (chain.grid.y.size - 1) <= 4 * discs
+
+
+def test_discs_that_move_little_have_a_shorter_way_to_the_next_state():
+    """Of two contacts of each disc, times the square of the length over the height."""
+    boxes = [Scene(width, 64 / width, 0.1, discs=64) for width in (8.0, 16.0, 4.0)]
+    made = [many_initial_states.make_initial(scene, "chain", contacts=2) for scene in boxes]
+    assert [one.chain.between for one in made] == [8, 8 * 4**2, 8 * 4**2]
