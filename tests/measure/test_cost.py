@@ -154,6 +154,10 @@ def test_without_a_budget_a_run_has_a_day():
     far = new_run(NEAR, 1e-9, 10**18).components
     shares = [component.budget / far[name].budget for name, component in hard.components.items()]
     assert shares == pytest.approx([shares[0]] * len(shares))
+    for scene in (SCENE.with_radius(0.38), td.Scene(1.5, 1.0, 0.15, discs=3)):
+        run = montecarlo.MonteCarloRun(scene, ("volume",), None, 0.02, 1, {"volume": 1e-3})
+        day = run.components["all"]
+        assert day.budget * day.cost_ratio == pytest.approx(montecarlo.DAY_OF_SAMPLES)
 
 
 # Sentences ----------------------------------------------------------------------------------------
