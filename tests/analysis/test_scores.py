@@ -69,6 +69,7 @@ def test_a_probability_of_zero_or_one_leaves_nothing_to_chance():
     assert scores.binomial_z(1, 100, 0.0) == (math.inf, "certain")
     assert scores.binomial_z(100, 100, 1.0)[0] == 0
     assert scores.binomial_z(99, 100, 1.0) == (-math.inf, "certain")
+    assert scores.impossible_z(1) == (-math.inf, "certain")  # its time is too short
 
 
 def test_two_shells_that_overlap_have_a_normal_sum():

@@ -206,7 +206,7 @@ def test_a_sentence_says_what_was_not_reached(rows, said):
 @pytest.mark.parametrize(
     ("seconds", "text"),
     [
-        (None, "–"), (math.inf, "–"), (3e-6, "3 µs"), (0.0123, "12 ms"), (59.4, "59 s"),
+        (None, "–"), (math.inf, "–"), (3e-7, "0.3 µs"), (0.0123, "12 ms"), (59.4, "59 s"),
         (1200, "20 min"), (7200, "2 h"), (86400, "1 d"), (3.2e9, "100 years"),
     ],
 )  # fmt: skip
