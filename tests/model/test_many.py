@@ -147,6 +147,7 @@ def test_parts_of_a_long_channel_are_those_of_its_corners(discs, height):
         (Scene(0.7, 0.5, 0.1, discs=3), 1),
         (Scene(1.5, 1.0, 0.26, discs=3), None),
         (Scene(1.5, 0.6, 0.195, discs=4, periodic="x"), None),
+        (Scene(1.5, 1.25, 0.25, discs=3, periodic="x"), None),  # they fill the ring in a row
         (Scene(0.6, 3.0, 0.2, discs=4, periodic="y"), 6),
         (Scene(1.7, 1.0, 0.2, discs=4, periodic="xy"), 1),
         (Scene(1.0, 1.0, 0.2, discs=4, periodic="xy"), None),
