@@ -11,7 +11,7 @@ from functools import reduce
 import mpmath
 import numpy as np
 import pytest
-from scipy.special import ndtr, ndtri, stdtr
+from scipy.special import log_ndtr, ndtr, ndtri, stdtr
 
 from twodiscs.analysis import scores
 
@@ -53,6 +53,20 @@ def test_exact_tail_is_the_doubled_binomial_tail(hits, samples, p):
     assert scores.two_sided_p(z) == pytest.approx(doubled, rel=1e-9)
     assert z == 0 or (z > 0) == (hits > samples * p)
     assert repr(scores.binomial_z(0, 10, 0.001)[0]) == "0.0"  # not -0.0
+
+
+@pytest.mark.parametrize(
+    ("hits", "samples", "p"),
+    [(1500, 10**6, 1e-4), (10**6 - 1500, 10**6, 1 - 1e-4), (0, 99, 1 - 1e-7)],
+)
+def test_a_tail_that_underflows_has_the_logarithm_of_its_largest_term(hits, samples, p):
+    """To one per cent: the bound has no factor of the order of the square root."""
+    z, test = scores.binomial_z(hits, samples, p)
+    rest = samples - hits
+    log_term = mpmath.log(mpmath.binomial(samples, hits))
+    log_term += hits * mpmath.log(p) + rest * mpmath.log1p(-p)
+    assert log_ndtr(-abs(z)) == pytest.approx(float(log_term), rel=0.01)
+    assert (test, z > 0) == ("exact-tail", hits > samples * p)
 
 
 def test_binomial_z_is_normal_where_hits_and_misses_are_many():
