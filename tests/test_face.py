@@ -408,8 +408,9 @@ def test_a_budget_that_ends_a_run_is_a_warning_and_the_budget_that_it_names_is_e
     scene, error, budget, recwarn
 ):
     sentence = f"You asked for an error of {error:g}, but the budget .* A budget of (.*) is enough"
-    with pytest.warns(td.AccuracyWarning, match=sentence):
-        found = td.simulate(scene, error, budget=budget)
+    with pytest.warns(td.AccuracyWarning, match=sentence) as all_:
+        found = td.simulate(scene, error, budget=budget / 2).more(budget=budget)
+    assert {one.filename for one in all_} == {__file__}  # not a line of the library
     assert str(found).endswith(found.note)
     enough = float(re.match(sentence, found.note)[1])
     assert enough < 20 * budget

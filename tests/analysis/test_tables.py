@@ -47,7 +47,7 @@ COST_ROW = {"stage": "dynamics", "radius": 1e-05, "events": 2**53 + 1, "seconds"
     ("table", "rows"),
     [
         (CostTable, lambda: []),
-        (CostTable, lambda: [COST_ROW, COST_ROW]),
+        (CostTable, lambda: [COST_ROW, COST_ROW | {"events": 2**63}]),
         (CheckTable, lambda: [CHECK_ROW]),
         (TheoryTable, lambda: TheoryTable.rows(BOX, [0.3, 0.1])),
         (GridTable, lambda: GridTable.rows(Box(40.0, 0.6, discs=64), [0.1, 0.2])),

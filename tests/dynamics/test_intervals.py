@@ -96,8 +96,10 @@ def test_intervals_that_a_budget_ends_say_their_error():
     """A block of the usual budget is enough for ten per cent, and not for a thousandth."""
     given = {"seed": 1, "name": None, "bins": None, "hop": "vertical_hop"}
     assert make_intervals(PAPER, error=0.1, budget=1e6, **given).note is None
-    with pytest.warns(td.AccuracyWarning, match=r"an error of 0.001 of the mean, but the budget"):
+    said = r"an error of 0.001 of the mean, but the budget"
+    with pytest.warns(td.AccuracyWarning, match=said) as all_:
         short = make_intervals(PAPER, error=1e-3, budget=1e6, **given)
+    assert all_[0].filename == __file__
     assert f"ended the run at {short.mean.relative_stderr:.2g}" in short.note
 
 

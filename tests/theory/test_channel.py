@@ -186,3 +186,4 @@ def test_exact_says_before_it_begins_that_it_takes_minutes(scene, is_slow, monke
     ):
         td.exact(scene)
     assert ["may take some minutes" in str(one.message) for one in found] == [True] * is_slow
+    assert {one.filename for one in found} <= {__file__}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import warnings
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
@@ -26,7 +25,7 @@ from twodiscs.measure.observe import Observed
 from twodiscs.measure.scan import Scan
 from twodiscs.measure.trajectory import require_all_rows
 from twodiscs.measure.transmission import Transmission
-from twodiscs.model.calls import checked_call
+from twodiscs.model.calls import checked_call, warn
 from twodiscs.model.checks import InputError, check_choice
 from twodiscs.model.formats import quote
 from twodiscs.model.scene import Box, Scene
@@ -157,10 +156,9 @@ def _chosen(figure, fitting, rows):
         measured = [row_quantity(row) for row in rows if "estimate" in row]
         others = dict.fromkeys(q for q in measured if q not in shown)
         if others:
-            warnings.warn(
+            warn(
                 f"the figure {fitting[0]} does not show {', '.join(others)}; "
-                f"figure= chooses one of {', '.join(fitting)}",
-                stacklevel=5,
+                f"figure= chooses one of {', '.join(fitting)}"
             )
     return fitting[0]
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable, Mapping
 from itertools import product
 from typing import TYPE_CHECKING, Any, Unpack
 
 from twodiscs.analysis.tables import TheoryTable
-from twodiscs.model.calls import checked_call
+from twodiscs.model.calls import checked_call, warn
 from twodiscs.model.checks import InputError, check_length
 from twodiscs.model.events import EVENTS
 from twodiscs.model.formats import did_you_mean, quote
@@ -129,10 +128,9 @@ def exact(scene: Scene) -> Exact:
     'all-hops'
     """
     if n_discs.takes_minutes(check_scene(scene)):
-        warnings.warn(
+        warn(
             f"the exact numbers of {scene.discs} discs in a channel that is hardly longer than "
-            "their row may take some minutes; simulate and sample take seconds",
-            stacklevel=2,
+            "their row may take some minutes; simulate and sample take seconds"
         )
     return theory.exact(scene) | {"areas": areas(scene), "mean_times": mean_times(scene)}
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -13,7 +12,7 @@ import numpy as np
 from twodiscs.analysis.tables import HopHistogramTable
 from twodiscs.measure.measurements import Measurement, indexed_frame, text_table
 from twodiscs.measure.result import Result, note_of_number, work
-from twodiscs.model.calls import checked_call
+from twodiscs.model.calls import checked_call, warn
 from twodiscs.model.checks import (
     AccuracyWarning,
     InputError,
@@ -275,7 +274,7 @@ def make_intervals(
         run = replace(run, edges=settings["bins"])
     found = Intervals(scene, work("intervals", run, **how), settings)
     if found.note and error is not None:
-        warnings.warn(found.note, AccuracyWarning, stacklevel=4)
+        warn(found.note, AccuracyWarning)
     return found
 
 

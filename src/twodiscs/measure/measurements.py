@@ -6,7 +6,6 @@ Their numbers come from rows of the tables, made by the same functions.
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -23,7 +22,7 @@ from twodiscs.analysis.tables import (
 )
 from twodiscs.measure.exact_values import Quantities
 from twodiscs.measure.result import Immutable, Result, note_of_number, work
-from twodiscs.model.calls import checked_call
+from twodiscs.model.calls import checked_call, warn
 from twodiscs.model.checks import (
     THINNEST_SHELL,
     AccuracyWarning,
@@ -524,7 +523,7 @@ def _note_of_error(rows, short, budget, work, what, named):
         done = f"You asked for an error of {asked:g} and got {reached:.2g}, because"
         note = f"{done} the smallest run has {minimum}. For a shorter run pass a smaller budget."
     if missed := shortfall(short, budget, work, what=what):
-        warnings.warn(missed, AccuracyWarning, stacklevel=5)
+        warn(missed, AccuracyWarning)
     return note or missed
 
 

@@ -1,5 +1,7 @@
-"""Calls with wrong arguments: an ``InputError`` that names the nearest right one."""
+"""Wrong calls, with an ``InputError`` that names the nearest right one, and warnings of a call."""
 
+import sys
+import warnings
 from collections.abc import Callable
 from functools import wraps
 from inspect import signature
@@ -36,3 +38,11 @@ def checked_call(function: Call) -> Call:
             raise WrongCall(f"{said}{hint}") from None
 
     return call
+
+
+def warn(sentence: str, category: type[Warning] = UserWarning) -> None:
+    """Warn at the line that calls this package, through however many of its functions."""
+    frame, level = sys._getframe(1), 2
+    while frame and frame.f_globals["__name__"].partition(".")[0] == "twodiscs":
+        frame, level = frame.f_back, level + 1
+    warnings.warn(sentence, category, stacklevel=level)

@@ -102,7 +102,6 @@ def _kinks(a, sigma, t, c):
         apart = np.arccos(np.hypot(t, a) / (2 * sigma))
         beside = np.where(a >= c, np.sqrt(sigma**2 - (a - c) ** 2), np.nan)
         by_p = [
-            t / 2,
             t,
             np.full_like(t, sigma),
             np.full_like(t, level),
