@@ -213,7 +213,7 @@ def test_rows_of_the_histogram():
 @pytest.mark.parametrize("discs", [2, 3])
 @pytest.mark.parametrize(
     ("events", "counts", "status"),
-    [(0.39, (100, 100, 9), "extrapolated"), (0.39, (99, 100, 9), "too-few"),
+    [(0.4, (100, 100, 9), "extrapolated"), (0.39, (99, 100, 9), "too-few"),
      (0.39, (100, 99, 9), "too-few"), (0.41, (100, 100, 9), "not-resolved")],
 )  # fmt: skip
 def test_a_density_at_zero_needs_few_events_and_many_intervals(discs, events, counts, status):

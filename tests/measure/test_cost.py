@@ -94,8 +94,9 @@ def test_a_time_is_c_over_the_square_of_the_error_between_the_smallest_run_and_t
 
 
 def test_a_share_of_all_samples_prints_with_a_rounding_too_much(blocks):
-    """The volume over that of the prism is 1 + 2e-16."""
-    assert "volume" in str(td.cost(td.Scene(1.0, 1.0, 1e-9), 1e-3))
+    """The volume over that of the prism is 1 + 2e-16. In another unit it is no double."""
+    for unit in (1.0, 1e-50):
+        assert "volume" in str(td.cost(td.Scene(unit, unit, unit * 1e-9), 1e-3))
 
 
 @pytest.mark.parametrize("shell", [0.02, 0.3])
@@ -218,10 +219,11 @@ def test_times_are_written_in_their_unit(seconds, text):
 
 
 @pytest.mark.parametrize("fewest", [7, 1])
-def test_a_pilot_has_at_least_its_fewest_blocks(fewest):
-    work = Mock(side_effect=lambda first, stop: stop)
-    sums, number, _ = cost.timed(work, 0.0, fewest)
-    assert (sums, number) == (fewest, fewest)
+def test_a_pilot_has_at_least_its_fewest_blocks(fewest, monkeypatch):
+    """Six seconds on the clock are those of all blocks."""
+    work, clock = Mock(side_effect=lambda first, stop: stop), Mock(side_effect=[3, 9] * 3)
+    monkeypatch.setattr(cost.time, "thread_time", clock)
+    assert cost.timed(work, 0.0, fewest) == (fewest, fewest, 6 / fewest)
     # The first call compiles, the second measures one block.
     assert work.mock_calls == [call(0, 1), call(0, 1), call(0, fewest)]
 
