@@ -11,14 +11,14 @@ from itertools import combinations, combinations_with_replacement
 
 import numpy as np
 import pytest
-from factory import BOX, bins_point, counts_point, hits_point
+from factory import BOX, counts_point, hits_point
 
 import twodiscs as td
 from twodiscs.analysis.check import flux_time
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.checks import InputError
 from twodiscs.points.base import digest_line, file_content, read_json, require_logged, write_json
-from twodiscs.points.intervals_point import Bins
+from twodiscs.points.intervals_point import TIME_GRAIN, IntervalsPoint
 from twodiscs.points.monte_carlo_point import Hits, InsertionPoint, MonteCarloPoint, Weights
 from twodiscs.theory.clusters import corner_variance
 from twodiscs_paper.pipeline.points import read_point
@@ -75,17 +75,20 @@ def test_the_error_of_a_density_is_that_of_a_ratio_of_two_numbers_of_each_chain(
     chains, width = 200, 0.25
     intervals = RNG.poisson(30, chains)
     counts = [RNG.binomial(intervals, 0.4), RNG.binomial(intervals, 0.1)]
-    bins = Bins(
-        [0, 1, 2],
-        [int(c.sum()) for c in counts],
-        [int((c * c).sum()) for c in counts],
-        [int((c * intervals).sum()) for c in counts],
-    )
+    beyond, times = intervals - sum(counts), RNG.integers(2**20, size=chains) * intervals
+    of = np.array([*counts, beyond])
+    bins = np.array([of.sum(1), (of * of).sum(1), (of * intervals).sum(1)])
     total = int(intervals.sum())
-    point = bins_point(
-        0.1, chains=chains, intervals=total, bin_width=width,
-        intervals_squared=int((intervals**2).sum()), equal=bins, wide=bins,
-    )  # fmt: skip
+    moments = [int((a * b).sum()) for a, b in ((times, 1), (times, times), (times, intervals))]
+    moments += [total, int((intervals**2).sum())]
+    component = {"event": "vertical_hop", "chains": chains // 2, "bin_width": width}
+    component |= {"edges": [0.0, width, 2 * width]}
+    component["sums"] = {(0, 2): [bins, np.array(moments)]}
+    point = IntervalsPoint.of(BOX.scene(0.1), {"all": component})
+    grain, mean = width * TIME_GRAIN, times.sum() / total
+    assert point.mean / grain == pytest.approx(mean, rel=1e-12)
+    residuals = (times - mean * intervals).std(ddof=1) * math.sqrt(chains) / total
+    assert point.stderr / grain == pytest.approx(residuals, rel=1e-12)
     for found, c in zip(point.bins(), counts, strict=False):
         density = c.sum() / total
         residuals = (c - density * intervals).std(ddof=1) * math.sqrt(chains) / total

@@ -66,6 +66,7 @@ def test_the_volume_is_that_of_rejection(scene):
     rejected = np.log(free.mean()) + scene.discs * np.log(scene.range_x * scene.range_y)
     error = np.sqrt((1 - free.mean()) / free.mean() / n)
     assert abs(found.log_volume - rejected) < 5 * np.hypot(error, errors.log_volume)
+    assert (found.per_width == errors.per_width == 0) == bool(scene.periodic)
 
 
 @pytest.mark.parametrize(("radius", "periodic"), [(0.2, ""), (0.2, "x"), (0.3, "x"), (0.2, "y")])

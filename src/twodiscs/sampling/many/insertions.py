@@ -253,8 +253,6 @@ def estimate(scene, sums, products, samples):
     factors = np.array(
         [n / a, n / b, pairs * 2 * math.pi * scene.contact_distance / (a * b), pairs / a, pairs / b]
     )
-    for axis in scene.periodic:
-        factors["xy".index(axis)] = 0.0
     ratios = mean[1:] / mean[0]
     spread = np.diag(covariance)[1:] - 2 * ratios * covariance[0, 1:] + ratios**2 * covariance[0, 0]
     errors = np.sqrt(np.maximum(spread, 0.0)) / mean[0]
