@@ -573,6 +573,8 @@ def test_sentences_have_an_end(tmp_path, kind):
     with pytest.raises(ConfigError) as caught:
         load(read(path))
     assert len(found := str(caught.value).split("\n")) <= checks.MOST_SENTENCES
+    assert (len(found) == 20) == found[-1].startswith("you see more mistakes after you mend these")
+    assert kind != "mistakes" or len(found) == 20
     assert all(len(sentence) < 1100 for sentence in found)
 
 

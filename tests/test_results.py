@@ -251,6 +251,16 @@ def test_files_of_something_else_are_refused(tmp_path):
             td.load_result(path)
 
 
+def test_zero_is_a_seed():
+    hop = "horizontal_hop"
+    for made in (
+        td.simulate(PAPER, duration=1, seed=0), td.sample(PAPER, 1, seed=0),
+        td.intervals(PAPER, hop, 1, seed=0), td.transmission(NARROW, hop, 1, seed=0),
+        td.observe(PAPER, seen, [0], 1, seed=0), td.diffusion(RING, [1], 1, seed=0),
+    ):  # fmt: skip
+        assert made.settings["seed"] == 0
+
+
 def test_errors_that_are_not_given_and_presets_are_those_of_the_pages():
     assert td.scan(1.5, 1.0, [0.2], budget=1).settings["error"] == 1e-2
     assert td.simulate(PAPER, budget=1).settings["error"] == 1e-3

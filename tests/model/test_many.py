@@ -49,6 +49,14 @@ def test_arrangements_fit(discs, sides, periodic):
     assert max(abs(y) for _, y in centres) <= scene.range_y / 2 * (1 + 1e-15)
 
 
+@pytest.mark.parametrize(
+    ("discs", "apart"), [(2, math.sqrt(2)), (4, 1), (5, math.sqrt(1 / 2)), (6, math.sqrt(13) / 6)]
+)
+def test_the_densest_packings_of_rows_in_a_square_are_found(discs, apart):
+    """The centres are in a square of side 1, at the largest distance that there is."""
+    assert largest_radius(discs, 1 + apart, 1 + apart) == pytest.approx(apart / 2, rel=1e-14)
+
+
 @pytest.mark.parametrize("sides", [(1.0, 2000.0), (2000.0, 1.0)])
 def test_more_than_a_thousand_discs_fit_in_one_row(sides):
     assert Box(*sides, discs=1100).largest_radius == 0.5

@@ -211,6 +211,6 @@ def test_energy_to_pass_one_above_the_other_is_that_of_the_cheaper_order():
 
 
 def test_friction_is_limited_by_the_time_along_the_shortest_side():
-    assert Scene(1.5, 1.0, 0.2, friction=9.9e5).friction == 9.9e5
+    assert Scene(1.5, 1.0, 0.2, friction=1e6).friction == 1e6
     with pytest.raises(InputError, match=r"the shortest side, which is 1000000\.0, not 1010000\.0"):
         Scene(1.5, 1.0, 0.2, friction=1.01e6)
