@@ -218,7 +218,7 @@ observe(lambda a, b: b['x1'] * 1e150) → finite numbers, below 1e140, not
 td.diffusion(RING, [1], 1).more(function=x1) → function must be left out for a result of diffusion
 observe(lambda a, b: b['x1'] + 1j) → real and imaginary part as two columns
 td.plot(td.observe(PAPER, lambda a, b: np.stack([b['x1']] * 9, 1), [1], 1)) → to be drawn, not 9
-td.trajectory(PAPER).states_at([1e9]) → times must be numbers from 0.0 to
+td.trajectory(PAPER).states_at([1, 1e9]) → times must be numbers from 0.0 to
 td.trajectory(PAPER)[['time', 'x1']].states_at([1]) → rows and lacks y1, x2, y2, u1, v1, u2, v2
 td.trajectory(PAPER)[:0].states_at([1]) → and at least one row, but has 0 rows and lacks no column
 pd.concat([td.trajectory(PAPER, 1), td.trajectory(FIELD, 1)]).scene → must have a scene in its attrs

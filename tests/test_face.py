@@ -382,6 +382,7 @@ td.intervals(PAPER, "vertical_hop", 10) → You asked for 10 intervals and got 6
 td.observe(PAPER, lambda a, b: b["x1"], [1], 10) → You asked for 10 replicas and
 td.observe(PAPER, lambda a, b: b["x1"], [1], 8192) →
 td.simulate(PAPER, 0.5) → You asked for an error of 0.5 and got 0.0028, because the smallest run
+td.simulate(PAPER, {"any_wall": 0.5, "horizontal_hop": 0.004}) →
 td.simulate(PAPER, 0.5, budget=1) → You asked for a budget of 1, but the smallest run has 250000
 td.simulate(PAPER, duration=100) → You asked for a duration of 100 and got 65536: 1024
 td.transmission(td.Scene(1.5, 1, 0.249), "horizontal_hop", 10) → You asked for 10

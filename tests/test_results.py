@@ -108,7 +108,7 @@ def test_results_go_on_and_come_back(name, tmp_path, monkeypatch):
         again["function"] = seen
     assert bits(more) == bits(read.more(**{setting: value}, **again))
     if name in ("observe", "diffusion"):  # their sums are no integers
-        assert bits(more) == bits(make(value))
+        assert more == make(value)
     assert bits(more) != bits(less)
     assert more != less
     assert bits(more.more(**{setting: less.settings[setting]})) == bits(less)
