@@ -86,12 +86,11 @@ def _done(run, stop, ranges, cores, progress):
     sums, first = reached(ranges, stop)
     if first == stop:
         return sums
-    if run.join:  # sums of floats depend on the order, so those of all blocks are one range
+    if run.join:  # sums of floats depend on the order, so a range begins at block 0
         blocks = run.work(first, stop, cores, lambda: progress(None))
         for done, more in enumerate(blocks, first + 1):
             sums = run.join(sums, more)
             progress(done)
-        ranges.clear()
         ranges[0, stop] = sums
         return sums
     step, new = max(1, int(EVENTS_PER_CALL / run.block_work)), None
