@@ -167,6 +167,9 @@ def test_what_is_written_is_read_unless_it_was_edited(tmp_path):
     assert [line.split('"')[1] for line in lines] == sorted({*CONTENT, "sha256"})
     write_json(path, dict(reversed(CONTENT.items())))
     assert path.read_bytes() == first
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        write_json(path, CONTENT | {"components": math.nan})
+    assert path.read_bytes() == first
     edited = [json.dumps(json.loads(first) | {key: -1}) for key in CONTENT]
     others = "", "{", "[]", "1", "{}", '{"sha256": "0"}', '{"sha256": null}', "[" * 10**5
     for text in (*edited, *others, json.dumps(CONTENT)):
