@@ -234,8 +234,8 @@ def test_prices_of_insertions_are_those_of_samples(blocks, periodic):
     three = td.Scene(1.5, 1.0, 0.15, discs=3, periodic=periodic)
     measured = td.sample(three, 32 * insertions.INSERTIONS_PER_BLOCK)
     prices = [*cost._prices_of_samples(three, 0.02)]
-    assert {(price.quantity, price.method) for price in prices} == {
-        (quantity, "insertions") for quantity in measured
+    assert {(price.quantity, price.method, price.floor) for price in prices} == {
+        (quantity, "insertions", 0.0) for quantity in measured
     }
     for price in prices:
         due = 32e-3 * measured[price.quantity].relative_stderr ** 2
