@@ -140,7 +140,7 @@ def test_all_samples_in_a_shell_are_samples_of_the_volume():
 def test_the_area_of_all_walls_is_as_sure_as_that_of_the_rarer_wall():
     hits = {"right_wall_area": Hits(5000, 1.0, 0.1), "top_wall_area": Hits(50, 1.0, 0.1)}
     point = MonteCarloPoint(BOX.scene(0.1), "monte_carlo", 10**6, hits, right_and_top=1)
-    assert point.all_walls().enough == 50
+    assert (point.all_walls().enough, point.all_walls().hits) == (50, 5050)
     for wall in hits:
         unseen = hits | {wall: Hits(0, 1.0, 0.1)}
         assert replace(point, quantities=unseen, right_and_top=0).all_walls().estimate is None
