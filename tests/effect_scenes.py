@@ -7,6 +7,7 @@ from twodiscs.model.scene import Scene
 
 #: Without effects.
 PAPER = Scene(1.5, 1.0, 0.2)
+THREE = Scene(1.5, 1.0, 0.15, discs=3)
 
 #: Each of two unequal discs is the larger and lighter one in one of these scenes.
 SCENES = {

@@ -20,7 +20,7 @@ from unittest.mock import Mock, call, create_autospec
 import numpy as np
 import pandas as pd
 import pytest
-from effect_scenes import PAPER, SCENES
+from effect_scenes import PAPER, SCENES, THREE
 from matplotlib.backend_bases import FigureCanvasBase
 from numba.core.compiler_lock import global_compiler_lock
 
@@ -35,7 +35,6 @@ from twodiscs.sampling import rounds
 from twodiscs.sampling.threads import call_in_thread
 
 NARROW = td.Scene(1.5, 1.0, 0.249)
-THREE = td.Scene(1.5, 1.0, 0.15, discs=3)
 RING = replace(THREE, periodic="x")
 
 
@@ -530,8 +529,7 @@ def test_tables_have_plain_values_beside_them(tmp_path):
     """Parquet and other formats write ``attrs`` as JSON; a table that comes back can be drawn."""
     scene = td.Scene(1.5, 1.0, 0.2, field=0.1)
     path = td.trajectory(scene, duration=0.5)
-    table = td.exact_table(1.5, 1.0, [0.1, 0.2], field=0.1, periodic="x")
-    for frame in (path, table):
+    for frame in (path, td.exact_table(1.5, 1.0, [0.1, 0.2], field=0.1, periodic="x")):
         assert json.loads(json.dumps(frame.attrs)) == frame.attrs
     assert path.scene == scene
     back = pd.DataFrame(path.to_dict("list"))

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from dynamics.rates import check_rates
-from effect_scenes import ALL, SCENES
+from effect_scenes import ALL, PAPER, SCENES
 from marks import slow
 from sampling.uniformity import assert_uniform_on_sphere, parts, scaled_components
 
@@ -25,10 +25,9 @@ from twodiscs.sampling.initial_states import components, states
 from twodiscs.sampling.streams import exponential, open_stream
 from twodiscs.theory import exact
 
-PLAIN = td.Scene(1.5, 1.0, 0.2)
 NAMED = SCENES | {"all": ALL, "rings": replace(SCENES["combination"], periodic="xz")}
 #: A scene without effects, and one that takes long to compile.
-BOTH = pytest.mark.parametrize("scene", [PLAIN, slow(ALL)], ids=["plain", "all"])
+BOTH = pytest.mark.parametrize("scene", [PAPER, slow(ALL)], ids=["plain", "all"])
 
 
 @pytest.mark.parametrize("name", ["friction", "all", "torus", "rings"])
@@ -104,14 +103,14 @@ def test_intervals_have_their_exact_mean(scene):
 
 def test_lanes_without_a_replica_are_not_kicked():
     """A lane that never began has no time to its next kick: a kick in it would never end."""
-    kicks = new_kicks(replace(PLAIN, friction=2.0), 3)
+    kicks = new_kicks(replace(PAPER, friction=2.0), 3)
     open_kicks(1, np.uint64(3), 0, kicks)
     assert np.isfinite(kicks.waits).tolist() == [False, True, False]
 
 
 def test_kicks_have_other_random_numbers_than_initial_states():
     """The first kick does not come at the time that the stream of a block of states would give."""
-    kicks, seed = new_kicks(replace(PLAIN, friction=2.0), 1), np.uint64(3)
+    kicks, seed = new_kicks(replace(PAPER, friction=2.0), 1), np.uint64(3)
     for replica in range(4):
         open_kicks(0, seed, replica, kicks)
         assert kicks.waits[0] != exponential(open_stream(seed, replica)) / 2.0
@@ -141,5 +140,5 @@ def test_velocities_forget_at_the_rate_of_kicks():
 
 
 def test_kicks_may_leave_no_event_to_a_run():
-    found = td.simulate(replace(PLAIN, friction=1e6), 1, budget=1)
+    found = td.simulate(replace(PAPER, friction=1e6), 1, budget=1)
     assert {(one.count, one.status) for one in found.values()} == {(0, "none-seen")}

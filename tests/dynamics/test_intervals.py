@@ -10,7 +10,7 @@ from unittest.mock import Mock
 
 import numpy as np
 import pytest
-from effect_scenes import PAPER, SCENES
+from effect_scenes import PAPER, SCENES, THREE
 from exact_motion import path_events
 from marks import slow
 
@@ -106,7 +106,6 @@ def test_intervals_that_a_budget_ends_say_their_error():
 # More than two discs -----------------------------------------------------------------------------
 
 
-THREE = td.Scene(1.5, 1.0, 0.15, discs=3)
 RING = td.Scene(1.5, 1.0, 0.15, discs=4, periodic="x")
 #: An interval has ninety events: a window ends long before the interval that begins in it.
 RARE = td.Scene(1.0, 1.5, 0.24, discs=3)

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from effect_scenes import PAPER, SCENES
+from effect_scenes import PAPER, SCENES, THREE
 from factory import Laws
 from marks import slow
 
@@ -16,8 +16,6 @@ import twodiscs as td
 from twodiscs.analysis.tables import MeanTimesTable
 from twodiscs.measure.measurements import Measurements
 from twodiscs.model.events import WALLS
-
-THREE = td.Scene(1.5, 1.0, 0.15, discs=3)
 
 EXACT = {
     "plain": PAPER,
@@ -128,8 +126,7 @@ def test_a_pressure_has_an_error_if_none_of_its_times_is_too_rare_for_one(rare, 
     point = Laws(PAPER).dynamics(np.random.default_rng(1), 1024, 1e-2)
     products = point.products | {f"{rare}*{rare}": number}
     point = replace(point, counts=point.counts | {rare: number}, products=products)
-    rows = MeanTimesTable.rows([point])
-    found = td.pressure(Measurements("simulate", PAPER, rows, {}, point))
+    found = td.pressure(Measurements("simulate", PAPER, MeanTimesTable.rows([point]), {}, point))
     known = {name for name, one in found.items() if one.stderr}
     other = {*WALLS} - {rare}
     assert known == {"virial_pressure", *(f"{wall}_pressure" for wall in other)}

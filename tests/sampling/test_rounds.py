@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from effect_scenes import SCENES
-from factory import all_reached, through_json
+from factory import BOX, all_reached, through_json
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -20,14 +20,11 @@ from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.two import event_counts
 from twodiscs.model.events import EVENTS
-from twodiscs.model.scene import Box
 from twodiscs.points.base import added, reached
 from twodiscs.sampling import montecarlo, rounds
 from twodiscs.sampling.many import insertions
 from twodiscs.theory import exact
 from twodiscs_paper.pipeline import points
-
-PAPER = Box(1.5, 1.0)
 
 
 def done_in_shards(run, per_shard):
@@ -117,16 +114,16 @@ def test_rounds_end_where_the_error_is_reached_or_the_budget_spent(budget):
 
 #: A scene of each rule that ends a run, and its events or quantities; None are all.
 BRANCHES = {
-    "two discs": (PAPER.scene(0.2), None),
-    "strip": (PAPER.scene(0.2499), ["horizontal_hop"]),
-    "both": (PAPER.scene(0.24), None),
+    "two discs": (BOX.scene(0.2), None),
+    "strip": (BOX.scene(0.2499), ["horizontal_hop"]),
+    "both": (BOX.scene(0.24), None),
     "friction": (td.Scene(1.5, 1.0, 0.2, friction=2.0), None),
     "rough": (td.Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5), ["disc_collision", "right_wall"]),
     "effects": (SCENES["combination"], None),
     "three discs": (td.Scene(1.5, 1.0, 0.15, discs=3), None),
     "ring": (td.Scene(1.5, 1.0, 0.15, discs=4, periodic="x"), None),
-    "rejection": (PAPER.scene(0.3), ["volume", "disc_collision_area", "any_wall_area"]),
-    "conditioned": (PAPER.scene(0.38), ["volume", "vertical_hop_area", "any_wall_area"]),
+    "rejection": (BOX.scene(0.3), ["volume", "disc_collision_area", "any_wall_area"]),
+    "conditioned": (BOX.scene(0.38), ["volume", "vertical_hop_area", "any_wall_area"]),
     "insertions": (td.Scene(1.5, 1.0, 0.15, discs=3), ["volume", "vertical_hop_area"]),
 }
 
@@ -211,7 +208,7 @@ TARGET = {"horizontal_hop": 0.01, "top_wall": 0.01, "any_wall": 0.003}
 
 def test_counts_in_pieces_are_those_of_their_blocks_and_reach_what_is_asked():
     """This holds for rare hops, too, which are counted from separate starts."""
-    scene = PAPER.scene(0.24)
+    scene = BOX.scene(0.24)
     run = runs.DynamicsRun(scene, TARGET, 4 * 10**7, 3)
     assert {*run.components} == {"all", "horizontal_hop"}
     found = [
@@ -230,10 +227,10 @@ def test_counts_in_pieces_are_those_of_their_blocks_and_reach_what_is_asked():
 
 #: {what is counted: (number in a block, run of at least a number)}
 WHOLE = {
-    "intervals": (2**16, lambda n: runs.IntervalsRun(PAPER.scene(0.1), "vertical_hop", n, 5)),
-    "time": (2.0**16, lambda t: timed(PAPER.scene(0.2), t)),
-    "samples": (montecarlo.SAMPLES_PER_BLOCK, lambda n: sampling(PAPER.scene(0.2), n)),
-    "conditioned": (64 * montecarlo.PROPOSALS_PER_BLOCK, lambda n: sampling(PAPER.scene(0.38), n)),
+    "intervals": (2**16, lambda n: runs.IntervalsRun(BOX.scene(0.1), "vertical_hop", n, 5)),
+    "time": (2.0**16, lambda t: timed(BOX.scene(0.2), t)),
+    "samples": (montecarlo.SAMPLES_PER_BLOCK, lambda n: sampling(BOX.scene(0.2), n)),
+    "conditioned": (64 * montecarlo.PROPOSALS_PER_BLOCK, lambda n: sampling(BOX.scene(0.38), n)),
     "weighted": (montecarlo.SAMPLES_PER_BLOCK, lambda n: sampling(SCENES["field"], n)),
     "insertions": (
         insertions.INSERTIONS_PER_BLOCK,
@@ -262,10 +259,9 @@ def test_a_number_that_is_asked_for_is_rounded_up_to_whole_blocks(what):
 
 @pytest.mark.parametrize("blocks", [1, 2.01, 2.99])
 def test_a_budget_of_intervals_has_the_whole_blocks_that_it_can_pay(blocks):
-    scene, hop = PAPER.scene(0.1), "vertical_hop"
+    scene, hop = BOX.scene(0.1), "vertical_hop"
     events = 2**16 * exact.mean_times(scene)[hop] * exact.event_rate(scene)
     budget = math.ceil(blocks * events)
-    run = runs.IntervalsRun(scene, hop, 10**9, 5, budget).components["all"]
-    assert run.planned == int(blocks)
+    assert runs.IntervalsRun(scene, hop, 10**9, 5, budget).components["all"].planned == int(blocks)
     with pytest.raises(td.InputError, match=r"^budget must allow for 65536 intervals"):
         runs.IntervalsRun(scene, hop, 10**9, 5, int(0.999 * events))

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 import pytest
-from effect_scenes import SCENES
+from effect_scenes import PAPER, SCENES
 from marks import slow
 from sampling import uniformity
 
@@ -20,8 +20,7 @@ from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.rejection import fraction_if_accepted, propose_anywhere, rejection_sampler
 from twodiscs.sampling.streams import open_stream
 
-PLAIN = Scene(1.5, 1.0, 0.2)
-SMOOTH = {"plain": PLAIN, "plain, narrow": PLAIN.with_radius(0.3)}
+SMOOTH = {"plain": PAPER, "plain, narrow": PAPER.with_radius(0.3)}
 
 #: D is 2, 3, 4 and 6 in the scenes of one effect; here it is 5 and 3, 6 and 4 again.
 STARTS = {
@@ -81,7 +80,7 @@ def assert_same_law(scene, drawn, plain):
         assert abs(a.mean() - b.mean()) <= 5 * error
 
 
-@pytest.mark.parametrize("scene", [PLAIN, *STARTS.values()], ids=["plain", *STARTS])
+@pytest.mark.parametrize("scene", [PAPER, *STARTS.values()], ids=["plain", *STARTS])
 def test_starts_have_the_law_of_the_invariant_measure(scene):
     found, spins = uniformity.parts(scene, states(scene, 50_000, 17))
     places = {axis: both[:2] for axis, both in found.items()}
@@ -122,7 +121,7 @@ def test_starts_on_a_surface_have_the_law_of_the_flux(name, hop):
 # States -----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("scene", [PLAIN, *SCENES.values()], ids=["plain", *SCENES])
+@pytest.mark.parametrize("scene", [PAPER, *SCENES.values()], ids=["plain", *SCENES])
 def test_states_are_the_first_ones_of_their_stream(scene):
     """A block has the same starts in every process, for any number of them."""
     many = states(scene, 20, 3, 1)
