@@ -12,29 +12,18 @@ from factory import BOX, LAWS, empty
 
 from twodiscs.analysis import tables
 from twodiscs.analysis.columns import Table
-from twodiscs.analysis.tables import (
-    SCENE_TABLES,
-    AreasTable,
-    CheckTable,
-    CostTable,
-    GridTable,
-    HopHistogramTable,
-    MeanTimesTable,
-    TheoryTable,
-    TrajectoryTable,
-)
 from twodiscs.measure import load
 from twodiscs.model.scene import Box
 
 
 def test_every_table_of_a_scene_is_known():
     declared = [table for table in Table.__subclasses__() if table.__module__ == tables.__name__]
-    assert {table.name(): table for table in declared} == SCENE_TABLES
+    assert {table.name(): table for table in declared} == tables.SCENE_TABLES
 
 
 # Files ----------------------------------------------------------------------------------------
 
-CHECK_ROW = empty(CheckTable, 
+CHECK_ROW = empty(tables.CheckTable, 
     comparison="area", quantity="right_wall_area", radius=0.1, method="monte_carlo", exact=1 / 3,
     z=-math.inf, p=0.0, bound=5, passed=False, independent=True, status="none-seen",
     test="exact-tail",
@@ -46,15 +35,15 @@ COST_ROW = {"stage": "dynamics", "radius": 1e-05, "events": 2**53 + 1, "seconds"
 @pytest.mark.parametrize(
     ("table", "rows"),
     [
-        (CostTable, lambda: []),
-        (CostTable, lambda: [COST_ROW, COST_ROW | {"events": 2**63}]),
-        (CheckTable, lambda: [CHECK_ROW]),
-        (TheoryTable, lambda: TheoryTable.rows(BOX, [0.3, 0.1])),
-        (GridTable, lambda: GridTable.rows(Box(40.0, 0.6, discs=64), [0.1, 0.2])),
-        (TrajectoryTable, lambda: TrajectoryTable.rows(Box(1.5, 1.0, discs=4), 0.1, 1)),
-        (MeanTimesTable, lambda: MeanTimesTable.rows([LAWS[2].dynamics(RNG)])),
-        (AreasTable, lambda: AreasTable.rows([LAWS[2].monte_carlo(RNG, 10**7)])),
-        (HopHistogramTable, lambda: HopHistogramTable.rows([LAWS[2].intervals(RNG)])),
+        (tables.CostTable, lambda: []),
+        (tables.CostTable, lambda: [COST_ROW, COST_ROW | {"events": 2**63}]),
+        (tables.CheckTable, lambda: [CHECK_ROW]),
+        (tables.TheoryTable, lambda: tables.TheoryTable.rows(BOX, [0.3, 0.1])),
+        (tables.GridTable, lambda: tables.GridTable.rows(Box(40.0, 0.6, discs=64), [0.1, 0.2])),
+        (tables.TrajectoryTable, lambda: tables.TrajectoryTable.rows(Box(1.5, 1, discs=4), 0.1, 1)),
+        (tables.MeanTimesTable, lambda: tables.MeanTimesTable.rows([LAWS[2].dynamics(RNG)])),
+        (tables.AreasTable, lambda: tables.AreasTable.rows([LAWS[2].monte_carlo(RNG, 10**7)])),
+        (tables.HopHistogramTable, lambda: tables.HopHistogramTable.rows([LAWS[2].intervals(RNG)])),
     ],
 )
 def test_a_table_is_read_as_it_was_written(tmp_path, table, rows):
@@ -69,14 +58,13 @@ def test_a_table_is_read_as_it_was_written(tmp_path, table, rows):
 
 
 def test_cells_have_all_digits_one_truth_value_and_lines_that_end_alike(tmp_path):
-    CostTable.write(tmp_path / "x.csv", [COST_ROW])
-    assert (tmp_path / "x.csv").read_bytes() == (
-        b"stage,radius,events,seconds\ndynamics,1e-05,9007199254740993,0.30000000000000004\n"
-    )
+    tables.CostTable.write(tmp_path / "x.csv", [COST_ROW])
+    due = b"stage,radius,events,seconds\ndynamics,1e-05,9007199254740993,0.30000000000000004\n"
+    assert (tmp_path / "x.csv").read_bytes() == due
     row = {"stage": "dynamics", "events": np.int64(7), "radius": np.float64(0.1)}
-    CostTable.write(tmp_path / "x.csv", [row])
+    tables.CostTable.write(tmp_path / "x.csv", [row])
     assert (tmp_path / "x.csv").read_text().endswith("dynamics,0.1,7,\n")
-    CheckTable.write(tmp_path / "x.csv", [CHECK_ROW])
+    tables.CheckTable.write(tmp_path / "x.csv", [CHECK_ROW])
     text = (tmp_path / "x.csv").read_text()
     assert text.splitlines()[1] == (
         "area,right_wall_area,0.1,monte_carlo,0.3333333333333333,,,-inf,0.0,5.0,false,"
@@ -84,7 +72,7 @@ def test_cells_have_all_digits_one_truth_value_and_lines_that_end_alike(tmp_path
     )
     (tmp_path / "x.csv").write_text(text.replace(",false,", ",False,"))
     with pytest.raises(ValueError, match="passed has 'False', which is no bool"):
-        CheckTable.read(tmp_path / "x.csv")
+        tables.CheckTable.read(tmp_path / "x.csv")
 
 
 @pytest.mark.parametrize(
@@ -101,9 +89,9 @@ def test_cells_have_all_digits_one_truth_value_and_lines_that_end_alike(tmp_path
 )
 def test_a_wrong_cell_writes_nothing(tmp_path, change, message):
     with pytest.raises(ValueError, match=message):
-        CostTable.write(tmp_path / "x.csv", [COST_ROW, {**COST_ROW, **change}])
+        tables.CostTable.write(tmp_path / "x.csv", [COST_ROW, {**COST_ROW, **change}])
     with pytest.raises(ValueError, match="passed must be a bool"):
-        CheckTable.write(tmp_path / "x.csv", [{**CHECK_ROW, "passed": 1}])
+        tables.CheckTable.write(tmp_path / "x.csv", [{**CHECK_ROW, "passed": 1}])
     assert not (tmp_path / "x.csv").exists()
 
 
@@ -122,17 +110,15 @@ def test_a_wrong_cell_writes_nothing(tmp_path, change, message):
 def test_a_wrong_file_is_named(tmp_path, text, message):
     (tmp_path / "theory.csv").write_bytes(text.encode("latin-1"))
     with pytest.raises(ValueError, match=rf"theory\.csv must be a table theory, but .*{message}"):
-        TheoryTable.read(tmp_path / "theory.csv")
+        tables.TheoryTable.read(tmp_path / "theory.csv")
 
 
 def test_columns_that_the_table_does_not_know_are_left_out(tmp_path):
     """A later version may have one more, at any place; and empty lines."""
-    text = "radius,colour,quantity,exact,more\n\n0.1,red,volume,1.0,\n"
-    (tmp_path / "theory.csv").write_text(text)
-    assert TheoryTable.read(tmp_path / "theory.csv") == [
-        {"radius": 0.1, "quantity": "volume", "exact": 1.0}
-    ]
-    assert list(load.read(tmp_path / "theory.csv", TheoryTable)) == ["radius", "quantity", "exact"]
+    path, known = tmp_path / "theory.csv", {"radius": 0.1, "quantity": "volume", "exact": 1.0}
+    path.write_text("radius,colour,quantity,exact,more\n\n0.1,red,volume,1.0,\n")
+    assert tables.TheoryTable.read(path) == [known]
+    assert list(load.read(path, tables.TheoryTable)) == [*known]
 
 
 def test_the_box_of_a_configuration_has_its_effects():
