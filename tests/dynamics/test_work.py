@@ -32,10 +32,8 @@ SHARES = decades(1e-12, 0.999) | st.floats(0.9, 0.999999)
 EFFECTS = (
     st.sampled_from([{}, *({"periodic": axes} for axes in ("x", "y", "xy"))])
     | st.just({"moment_of_inertia": 0.5})
-    | st.builds(
-        lambda ratio, mass: {"radius_ratio": ratio, "mass_ratio": mass}, *[decades(1e-2, 1e2)] * 2
-    )
-    | st.builds(lambda field: {"field": field}, decades(1e-3, 1e3))
+    | st.fixed_dictionaries(dict.fromkeys(("radius_ratio", "mass_ratio"), decades(1e-2, 1e2)))
+    | st.fixed_dictionaries({"field": decades(1e-3, 1e3)})
 )
 
 
