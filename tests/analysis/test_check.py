@@ -152,8 +152,7 @@ def test_the_sum_rule_needs_a_thousand_of_each_of_its_events(rare, number, statu
     counts = dict.fromkeys(check.SUM_RULE_EVENTS, 50 * 2048) | {rare: number}
     pairs = combinations_with_replacement(counts, 2)  # of independent events
     products = {f"{a}*{b}": counts[a] * counts[b] // 2048 + counts[a] * (a == b) for a, b in pairs}
-    target = dict.fromkeys(counts, 1.0)
-    point = counts_point(0.2, counts=counts, products=products, target=target)
+    point = counts_point(0.2, counts=counts, products=products, target=dict.fromkeys(counts, 1.0))
     (row,) = check.comparisons([], [], [], [], [point])
     assert (row["status"], row["z"] is None) == (status, status == "too-few")
 
@@ -183,16 +182,13 @@ def test_what_is_blocked_must_not_be_seen(points):
 
 def test_what_is_due_must_be_seen(points):
     dynamics = [with_hops(point, 0) for point in points["dynamics"]]
-    radii = possible_radii("vertical_hop")
-    assert failed(text_table({**points, "dynamics": dynamics})) == {
-        ("mean_time", "vertical_hop_time", radius) for radius in radii
-    }
+    due = {("mean_time", "vertical_hop_time", r) for r in possible_radii("vertical_hop")}
+    assert failed(text_table({**points, "dynamics": dynamics})) == due
     monte_carlo = [
         replace(p, quantities=p.quantities | {"volume": replace(p.quantities["volume"], hits=0)})
         for p in points["monte_carlo"]
     ]
-    found = text_table({**points, "monte_carlo": monte_carlo})
-    assert ("volume", "volume", 0.38) in failed(found)
+    assert ("volume", "volume", 0.38) in failed(text_table({**points, "monte_carlo": monte_carlo}))
 
 
 def test_what_cannot_be_compared_is_there_and_not_passed():
@@ -245,6 +241,5 @@ def test_walls_are_tests_of_their_own_where_they_are_not_counted_alone():
         assert one["independent"] == (epsilon is not None)
     for events in (("any_wall",), ("right_wall", "any_wall"), ("disc_collision", "any_wall")):
         found = text_table({"dynamics": [LAWS[1].dynamics(rng, events=events)]})
-        assert [row["quantity"] for row in found if row["independent"]] == [
-            f"{event}_time" for event in events
-        ]
+        independent = [row["quantity"] for row in found if row["independent"]]
+        assert independent == [f"{event}_time" for event in events]
