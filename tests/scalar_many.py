@@ -102,9 +102,8 @@ def advance(discs, event, kappa):
     if kind == 2:
         dx, dy = x[i] - x[j] - shift[0], y[i] - y[j] - shift[1]
         distance = math.hypot(dx, dy)
-        jx, jy, turn = impulse(
-            u[i] - u[j], v[i] - v[j], dx / distance, dy / distance, s[i] + s[j], kappa, 1.0
-        )
+        nx, ny = dx / distance, dy / distance
+        jx, jy, turn = impulse(u[i] - u[j], v[i] - v[j], nx, ny, s[i] + s[j], kappa, 1.0)
         u[j] -= jx
         v[j] -= jy
         s[j] += turn

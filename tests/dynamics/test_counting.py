@@ -23,9 +23,8 @@ from twodiscs.model.scene import Box
 #: A radius in each regime, both sides of the thresholds, where the discs hardly fit; other boxes.
 RADII = (0.01, 0.05, 0.2, 0.24, 0.2499, 0.2501, 0.3, 0.36, 0.376, 0.38, 0.3839)
 BOXES = [Box(*sides) for sides in ((3.0, 1.0), (1.0, 1.5), (1.0, 1.0), (2.0, 1.0))]
-PLAIN = [PAPER.with_radius(radius) for radius in RADII] + [
-    box.scene(share * box.largest_radius) for box in BOXES for share in (0.1, 0.55, 0.99)
-]
+PLAIN = [PAPER.with_radius(radius) for radius in RADII]
+PLAIN += [box.scene(share * box.largest_radius) for box in BOXES for share in (0.1, 0.55, 0.99)]
 
 
 #: Walls with all that symmetry makes equal. The kernels of three take seconds to compile.
@@ -49,9 +48,8 @@ def test_an_event_is_seen_by_its_disc_its_axis_and_its_side(event, identical, fi
         if event in HOPS:
             due &= after[axis] < after[axis + 2]
         else:
-            due &= (number < 2 or identical is True) and (
-                axis == 0 or not field or side == DECLARED_EVENTS[event].side
-            )
+            due &= number < 2 or identical is True
+            due &= axis == 0 or not field or side == DECLARED_EVENTS[event].side
         assert event_counts.DETECTORS[event](code, before, after, identical, field) == due
 
 
@@ -74,10 +72,9 @@ def test_any_duration_is_unbiased():
 
 def test_what_is_not_watched_is_not_detected():
     """With all events, with collisions, with the walls of rough discs; any wall is a sum."""
-    rough = SCENES["rough"]
     everything, bare, walls = (
         dict(zip(EVENTS, event_counts.run_blocks(s, events, 7, 0, 1, 32.0)[0], strict=True))
-        for s, events in ((PAPER, EVENTS), (PAPER, EVENTS[2:3]), (rough, ("right_wall",)))
+        for s, events in ((PAPER, EVENTS), (PAPER, EVENTS[2:3]), (SCENES["rough"], ("right_wall",)))
     )
     assert bare["disc_collision"] == everything["disc_collision"]
     assert not any(bare[event] for event in (*HOPS, *WALLS))
@@ -87,8 +84,7 @@ def test_what_is_not_watched_is_not_detected():
 
 def test_a_blocked_hop_is_not_waited_for():
     scene = PAPER.with_radius(0.3)
-    target = {"horizontal_hop": 1e-9, "right_wall": 0.1}
-    point = runs.DynamicsRun(scene, target, 10**9, 1).run()
+    point = runs.DynamicsRun(scene, {"horizontal_hop": 1e-9, "right_wall": 0.1}, 10**9, 1).run()
     assert point.counts["horizontal_hop"] == 0
     assert [*point.components["all"]["sums"]] == [(0, 32)]
 

@@ -118,9 +118,8 @@ def test_discs_that_overlap_collide_at_once_or_go_on(discs, radius, apart):
     first, last = rows[rows["event"] == "disc_collision"].iloc[0], rows.iloc[-1]
     assert first["time"] == pytest.approx(0.0 if radius == 0.1 else apart / 2 / speed, abs=1e-15)
     assert (rows["time"] >= 0).all()
-    assert [last["u1"], last["u2"]] == pytest.approx(
-        [-speed, speed] if radius == 0.1 else [speed, -speed]
-    )
+    due = -speed if radius == 0.1 else speed
+    assert [last["u1"], last["u2"]] == pytest.approx([due, -due])
 
 
 #: Velocities that are trouble, before they are scaled to the energy.

@@ -235,12 +235,10 @@ def test_rough_collisions_reverse_what_slides_and_what_approaches(seed, mass, in
     t = np.array([-n[1], n[0]])
 
     def slip(a, b, spins):
-        return (a - b) @ n, (a - b) @ t - sum(spins)
+        return np.array([(a - b) @ n, (a - b) @ t - sum(spins)])
 
     size = float(np.max(np.abs(state[4:])))
-    assert np.allclose(
-        slip(w1, w2, (t1, t2)), np.negative(slip(v1, v2, (s1, s2))), atol=1e-13 * size
-    )
+    assert np.allclose(slip(w1, w2, (t1, t2)), -slip(v1, v2, (s1, s2)), atol=1e-13 * size)
     assert np.allclose(v1 + mass * v2, w1 + mass * w2, rtol=0, atol=1e-12 * size * (1 + mass))
     assert energy(scene, state) == pytest.approx(energy(scene, after), rel=1e-12)
     # Forces at the point of contact turn either disc there by as much as the other, r n × impulse.

@@ -99,9 +99,8 @@ def test_counts_of_events_are_those_of_their_classes():
     of_axis = {"x": columns["right_wall"], "y": columns["top_wall"]}
     columns |= {wall: of_axis[EVENT_AXES[wall]] for wall in WALLS}
     by_event = np.array([columns[event] for event in EVENTS]).T
-    sums, products = class_counts.combine_classes(
-        by_class.sum(axis=0), np.triu(by_class.T @ by_class)
-    )
+    given = by_class.sum(axis=0), np.triu(by_class.T @ by_class)
+    sums, products = class_counts.combine_classes(*given)
     assert np.array_equal(sums, by_event.sum(axis=0))
     assert np.array_equal(products, np.triu(by_event.T @ by_event))
 
@@ -119,9 +118,8 @@ def test_orders_are_those_of_the_ergodic_components(scene):
         part = states[k * n : (k + 1) * n]
         part[:] = np.take_along_axis(part, order, axis=0)
     hops = np.zeros(2000) if scene.periodic else None  # as in other tests of these kernels
-    many.advance_states(
-        states, np.zeros((2 * n, 2000)), 200.0, many.many_disc_law(scene), None, hops
-    )
+    laps, law = np.zeros((2 * n, 2000)), many.many_disc_law(scene)
+    many.advance_states(states, laps, 200.0, law, None, hops)
     order = np.argsort(states[start : start + n], axis=0)
     if scene.periodic:  # up to a cyclic shift
         order = np.take_along_axis(order, (np.argmin(order, axis=0) + np.arange(n)[:, None]) % n, 0)

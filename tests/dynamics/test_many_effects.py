@@ -84,9 +84,8 @@ def test_bursts_in_a_neck_need_initial_states_in_it():
     """As two discs alone, divided by the pairs; smooth discs have no bursts."""
     near = Scene(2.2, 1.0, 0.25 / 1.001, discs=3, moment_of_inertia=0.02)
     pair = replace(near, discs=2)
-    assert replicas_needed(near, "disc_collision", 0.01) == pytest.approx(
-        replicas_needed(pair, "disc_collision", 0.01) / 3
-    )
+    due = replicas_needed(pair, "disc_collision", 0.01) / 3
+    assert replicas_needed(near, "disc_collision", 0.01) == pytest.approx(due)
     for event in ("right_wall", "top_wall", "any_wall"):  # each disc is in two pairs
         due = replicas_needed(pair, event, 0.005) / 3
         assert replicas_needed(near, event, 0.01) == pytest.approx(due)
@@ -178,5 +177,4 @@ def test_chains_have_the_kicks_of_their_numbers(monkeypatch):
     monkeypatch.setattr(all_pairs, "record_intervals", all_pairs.record_intervals.py_func)
     bins, ended = (0.1, None, np.full(65, 65)), np.zeros(1, np.bool_)
     many_intervals.record_intervals(FEW, "vertical_hop", 3, 2, 4, chains, bins, ended, window=8.0)
-    due = [(chain % chains % LANES, 3, chain) for chain in range(2 * chains, 4 * chains)]
-    assert opened == due
+    assert opened == [(chain % chains % LANES, 3, chain) for chain in range(2 * chains, 4 * chains)]

@@ -69,8 +69,7 @@ def test_it_does_not_matter_where_a_ring_begins():
     scene, gap = Scene(1.0, 1.0, 0.1, discs=3, periodic="x"), 1.0
     pair = of_many.surface_pair(scene, HOP)
     states, found = np.zeros((12, 2**11)), []
-    stream = of_many.open_stream(np.uint64(2), 0)
-    of_many.draw_on_surface(stream, pair, states, -1)
+    of_many.draw_on_surface(of_many.open_stream(np.uint64(2), 0), pair, states, -1)
     for begun in (0.0, scene.width / 2):
         turned = states.copy()
         turned[:3] -= np.where(turned[:3] > 0, begun, -begun)

@@ -156,9 +156,8 @@ def test_starts_in_a_strip_are_those_from_everywhere_that_are_in_it(scene, hop):
         np.concatenate((one, one**2, [(one[0] - one[2]) ** 2, (one[1] - one[3]) ** 2]))
         for one in (seen, drawn)
     ]
-    means, errors = zip(
-        *((x.mean(axis=1), x.std(axis=1) / math.sqrt(x.shape[1])) for x in both), strict=True
-    )
+    found = ((x.mean(axis=1), x.std(axis=1) / math.sqrt(x.shape[1])) for x in both)
+    means, errors = zip(*found, strict=True)
     assert np.all(np.abs(means[0] - means[1]) <= 5 * np.hypot(*errors) + 1e-15)
 
 
@@ -240,8 +239,7 @@ def test_every_rare_hop_has_random_numbers_of_its_own(monkeypatch):
 
     monkeypatch.setattr(strip, "run_blocks", recorded)
     for radius, root in product((0.2499, 0.24999), (1, 2)):
-        target = dict.fromkeys(HOPS, 0.1)
-        run = runs.DynamicsRun(Scene(1.0, 1.0, radius), target, 10**6, root)
+        run = runs.DynamicsRun(Scene(1.0, 1.0, radius), dict.fromkeys(HOPS, 0.1), 10**6, root)
         assert {*HOPS} < {*run.components}
         for hop in HOPS:
             run.components[hop].work(0, 1)
