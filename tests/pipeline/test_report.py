@@ -9,7 +9,7 @@ from pathlib import PurePosixPath
 
 import pytest
 from checkout import REPOSITORY, copy_tables
-from factory import write_rows
+from factory import EXPECTED, write_rows
 from PIL import Image
 
 from twodiscs.analysis.tables import CostTable, MeanTimesTable
@@ -49,12 +49,10 @@ def test_the_events_of_the_agreement_are_those_of_dynamics(tmp_path):
 
 
 def test_mean_times_are_those_of_their_table():
-    folder = REPOSITORY / "paper" / "expected"
     scene = {"name": "paper", "width": 1.5, "height": 1.0, "effects": {}}
-    shown = [
-        (radius, *row) for radius, rows in report.mean_times(folder, scene).items() for row in rows
-    ]
-    rows = MeanTimesTable.read(folder / "paper" / "mean_times.csv")
+    by_radius = report.mean_times(EXPECTED, scene).items()
+    shown = [(radius, *row) for radius, rows in by_radius for row in rows]
+    rows = MeanTimesTable.read(EXPECTED / "paper" / "mean_times.csv")
     for (radius, event, value, error, exact, z), row in zip(shown, rows, strict=True):
         assert (radius, event.replace(" ", "_")) == (row["radius"], row["event"])
         if row["stderr"] is None:
@@ -66,7 +64,7 @@ def test_mean_times_are_those_of_their_table():
         if row["exact"] is not None:
             assert abs(float(exact) - row["exact"]) <= 0.0501 * row["stderr"]
             assert abs(float(z) - row["z"]) <= 0.00501
-    assert report.mean_times(folder, scene | {"name": "absent"}) == {}
+    assert report.mean_times(EXPECTED, scene | {"name": "absent"}) == {}
 
 
 def test_an_animation_stands_still_at_the_picture_that_is_shown_longest(tmp_path):
@@ -93,8 +91,7 @@ def test_boxes_are_described_with_their_effects_and_events():
     scenes = [scene | {"width": 2.0, "height": 1.0} for scene in scenes]
     files = [f"{scene['name']}/mean_times.csv" for scene in scenes]
     template = (REPOSITORY / "workflow/report/front.html").read_text(encoding="utf-8")
-    page = report.contents(REPOSITORY, files, scenes, "twodiscs run my.yaml")
-    text = report.page(template, page)
+    text = report.page(template, report.contents(REPOSITORY, files, scenes, "twodiscs run my.yaml"))
     for scene in scenes:
         assert f"<h2>Box {scene['box']} (scene “{scene['name']}”)</h2>" in text
     plain, three, unequal = text.split("Physics: ")[1:]

@@ -150,10 +150,8 @@ def test_bursts_in_corners_are_those_of_disc_1_with_disc_2_where_it_has_room(sid
     sides = [side - 2 * r2 for side in scene.sides]
     apart = [r2 - r1 + side * place for side in sides]
     free = math.prod(sides) * np.mean(np.add.outer(*np.square(apart)) >= sigma**2)
-    touching = sigma * np.array([np.cos(place * math.pi / 2), np.sin(place * math.pi / 2)])
-    within = [
-        (r2 - r1 <= t) & (t <= r2 - r1 + side) for t, side in zip(touching, sides, strict=True)
-    ]
+    arc = sigma * np.array([np.cos(place * math.pi / 2), np.sin(place * math.pi / 2)])
+    within = [(r2 - r1 <= t) & (t <= r2 - r1 + side) for t, side in zip(arc, sides, strict=True)]
     # Disc 2 has the mean speed 8/(15 π) · 2/√m₂ towards a surface, from each side half of it.
     rate = flux_constant(6) / 2 / 2 * np.mean(within[0] & within[1]) * math.pi / 2 * sigma / free
     # Corners at the bottom and at the top, ⟨v²⟩ = 3/6, and a quarter for one wall.

@@ -19,18 +19,14 @@ BOUND = 1e-12
 
 def boxes(number, seed):
     """Yield sides and radii of all kinds, some of them at the radii where kinks meet."""
-    generator = random.Random(seed)
+    rng = random.Random(seed)
     while number:
-        width = 10 ** generator.uniform(0, 1.2)
+        width = 10 ** rng.uniform(0, 1.2)
         largest = largest_radius(3, width, 1.0)
-        radius = largest * generator.choice(
-            [generator.random(), 1 - 10 ** generator.uniform(-3, -1)]
-        )
-        if generator.random() < 0.4:
+        radius = largest * rng.choice([rng.random(), 1 - 10 ** rng.uniform(-3, -1)])
+        if rng.random() < 0.4:
             special = (1 / 4, width / 4, 1 / 6, width / 6, 1 / (2 + math.sqrt(3)), width / 3)
-            radius = generator.choice(special) * (
-                1 + generator.choice([-1, 0, 1]) * 10 ** generator.uniform(-12, -2)
-            )
+            radius = rng.choice(special) * (1 + rng.choice([-1, 0, 1]) * 10 ** rng.uniform(-12, -2))
         if 1e-3 < radius < largest * (1 - 1e-3):
             number -= 1
             yield width, 1.0, radius
