@@ -145,9 +145,8 @@ def jobs(request):
     """The parameters of every job of a scene, beside the box, by job."""
     every = {(table,): request.exact_radii(table) for table in ("theory", "grid")}
     every["trajectory",] = request.quantities.trajectory, request.trajectory_seed
-    return every | {
-        (stage, key): request.arguments(stage) for stage in STAGES for key in request.keys[stage]
-    }
+    points = [(stage, key) for stage in STAGES for key in request.keys[stage]]
+    return every | {point: request.arguments(point[0]) for point in points}
 
 
 BASE = {"radii": [0.1, 0.2], "watch": dict.fromkeys(RequestedQuantities.__dataclass_fields__, True)}

@@ -108,8 +108,7 @@ def test_thresholds_follow_from_the_geometry(effects, vertical, horizontal):
     # Events that are no hops are possible up to the last radius.
     last = box.scene(math.nextafter(box.last_radius, 0))  # of which there is a scene
     for event in {*EVENTS} - {*HOPS}:
-        expected = box.last_radius if last.is_possible(event) else None
-        assert box.threshold(event) == expected
+        assert box.threshold(event) == (box.last_radius if last.is_possible(event) else None)
     assert not box.fits(box.last_radius)
     assert box.last_radius <= box.largest_radius * (1 + 1e-15)
 

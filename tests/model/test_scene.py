@@ -36,9 +36,8 @@ def test_discs_that_jam_do_not_fit():
 
 def test_regimes():
     """They are in the order of their hops; zero room is blocked."""
-    scenes = [
-        Scene(*sides) for sides in ((1.5, 1, 0.2), (1.5, 1, 0.25), (1, 1.5, 0.3), (1, 1, 0.25))
-    ]
+    lengths = (1.5, 1, 0.2), (1.5, 1, 0.25), (1, 1.5, 0.3), (1, 1, 0.25)
+    scenes = [Scene(*three) for three in lengths]
     assert tuple(scene.regime for scene in scenes) == REGIMES
     assert [scene.ergodic_components for scene in scenes] == [1, 2, 2, 4]
 

@@ -47,8 +47,7 @@ def sums_of(counts):
 
 
 def test_a_count_is_a_sum_of_others_if_it_is_so_in_every_replica():
-    rng = np.random.default_rng(8)
-    right, top, hop = rng.poisson(9, (3, 100))
+    right, top, hop = np.random.default_rng(8).poisson(9, (3, 100))
     whole = {"right_wall": right, "top_wall": top, "any_wall": right + top}
     sums_of_others = estimates.sums_of_others
     assert sums_of_others(*sums_of(whole)) == {"any_wall"}
@@ -153,9 +152,8 @@ def test_the_density_at_zero_of_chains_is_that_of_counts_with_other_errors():
     assert error == pytest.approx(independent.stderr, rel=0.01)
     # The straight line through the middles of both bins.
     value, error = estimates.density_of_chains_at_zero(densities, errors, linear=True)
-    (_, constant), covariance = np.polyfit(
-        [0.5, 1.5], densities, 1, w=1 / np.array(errors), cov="unscaled"
-    )
+    weights = 1 / np.array(errors)
+    (_, constant), covariance = np.polyfit([0.5, 1.5], densities, 1, w=weights, cov="unscaled")
     assert value == pytest.approx(constant)
     assert error == pytest.approx(math.sqrt(covariance[1, 1]))
 

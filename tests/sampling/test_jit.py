@@ -128,8 +128,7 @@ def test_a_relative_cache_folder_is_ignored(given, folder, tmp_path, monkeypatch
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setenv("XDG_CACHE_HOME", given)
     monkeypatch.setattr(jit.numba.config, "CACHE_DIR", "")
-    kept = Path(jit.cache_folder.__wrapped__("twodiscs"))
-    assert kept.parent == tmp_path / folder / "twodiscs"
+    assert Path(jit.cache_folder.__wrapped__("twodiscs")).parent == tmp_path / folder / "twodiscs"
 
 
 def test_vectors_are_as_wide_as_the_processor_has_them_unless_a_user_chooses():
@@ -149,9 +148,8 @@ def test_without_a_compiler_there_are_no_kernels_and_a_sentence_says_so():
 
 def test_kernels_start_without_linear_algebra_and_those_of_a_user_are_as_before(tmp_path):
     """A user's own kernel has linear algebra, and is kept in the folder of its module."""
-    (tmp_path / "own.py").write_text(
-        "import numba, numpy\n@numba.njit(cache=True)\ndef f(a): return numpy.dot(a, a.T)\n"
-    )
+    own = "import numba, numpy\n@numba.njit(cache=True)\ndef f(a): return numpy.dot(a, a.T)\n"
+    (tmp_path / "own.py").write_text(own)
     script = f"""
 import sys
 from twodiscs.model.scene import Box
@@ -167,8 +165,7 @@ a = np.arange(12.0).reshape(3, 4) ** 1.5
 print(np.allclose(own.f(a), own.f.py_func(a), rtol=1e-9, atol=0), own.f._cache.cache_path)
 """
     environment = {name: value for name, value in os.environ.items() if "NUMBA" not in name}
-    due = ["False", "True", str(tmp_path / "__pycache__")]
-    assert output(environment, script).split() == due
+    assert output(environment, script).split() == ["False", "True", str(tmp_path / "__pycache__")]
 
 
 def test_inlined_functions_are_kept_but_those_within_a_function():

@@ -126,9 +126,8 @@ def test_only_what_is_asked_for_is_sampled():
     assert point.right_and_top is None
     # A hop has a shell at its threshold, too.
     point = sample_point(PAPER.with_radius(0.25), ["horizontal_hop_area"], 1, 0.02, 1)
-    assert {name: one.epsilon for name, one in point.quantities.items()} == {
-        "horizontal_hop_area": 0.02 * 0.25
-    }
+    thickness = {name: one.epsilon for name, one in point.quantities.items()}
+    assert thickness == {"horizontal_hop_area": 0.02 * 0.25}
 
 
 @pytest.mark.parametrize("share", [0.1, 0.6, 0.9, 1 - 1e-3, 1 - 1e-9])
@@ -144,9 +143,8 @@ def test_shells_scale_with_the_room(share):
 
 def test_shells_at_the_ends_of_a_long_box_keep_to_the_room_along_it():
     """Discs that hardly fit across have 2.1 − 4r along the box, less than a radius."""
-    scene = Box(2.1, 1.0).scene(0.49)
     for event in ("disc_collision", "right_wall"):
-        epsilon = montecarlo.shell_thickness(scene, event, 0.02)
+        epsilon = montecarlo.shell_thickness(Box(2.1, 1.0).scene(0.49), event, 0.02)
         assert epsilon == pytest.approx(0.02 * (2.1 - 4 * 0.49), rel=1e-12)
 
 
@@ -156,8 +154,7 @@ def test_shells_at_the_ends_of_a_long_box_keep_to_the_room_along_it():
 @pytest.mark.parametrize("scene", [*SCENES.values(), ALL, PAPER, PLAIN[-2]], ids=repr)
 def test_the_bias_of_a_shell_is_below_its_fraction(scene):
     """Whatever thickness: an expectation that knows it would hide a shell that is too thick."""
-    events = SHELL_EVENTS if scene.is_plain else scene.events
-    for event in filter(scene.is_possible, events):
+    for event in filter(scene.is_possible, SHELL_EVENTS if scene.is_plain else scene.events):
         thick = montecarlo.shell_thickness(scene, event, 0.02)
         area = exact.areas(scene)[event]
         assert abs(exact.shell_expectation(scene, event, thick) / area - 1) < 0.02
