@@ -259,9 +259,8 @@ def test_what_cannot_be_built_is_refused(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     scene = "{name: a, box: {width: 1, height: 1}, effects: {field: 1}, watch: {mean_times: true}}"
     Path("a.yaml").write_text(f"scenes: [{scene}]\n")
-    said = dict.fromkeys(
-        ("tails", "paper", "model"), "is about a scene without effects, and a.yaml has none"
-    )
+    of_plain_scenes = "is about a scene without effects, and a.yaml has none"
+    said = dict.fromkeys(("tails", "paper", "model"), of_plain_scenes)
     said["volume"] = "cannot be drawn: no scene of a.yaml has its quantities in `watch`"
     for target, reason in said.items():
         assert refused(monkeypatch, capsys, "run", "a.yaml", target) == f"{target} {reason}"
@@ -369,8 +368,7 @@ def run(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("end", "status", "said"),
-    [(_interrupted, 130, "Stopped; the same"), (SystemExit(3), 3, "")],
+    ("end", "status", "said"), [(_interrupted, 130, "Stopped; the same"), (SystemExit(3), 3, "")]
 )
 def test_a_run_has_the_status_of_its_end(end, status, said, run, capsys):
     assert run(end) == status

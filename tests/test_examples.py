@@ -98,9 +98,8 @@ def commands(program):
 
 def scenes(name):
     """Return the scenes in the blocks of YAML of a page."""
-    return [
-        scene for kind, body in blocks(name) if kind == "yaml" for scene in yaml.safe_load(body)
-    ]
+    texts = [body for language, body in blocks(name) if language == "yaml"]
+    return [scene for text in texts for scene in yaml.safe_load(text)]
 
 
 def with_examples():
@@ -116,8 +115,7 @@ def with_examples():
 @pytest.mark.parametrize("name", NAMES)
 def test_links_lead_somewhere(name):
     folder = (REPOSITORY / name).parent
-    text = FENCED.sub("", page(name))
-    for target in re.findall(r'(?:\]\(|<img src=")([^)#"]+)', text):
+    for target in re.findall(r'(?:\]\(|<img src=")([^)#"]+)', FENCED.sub("", page(name))):
         if not target.startswith("https://"):
             assert (folder / target).exists(), target
 
@@ -143,9 +141,8 @@ def test_what_pages_repeat_of_declarations_is_up_to_date():
     """Nothing that is promised is lost with it."""
     made = pages.pages(REPOSITORY)
     assert [n for n in made if page(n) != made[n]] == [], "python docs/make/pages.py"
-    text = page("docs/promises.md")
     with pytest.raises(LookupError, match="forsaken: promised, and not in the code"):
-        pages.promises(text.replace("```text\nall ", "```text\nall forsaken "))
+        pages.promises(page("docs/promises.md").replace("```text\nall ", "```text\nall forsaken "))
 
 
 def program(name, folder):
@@ -309,8 +306,7 @@ def test_rows_of_the_check_are_those_of_the_page(tmp_path):
         for stage, keys in scene.keys.items()
         for radius in keys.values()
     ]
-    rows = SCENE_TABLES["check"].rows(points, scene.quantities.areas)
-    SCENE_TABLES["check"].write(path, rows)
+    SCENE_TABLES["check"].write(path, SCENE_TABLES["check"].rows(points, scene.quantities.areas))
     found = [*csv.DictReader(path.read_text(encoding="utf-8").splitlines())]
     lines = re.findall(r"^\| `(\w+)` \|(.*)\|$", page("docs/reading-check.md"), re.MULTILINE)
     assert [name for name, _ in lines] == list(SCENE_TABLES["check"].columns)

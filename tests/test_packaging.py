@@ -179,9 +179,8 @@ def test_the_recipe_for_conda_has_the_version_and_the_packages_of_the_project():
     text = (REPOSITORY / "packaging/recipe.yaml").read_text(encoding="utf-8")
     forms = {"variable_start_string": "${{", "variable_end_string": "}}"}
     context = yaml.safe_load(text)["context"] | {"python_min": "3.11", "PYTHON": "python"}
-    recipe = yaml.safe_load(
-        Environment(undefined=StrictUndefined, **forms).from_string(text).render(context)
-    )
+    template = Environment(undefined=StrictUndefined, **forms).from_string(text)
+    recipe = yaml.safe_load(template.render(context))
     assert recipe["package"] == {"name": "twodiscs", "version": twodiscs.__version__}
     run = {line.replace(" ", "").replace("-base", "") for line in recipe["requirements"]["run"]}
     assert run == {f"python{PROJECT['requires-python']}", *PROJECT["dependencies"]}
@@ -203,11 +202,9 @@ def test_make_keeps_an_environment_that_it_did_not_make(tmp_path):
         shutil.copy(REPOSITORY / name, tmp_path)
     (tmp_path / ".venv").mkdir()
     (tmp_path / ".venv/mine").touch()
-    done = subprocess.run(["make", "test"], cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 2
-    assert done.stderr.startswith(
-        "make did not make this .venv, and keeps it: give it another name"
-    )
+    run = subprocess.run(["make", "test"], cwd=tmp_path, capture_output=True, text=True)
+    assert run.returncode == 2
+    assert run.stderr.startswith("make did not make this .venv, and keeps it: give it another name")
     assert (tmp_path / ".venv/mine").exists()
 
 

@@ -184,9 +184,8 @@ def test_every_number_of_the_prose_is_declared_and_every_declared_one_is_used(pr
     used = {*re.findall(r'(?:number|has)\("(\w+)"\)', SOURCE)}
     used |= {*re.findall(r"\bours: (\w+)", (PAPER / "published.yaml").read_text())}
     assert {name for name in printed if "/" not in name} == used
-    assert {name.split("/")[0] for name in printed if "/" in name} == {
-        *re.findall(r'cells\("(\w+)"\)', SOURCE)
-    }
+    tables = {name.split("/")[0] for name in printed if "/" in name}
+    assert tables == {*re.findall(r'cells\("(\w+)"\)', SOURCE)}
 
 
 def test_every_number_and_column_of_cells_has_rows_in_the_expected_tables(printed):
@@ -262,8 +261,7 @@ def test_the_long_run_is_what_its_shards_counted_and_agrees():
     point = read_point(folder / "dynamics.json", *job, request.arguments("dynamics"))
     # Six scores: a false alarm in 3e5 seeds.
     assert all(abs(row["z"]) < 5 for row in MeanTimesTable.rows([point]))
-    settings = request.shard_arguments("dynamics")
-    ranges = read_shards(folder.glob("shards/*.json"), *job, settings)
+    ranges = read_shards(folder.glob("shards/*.json"), *job, request.shard_arguments("dynamics"))
     (counts, _), blocks = reached(ranges["all"], point.replicas // REPLICAS)
     assert blocks * REPLICAS == point.replicas
     assert counts.tolist() == [point.counts[event] for event in request.quantities.mean_times]

@@ -46,9 +46,8 @@ def test_the_bound_of_a_study_grows_with_its_number_of_scores():
 
     assert failures([4.4] + [0.0] * 99) == []
     assert len(failures([4.4] + [0.0] * 9)) == 1
-    assert failures([4.6] + [0.0] * 99) == [
-        "passages: quantity diffusion, radius 0.1 has z = 4.6, beyond the bound 4.42"
-    ]
+    said = "passages: quantity diffusion, radius 0.1 has z = 4.6, beyond the bound 4.42"
+    assert failures([4.6] + [0.0] * 99) == [said]
 
 
 def test_an_empty_set_is_no_pass():
