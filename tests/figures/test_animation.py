@@ -168,8 +168,7 @@ def test_discs_are_where_the_trajectory_has_them(scene):
 )
 def test_headings_numbers_and_the_sign_of_a_hop_stand_clear(box, radius):
     """Discs are where they are: their numbers may meet each other and a trace."""
-    rows = TrajectoryTable.rows(box, radius, 1908)
-    motion, circles, others = drawn(box, radius, rows)
+    motion, circles, others = drawn(box, radius, TrajectoryTable.rows(box, radius, 1908))
     for time in [*motion.frames[::80], motion.centre]:
         show(time, circles, others)
         faults = unclear(others["sign"][0].figure)
@@ -180,8 +179,7 @@ def test_headings_numbers_and_the_sign_of_a_hop_stand_clear(box, radius):
 def test_what_leaves_a_ring_comes_in_at_the_other_end():
     """Four discs: all in the box, an image of each a period away, no trace across the box."""
     box = td.Box(1.5, 1.0, periodic="x", discs=4)
-    rows = TrajectoryTable.rows(box, 0.15, 1)
-    motion, circles, others = drawn(box, 0.15, rows)
+    motion, circles, others = drawn(box, 0.15, TrajectoryTable.rows(box, 0.15, 1))
     beyond = 0
     for time in motion.frames[::4]:
         show(time, circles, others)

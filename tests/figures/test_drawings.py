@@ -63,9 +63,8 @@ def test_the_regimes_have_the_areas_of_their_hops(box):
 @pytest.mark.parametrize("box", [PAPER, BOXES["tall"]], ids=str)
 def test_both_shells_are_equally_thick(box):
     hop, collision = draw("surface_shell", box, {}).axes
-    diagonal, *edges = sorted(
-        (line.get_xydata() for line in hop.lines), key=lambda ends: abs(ends[0] @ (1, -1))
-    )
+    lines = [line.get_xydata() for line in hop.lines]
+    diagonal, *edges = sorted(lines, key=lambda ends: abs(ends[0] @ (1, -1)))
     wedges = {bool(one.width): one for one in collision.patches if isinstance(one, Wedge)}
     rim, shell = wedges[False], wedges[True]
     assert abs(diagonal[0] @ (1, -1)) < 1e-12

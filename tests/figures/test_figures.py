@@ -255,8 +255,7 @@ def test_curves_are_drawn_to_their_end_without_any_residual():
 def test_a_single_value_has_an_ordinate_around_it(estimate):
     """And there is one where nothing is known at all."""
     alone = tables_of("paper")["volume"][0] | {"exact": None, "z": None, "estimate": estimate}
-    main = draw("volume", Box(3.0, 1.5, discs=8), {"volume": [alone]}).axes[0]
-    low, high = main.get_ylim()
+    low, high = draw("volume", Box(3.0, 1.5, discs=8), {"volume": [alone]}).axes[0].get_ylim()
     assert low < (estimate or 1) < high
     assert 2.9 < high / low < 10
 

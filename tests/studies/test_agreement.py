@@ -94,11 +94,10 @@ def test_rows_are_as_by_hand():
 
 def test_a_count_from_a_strip_is_no_part_of_a_sum():
     """It has trajectories of its own: 30 = 20 + 10 is a coincidence."""
-    counts = {"horizontal_hop": 10, "right_wall": 20, "any_wall": 30}
     rows = [
         {"scene": "a", "radius": 0.1, "quantity": f"{event}_time", "count": count, "z": 1.0}
         | {"starts": "strip" if event in HOPS else "invariant", "status": "reached"}
-        for event, count in counts.items()
+        for event, count in {"horizontal_hop": 10, "right_wall": 20, "any_wall": 30}.items()
     ]
     assert [row["count"] for row in measure.tests_of_effects(rows)] == [3]
     together = [row | {"starts": "invariant"} for row in rows]

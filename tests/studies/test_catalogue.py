@@ -54,8 +54,7 @@ def test_studies_read_only_what_there_is(default):
     assert STUDIES["thresholds"].reads(little) == {"distributions": (None, "distributions")}
     checked = {"paper/check": ("paper", "check"), "effects": (None, "effects")}
     assert STUDIES["agreement"].reads(little) == checked
-    found = STUDIES["thresholds"].reads(default)
-    assert found["paper/mean_times"] == ("paper", "mean_times")
+    assert STUDIES["thresholds"].reads(default)["paper/mean_times"] == ("paper", "mean_times")
 
 
 def test_budgets_follow_the_main_scene_within_limits():

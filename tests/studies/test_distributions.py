@@ -69,8 +69,7 @@ def test_rate_maximizes_the_likelihood(rate):
 
 def test_a_hazard_that_falls_slowly_shows_in_the_trend():
     chances = -np.expm1(-0.4 * ((EDGES[1:] + EDGES[:-1]) / 12) ** -0.2 * np.diff(EDGES))
-    bins = bins_of(EDGES, chances, 10**6)
-    _, trend, chi2, degrees = distributions.constant_hazard(bins)
+    _, trend, chi2, degrees = distributions.constant_hazard(bins_of(EDGES, chances, 10**6))
     assert trend.value == pytest.approx(-0.2, abs=0.02)
     assert chi2 > 3 * degrees
 
@@ -161,7 +160,7 @@ FALLING = [(9999, 9.0)] * 6 + [(100, 2.0), (50, 1.0), (25, 0.5), (0, 0.0)]
 
 
 @pytest.mark.parametrize(
-    ("event", "radius", "p", "trend", "counts", "quantities"),
+    ("event", "radius", "p", "trend", "counts", "due"),
     [
         ("vertical_hop", 0.1, 0.5, 0.25, (), ["plateau"]),
         ("vertical_hop", 0.1, 1e-6, 0.25, (), ["falling"]),
@@ -173,11 +172,9 @@ FALLING = [(9999, 9.0)] * 6 + [(100, 2.0), (50, 1.0), (25, 0.5), (0, 0.0)]
         ("vertical_hop", 0.1, 0.5, 0.5, FALLING, ["plateau"]),
     ],
 )
-def test_hazards_are_sorted_by_whether_they_are_constant(
-    event, radius, p, trend, counts, quantities
-):
+def test_hazards_are_sorted_by_whether_they_are_constant(event, radius, p, trend, counts, due):
     rows = case(event, radius, p, trend, counts)
-    assert [row["quantity"] for row in distributions.shape(rows)] == quantities
+    assert [row["quantity"] for row in distributions.shape(rows)] == due
     assert not [*distributions.shape(rows[1:])]
 
 

@@ -35,9 +35,8 @@ def test_volume_and_areas_are_those_of_disc_line_picking(size):
         due = volume(*here)
         collision = -mp.sqrt(2) * mp.diff(volume, here, (0, 0, 1))
         end, side = (mp.diff(volume, here, n) / 2 for n in ((1, 0, 0), (0, 1, 0)))
-    assert [found, *areas[1:]] == pytest.approx(
-        [*map(float, (due, collision, end, side))], rel=1e-9
-    )
+    expected = [*map(float, (due, collision, end, side))]
+    assert [found, *areas[1:]] == pytest.approx(expected, rel=1e-9)
     total = 2 * a * areas[2] + 2 * b * areas[3] - sigma * areas[1] / math.sqrt(2)
     assert total == pytest.approx(6 * found, rel=1e-14)
 

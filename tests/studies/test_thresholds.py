@@ -72,8 +72,7 @@ def test_exact_times_have_the_exact_power():
 
 
 def test_fits_keep_to_one_regime_and_to_honest_errors():
-    radii = (0.3, 0.36, 0.376, 0.379, 0.381, 0.383)
-    rows = times_of("disc_collision", radii)
+    rows = times_of("disc_collision", (0.3, 0.36, 0.376, 0.379, 0.381, 0.383))
     found = fitted(rows)["mean_time", "plain", "exponent"]
     assert found["points"] == 4
     rows[-1]["stderr"] = None
