@@ -127,8 +127,7 @@ def test_tori_have_the_published_pressures_where_they_are_in_equilibrium():
 @pytest.mark.slow
 def test_both_starts_of_a_small_torus_have_one_pressure():
     point = {"discs": 72, "aspect": "1:1", "packing": 0.65, "events": 2e6, "replicas": 32}
-    counts = tori.counted(3, [point | {"starts": ["rows", "compressed"]}])
-    row = [*tori.rows(counts)][-1]
+    row = [*tori.rows(tori.counted(3, [point | {"starts": ["rows", "compressed"]}]))][-1]
     assert (row["start"], row["reference"]) == ("both", "li-2022")
     assert max(abs(row["z"]), abs(row["starts_z"])) < 5
     assert row["stderr"] < 0.01
@@ -217,8 +216,7 @@ def test_errors_of_joined_runs_are_those_of_as_many_replicas():
     falling = one | {"radius": 0.1, "times": [5], "samples": 1, "seed": 1}
 
     def counted(**given):
-        rows = tails.long_run(falling, one | given)
-        return of(rows, radius=0.3)
+        return of(tails.long_run(falling, one | given), radius=0.3)
 
     many = counted(replicas=500, runs=16, seed=5)
     single = counted(replicas=8000, runs=1, seed=50)

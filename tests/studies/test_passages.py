@@ -219,9 +219,8 @@ def test_long_files_have_the_law_of_their_density(inertia, small, monkeypatch):
 def test_hops_of_a_disc_are_correlated_with_the_same_disc_and_with_others():
     """On a ring of four 0 passes 1, comes back, passes 1 and 2; then 3 passes 1 over the seam."""
     times, pairs = np.array([1.0, 1.5, 3.0, 4.0, 6.0]), np.array([1, 1, 1, 2, 4 + 3])
-    found = file.hop_correlations(
-        np.array([0.1, 1.0, 2.0, 3.9]), times, pairs, [0.6, 2.2, 9.0], 5.0
-    )
+    places = np.array([0.1, 1.0, 2.0, 3.9])
+    found = file.hop_correlations(places, times, pairs, [0.6, 2.2, 9.0], 5.0)
     # 0: + − + and + with 2; 1: − + − and − with 3; 2: −; 3: +, too late to count.
     assert found == [8, [-2, -2, -2], [0, 1, 2]]
 
@@ -291,9 +290,8 @@ def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small, monkeypatch):
     rows = joined("square", Box(1.0, 4.0))
     assert {row["event"] for row in rows if row["scene"] != "pore"} == {"vertical_hop", None}
     with style.context():
-        limit = [row for row in rows if row["method"] == "limit"]
         for module in (figure, figure_transmission, figure_diffusion):
-            for some in (limit, rows):
+            for some in (of(rows, method="limit"), rows):
                 assert module.draw(Box(1.0, 4.0), {"passages": some} | KEPT)
 
 
