@@ -88,8 +88,7 @@ def test_results_are_those_of_the_pipeline(simulated, sampled, intervals):
     stages = ("dynamics", "monte_carlo", "intervals")
     points = [job_cost.run_at(scene, stage, 0.2).run() for stage in stages]
     assert simulated.rows == SCENE_TABLES["mean_times"].rows(points)
-    areas = SCENE_TABLES["areas"].rows(points)
-    assert sampled.rows == SCENE_TABLES["volume"].rows(points) + areas
+    assert sampled.rows == SCENE_TABLES["volume"].rows(points) + SCENE_TABLES["areas"].rows(points)
     bins = [row for row in SCENE_TABLES["hop_histogram"].rows(points) if row["bins"] == "equal"]
     assert intervals.mean.value == bins[0]["mean"]
     # The bins of a call widen; where both have an edge, as many intervals are below it.
@@ -476,9 +475,8 @@ def test_numbers_of_one_run_are_correlated_as_its_counts_are(scene):
     assert (table.copy().attrs["wall"].u / md["any_wall_time"].u).std_dev < 1e-12
     assert table.copy().attrs["result"] is md
     apart = md["any_wall_time"].u - again["any_wall_time"].u
-    assert apart.std_dev == pytest.approx(
-        math.hypot(md["any_wall_time"].stderr, again["any_wall_time"].stderr)
-    )
+    due = math.hypot(md["any_wall_time"].stderr, again["any_wall_time"].stderr)
+    assert apart.std_dev == pytest.approx(due)
 
 
 def test_a_shell_is_a_part_of_the_volume(sampled):
@@ -508,5 +506,4 @@ def test_a_shell_is_a_part_of_the_volume(sampled):
 
 def test_the_names_of_the_reference_are_those_of_the_code():
     reference = (REPOSITORY / "docs/reference.md").read_text(encoding="utf-8")
-    listed = re.findall(r"^\* `td\.(\w+)`$", reference, re.MULTILINE)
-    assert sorted(listed) == sorted(td.__all__)
+    assert sorted(re.findall(r"^\* `td\.(\w+)`$", reference, re.MULTILINE)) == sorted(td.__all__)

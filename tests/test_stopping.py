@@ -69,8 +69,7 @@ def stop(code, seconds=0.1):
 
 def test_a_call_stops_at_once():
     calls = ", ".join(f"lambda large: {call}" for call in CALLS)
-    found = stop(CHILD.format(calls=calls))
-    assert found == (0, ["ready\n", "stopped\n"] * len(CALLS), "")
+    assert stop(CHILD.format(calls=calls)) == (0, ["ready\n", "stopped\n"] * len(CALLS), "")
 
 
 def test_a_command_stops_at_once():

@@ -175,8 +175,7 @@ def passage_cases():
             kappa += [symbol(scaled(row), row) for row in own]
             # The first distance has no exponent.
             middle = [math.sqrt(scaled(a) * scaled(b)) for a, b in pairwise(own)]
-            steps = select(some, friction=rate, quantity="local_exponent")
-            exponents += map(symbol, middle, steps)
+            exponents += map(symbol, middle, select(some, friction=rate, quantity="local_exponent"))
         yield "friction", "kappa", look, kappa
         yield "friction", "exponent", look, exponents
 
@@ -273,8 +272,7 @@ def test_symbols_and_error_bars_are_those_of_the_table(name, panel, look, due):
 @pytest.mark.parametrize("name", ["tails", "thresholds", "friction", "stability_of_runs"])
 def test_a_loaded_table_is_drawn_with_those_that_lie_beside_it(name):
     """As the job of the figure draws it: the same lines in every panel."""
-    frame = td.load(EXPECTED)[STUDY_FIGURES[name].tables[0]]
-    panels = td.plot(frame, figure=name).axes
+    panels = td.plot(td.load(EXPECTED)[STUDY_FIGURES[name].tables[0]], figure=name).axes
     for axes, due in zip(panels, drawn(name).values(), strict=True):
         for line, other in zip(axes.lines, due.lines, strict=True):
             np.testing.assert_array_equal(line.get_xydata(), other.get_xydata())
@@ -378,10 +376,7 @@ def test_the_laws_of_passages_with_friction_are_one_and_three_quarters_over_x():
 
 
 def test_residuals_are_those_of_the_table():
-    both = {
-        "transmission": transmission.TRANSMISSION_LOOKS,
-        "diffusion": diffusion.DIFFUSION_LOOKS,
-    }
+    both = {"transmission": transmission.TRANSMISSION_LOOKS, "diffusion": diffusion.DIFFUSION_LOOKS}
     for name, looks in both.items():
         for quantity, (colour, marker, _) in looks.items():
             # Two discs with friction have a figure of their own.
@@ -450,9 +445,8 @@ def test_the_panels_of_stability_are_those_of_the_table():
 def test_the_panels_of_stability_of_runs_are_those_of_the_table():
     rows, axes = table("stability"), drawn("stability_of_runs")
     cells = {text.xy: text.get_text() for text in axes["a"].texts}
-    for column, (quantity, sign) in enumerate(
-        [("energy_error", 1), ("smallest_gap", -1), ("excess", 1)]
-    ):
+    signs = {"energy_error": 1, "smallest_gap": -1, "excess": 1}
+    for column, (quantity, sign) in enumerate(signs.items()):
         due = [max(sign * row["value"], 0) for row in select(rows, quantity=quantity)]
         due = sorted("0" if value == 0 else f"${rounded(value)}$" for value in due)
         found = [cells[column + 0.5, line] for line in range(1, len(due) + 1)]
