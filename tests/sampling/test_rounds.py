@@ -64,8 +64,7 @@ def test_shards_are_those_of_an_absolute_grid(blocks, k):
 @given(st.floats(0.001, 1e12))
 def test_the_grid_has_sixteen_steps_while_a_number_doubles(blocks):
     found = rounds.round_up_blocks(blocks)
-    assert found >= blocks
-    assert found <= max(math.ceil(blocks), blocks * (1 + 1 / rounds.PLAN_STEPS) + 1)
+    assert blocks <= found <= max(math.ceil(blocks), blocks * (1 + 1 / rounds.PLAN_STEPS) + 1)
     assert rounds.round_up_blocks(found) == found
     assert rounds.round_up_blocks(2 * found) in (2 * found, max(2 * found, 2))
 
@@ -108,8 +107,7 @@ def test_rounds_end_where_the_error_is_reached_or_the_budget_spent(budget):
     # The reported work grows to the whole work.
     known = [(now, all_of_it) for now, all_of_it in seen if now is not None]
     assert known == sorted(known, key=lambda pair: pair[0])
-    assert known[-1][0] == blocks * run.block_work
-    assert known[-1][0] <= known[-1][1]
+    assert blocks * run.block_work == known[-1][0] <= known[-1][1]
 
 
 #: A scene of each rule that ends a run, and its events or quantities; None are all.
