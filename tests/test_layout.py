@@ -73,6 +73,12 @@ def test_what_stands_in_a_folder_imports_one_way():
     TopologicalSorter(graph).prepare()
 
 
+def test_what_is_kept_cannot_be_set():
+    """Scenes, points, results and the tables of studies, with all their parts, are frozen."""
+    text = "\n".join(path.read_text(encoding="utf-8") for path in FILES.values())
+    assert {"frozen=True" in line for line in re.findall(r"@dataclass.*", text)} == {True}
+
+
 def test_initial_files_hold_a_docstring_only():
     """An ``__init__`` that imports would make every edit rerun every job."""
     for path in ROOT.rglob("__init__.py"):

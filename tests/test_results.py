@@ -126,9 +126,6 @@ def test_results_go_on_and_come_back(name, tmp_path, monkeypatch):
         (lambda: td.cost(PAPER, 0.1).prices[0], "seconds"),
         (lambda: td.observe(PAPER, seen, [0], 1), "mean"),
         (lambda: td.transmission(NARROW, "horizontal_hop", 1), "coefficient"),
-        (lambda: td.simulate(PAPER, duration=1).point, "replicas"),
-        (lambda: td.sample(PAPER, 1).point, "samples"),
-        (lambda: td.sample(THREE, 1).point, "samples"),
     ],
 )
 def test_what_was_measured_cannot_be_set(make, name):
