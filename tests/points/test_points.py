@@ -103,11 +103,16 @@ def test_the_error_of_a_ratio_of_insertions_is_that_of_its_samples():
     weights = {"volume": (int(volume.sum()), int((volume**2).sum()), 3.0)}
     weights |= {"top_wall_area": (int(area.sum()), int((area**2).sum()), 4.0)}
     joint = {"volume*top_wall_area": int((volume * area).sum())}
-    found = inserted(samples, 1, weights, joint).ratio({"top_wall_area": 2.0})
+    point = inserted(samples, 1, weights, joint)
+    found = point.ratio({"top_wall_area": 2.0})
     ratio = 2 * 4 * area.mean() / (3 * volume.mean())
     relative = (area / area.mean() - volume / volume.mean()).std() / math.sqrt(samples)
     assert found.value == pytest.approx(ratio)
     assert found.relative_stderr == pytest.approx(relative)
+    found, _ = point.total({"volume": 1.0, "top_wall_area": 2.0})
+    each = 3 * volume + 2 * 4 * area
+    assert (found.value, found.n) == (pytest.approx(each.mean()), samples)
+    assert found.stderr == pytest.approx(each.std() / math.sqrt(samples))
 
 
 @pytest.mark.parametrize("coarse", ["volume", "right_wall_area", "top_wall_area", None])
