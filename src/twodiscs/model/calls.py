@@ -42,7 +42,8 @@ def checked_call(function: Call) -> Call:
 
 def warn(sentence: str, category: type[Warning] = UserWarning) -> None:
     """Warn at the line that calls this package, through however many of its functions."""
+    # From Python 3.12 on, ``skip_file_prefixes`` of ``warnings.warn`` does the same.
     frame, level = sys._getframe(1), 2
-    while frame and frame.f_globals["__name__"].partition(".")[0] == "twodiscs":
+    while frame and frame.f_globals.get("__name__", "").partition(".")[0] == "twodiscs":
         frame, level = frame.f_back, level + 1
     warnings.warn(sentence, category, stacklevel=level)
