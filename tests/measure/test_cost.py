@@ -172,7 +172,7 @@ def row(event, error, status="budget", target=1e-5):
     ("rows", "said"),
     [
         ([row("any_wall", 9e-6, "reached"), row("top_wall", None, "impossible")], None),
-        ([row("any_wall", None, "too-few", 0.5)], None),
+        ([row("any_wall", None, "too-few", 0.1)], None),
         ([row("any_wall", None, "counted", None)], None),
         (
             [row("any_wall", 2e-5), row("top_wall", 9e-5), row("right_wall", 8e-4, target=1e-4)],
