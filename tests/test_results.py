@@ -110,6 +110,8 @@ def test_results_go_on_and_come_back(name, tmp_path, monkeypatch):
         assert more == make(value)
     assert bits(more) != bits(less)
     assert more != less
+    more.save(path)
+    assert td.load_result(path) == more
     assert bits(more.more(**{setting: less.settings[setting]})) == bits(less)
     # It does not change, and a copy is the result itself.
     assert deepcopy({"of": [less]})["of"][0] is copy(less) is less

@@ -62,6 +62,9 @@ def test_a_warning_names_what_is_not_drawn():
     with pytest.warns(UserWarning, match=said) as all_:
         td.plot(found)
     assert all_[0].filename == __file__
+    with pytest.warns(UserWarning, match=said) as all_:
+        exec("plot(found)", {"plot": td.plot, "found": found})  # code of no module
+    assert all_[0].filename == "<string>"
     assert td.plot(found, figure="areas").axes[0].get_ylabel() == "area $S$ (length$^3$)"
 
 

@@ -94,7 +94,7 @@ def test_a_time_is_c_over_the_square_of_the_error_between_the_smallest_run_and_t
 
 
 def test_a_share_of_all_samples_prints_with_a_rounding_too_much(blocks):
-    """The volume over that of the prism is 1 + 2e-16. In another unit it is no double."""
+    """The volume over that of the prism is 1 + 2e-16. In another unit its square is no double."""
     for unit in (1.0, 1e-50):
         assert "volume" in str(td.cost(td.Scene(unit, unit, unit * 1e-9), 1e-3))
 

@@ -176,8 +176,8 @@ assert len(rows) > 10
 for row in rows.astype(object).where(rows.notna(), None).itertuples():
     scene = Scene(row.width, row.height, row.radius, discs=row.discs, periodic="x")
     assert math.isclose(file.law(scene, row.friction, row.time), row.reference, rel_tol=1e-12)
-necks = "quantity == 'scaled_coefficient' and scene != 'pore'"
-necks = table("paper/expected/passages.csv").query(necks)
+of_necks = "quantity == 'scaled_coefficient' and scene != 'pore'"
+necks = table("paper/expected/passages.csv").query(of_necks)
 assert len(necks) > 2
 for row in necks.itertuples():
     limit = diffusive_limit(Scene(row.width, row.height, row.radius), row.event)

@@ -104,7 +104,8 @@ def test_the_law_of_a_test_does_not_depend_on_what_was_counted():
         for count in (1800, 2100, 2400):  # of 1 expected in a replica
             sums = count, 2 * count, replicas
             assert scores.mean_time_z(*sums, 1.0, 1.0)[1] == due
-    assert estimates.is_enough(100, 199, 100)  # as precise as exactly 100 events
+    # As precise as exactly 100 events, and as 99.
+    assert estimates.is_enough(100, 199, 100) > estimates.is_enough(100, 200, 100)
     assert estimates.is_enough(80, 90, 1000, expected=1.0)
     assert not estimates.is_enough(400, 500, 1000, expected=0.1)
 

@@ -76,8 +76,8 @@ def test_the_error_of_a_density_is_that_of_a_ratio_of_two_numbers_of_each_chain(
     intervals = RNG.poisson(30, chains)
     counts = [RNG.binomial(intervals, 0.4), RNG.binomial(intervals, 0.1)]
     beyond, times = intervals - sum(counts), RNG.integers(2**20, size=chains) * intervals
-    of = np.array([*counts, beyond])
-    bins = np.array([of.sum(1), (of * of).sum(1), (of * intervals).sum(1)])
+    all_ = np.array([*counts, beyond])
+    bins = np.array([all_.sum(1), (all_ * all_).sum(1), (all_ * intervals).sum(1)])
     total = int(intervals.sum())
     moments = [int((a * b).sum()) for a, b in ((times, 1), (times, times), (times, intervals))]
     moments += [total, int((intervals**2).sum())]

@@ -220,7 +220,7 @@ def test_the_way_to_the_next_state_is_longer_in_a_long_box(width, height, discs,
 
 
 def test_discs_that_move_little_have_a_shorter_way_to_the_next_state():
-    """Of two contacts of each disc, times the square of the length over the height."""
+    """Two contacts of each disc limit it. It grows as the square of length over height."""
     boxes = [Scene(width, 64 / width, 0.1, discs=64) for width in (8.0, 16.0, 4.0)]
     made = [many_initial_states.make_initial(scene, "chain", contacts=2) for scene in boxes]
     assert [one.chain.between for one in made] == [8, 8 * 4**2, 8 * 4**2]

@@ -155,7 +155,7 @@ def test_errors_that_stay_have_no_power_and_correlated_ones_another():
 def test_rows_of_a_method(monkeypatch):
     """Blocks with errors of ±0.1 around 0.02 that take 2 s each: c = 2 × 0.01, and no power."""
     values = [0.12, -0.08] * 8
-    monkeypatch.setattr(costs, "measured", lambda *_: (np.array(values), np.full(16, 2.0)))
+    monkeypatch.setattr(costs, "measured", lambda *_: (np.array(values), np.full(len(values), 2.0)))
     rows = [*costs.error_rows(made(values)._replace(bias=0.02, setting=0.5), 1.0, 16)]
     assert [row["seconds"] for row in rows] == [2, 4, 8, 16, 32]
     assert [row["repetitions"] for row in rows] == [16, 8, 4, 2, 1]

@@ -325,7 +325,8 @@ def test_the_limit_of_long_necks_is_that_of_diffusion_in_the_plane(halvings):
 
 
 def test_the_limit_of_long_necks_does_not_depend_on_roundings():
-    """Other units have others. The room of the shortest neck is 3e-5 of the contact distance."""
-    lengths = np.array([1.5 - 2 * 0.249996185, 1.526e-5, 2 * 0.249996185])
+    """Lengths in another unit have other roundings. The room is 3e-5 of the contact distance."""
+    scene = near.scene_at(BOX, HOP, 16)
+    lengths = np.array([scene.range_x, scene.clearance(HOP), scene.contact_distance])
     found = [plane.scaled_coefficient(*(lengths * unit)) for unit in (1.0, 0.3, 7.0)]
     assert found == pytest.approx([found[0]] * 3, rel=1e-12)

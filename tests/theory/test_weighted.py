@@ -397,10 +397,10 @@ def test_thick_and_thin_collision_shells():
 def test_a_thin_shell_that_grows_beyond_half_a_period():
     """On a torus it is a ring without the four segments of its circle beyond the square."""
     scene, epsilon = Scene(3.0, 3.0, 0.749997, periodic="xy"), 1e-5
-    inner, half = 2 * mpf(scene.radius), mpf(3) / 2
+    inner, half = 2 * mpf(scene.radius), mpf(scene.width) / 2
     outer = inner + mp.sqrt(2) * mpf(epsilon)
     assert inner < half < outer
     segment = outer**2 * mp.acos(half / outer) - half * mp.sqrt(outer**2 - half**2)
-    expected = 9 * (mp.pi * (outer**2 - inner**2) - 4 * segment) / mpf(epsilon)
+    expected = scene.width**2 * (mp.pi * (outer**2 - inner**2) - 4 * segment) / mpf(epsilon)
     found = weighted.shell_expectation(scene, "disc_collision", epsilon)
     assert relative_error(found, expected) < 1e-11

@@ -61,9 +61,9 @@ def _solved(along, room, sigma, n):
     # In u and w the Laplacian is twice the sum of their second derivatives; the square is twice
     # the sum of all masses.
     parts = stiffness.tocsc(), diags_array(mass[free]).tocsc()
-    # The start is given, because a random one changes the last digits. Roundings of the largest
-    # weights are as large as the smallest ones, and change 1e-8 of the eigenvalue; the quotient of
-    # Rayleigh is a sum of squares, with the square of the error of the mode.
+    # The start is given, because a random one changes the last digits. The sums of weights round,
+    # so the eigenvalue of the matrix has an error of 1e-8. Rayleigh's quotient is a sum of squares:
+    # its error is the square of that of the mode.
     _, modes = eigsh(parts[0], 1, parts[1], sigma=0, v0=np.ones(free.size))
     mode = np.zeros(number.size)
     mode[free] = modes[:, 0]
