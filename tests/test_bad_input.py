@@ -95,6 +95,8 @@ field: -0.3 → field must be …, the uniform acceleration along −y, not -0.3
 field: 1, periodic: y → field must be 0 if y is periodic
 field: 100, radius: 0.38 → field 100.0 is too strong at radius 0.38
 field: 1, mass_ratio: 2, radius: 0.378 → radius 0.378 is too large: … here below radius 0.375
+width: 3, field: 5, radius_ratio: 1.5, mass_ratio: 3, radius: 0.21 → … here below radius 0.2
+width: 3, field: 5, radius_ratio: 0.75, mass_ratio: 3, radius: 0.21 → … here below radius 0.13333
 periodic: z → periodic must be some of the axes x and y (z needs a depth), each once
 depth: 1, moment_of_inertia: 0.4 → moment_of_inertia must be left out in a box with a depth
 """
