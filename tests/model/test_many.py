@@ -12,7 +12,7 @@ import pytest
 from scipy import ndimage
 from scipy.sparse import csgraph
 
-from twodiscs.model.many_geometry import arrangement, can_be_level, is_ordered
+from twodiscs.model.many_geometry import arranged, arrangement, can_be_level, is_ordered
 from twodiscs.model.many_geometry import largest_known_radius as largest_radius
 from twodiscs.model.scene import Box, Scene
 from twodiscs.theory import three
@@ -55,6 +55,21 @@ def test_arrangements_fit(discs, sides, periodic):
 def test_the_densest_packings_of_rows_in_a_square_are_found(discs, apart):
     """The centres are in a square of side 1, at the largest distance that there is."""
     assert largest_radius(discs, 1 + apart, 1 + apart) == pytest.approx(apart / 2, rel=1e-14)
+
+
+@pytest.mark.parametrize("periodic", ["", "x"])
+@pytest.mark.parametrize("height", [1e-4, 0.0368, 0.5, 1.0, 2.2, 10.7, 102.0, 1e4])
+@pytest.mark.parametrize("discs", [3, 8, 46, 118, 283])
+def test_no_other_number_of_rows_is_better(discs, height, periodic):
+    """Not even one that differs by more than a factor of two from that of the spacing."""
+    best = arranged(discs, 1.0, height, periodic)[1]
+    for rows, less in itertools.product(range(1, discs + 1), (0.0, 0.5)):
+        each = math.ceil(discs / rows)
+        side = 1 / (each if periodic else each - 1 + less or 1)
+        down = height / (rows - 1) if rows > 1 else math.inf
+        two_down = 2 * down if less else math.inf
+        in_row = side if each > 1 else math.inf
+        assert min(in_row, math.hypot(less * side, down), two_down) <= best * (1 + 1e-14)
 
 
 @pytest.mark.parametrize("sides", [(1.0, 2000.0), (2000.0, 1.0)])

@@ -14,9 +14,6 @@ MANY_DISC_EFFECTS = ("periodic", "moment_of_inertia", "friction")
 #: σ: it must be longer. Along a periodic axis there are two cells, or more.
 CELL_DISCS, LEAST_CELL_SIDE = 20, 1 + 2.0**-20
 
-#: The most discs for which all numbers of rows are tried.
-EXHAUSTIVE_DISCS = 1024
-
 #: The most decimal digits before or after the point of the volume of the prism: a double then holds
 #: the volume, and its square.
 MOST_DIGITS = 150
@@ -170,12 +167,9 @@ def _patterns(n, along, across, ring, torus):
     torus each row is shifted against the one below, by half a spacing if the number of rows is
     even, and else by a little less, so that the last row and the first one are shifted as well.
     """
-    tried = range(1, n + 1)
-    if n > EXHAUSTIVE_DISCS:
-        # The best rows are about as far apart as the discs of a row; no more rows than discs.
-        about = min(math.sqrt(n * across / along), n) if along else n
-        tried = tried[int(about / 3) : int(3 * about) + 3]
-    for rows in tried:
+    # The best rows are about as far apart as the discs of a row; no more rows than discs.
+    about = min(math.sqrt(n * across / along), n) if along else n
+    for rows in range(1, n + 1)[int(about / 2) : int(2 * about) + 3]:
         v = across / (rows - (not torus)) if rows > 1 else math.inf
         least = -(-n // rows)
         half = rows // 2 / rows if torus else 0.5
