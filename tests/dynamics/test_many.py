@@ -22,7 +22,7 @@ from twodiscs.model.many_geometry import CELL_DISCS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import insertions, many_initial_states
 from twodiscs.theory.flux import rates
-from twodiscs_paper.studies.more_discs.measure import known_derivatives
+from twodiscs.theory.n_discs import known_derivatives
 
 
 def counted(scene, blocks, seed=1, events=None):

@@ -15,7 +15,7 @@ from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import insertions
 from twodiscs.theory import exact
 from twodiscs.theory.equation_of_state import pair_overlap
-from twodiscs_paper.studies.more_discs.measure import known_derivatives
+from twodiscs.theory.n_discs import known_derivatives
 
 GASES = [
     Scene(1.5, 1.0, 0.2, discs=2),

@@ -14,7 +14,7 @@ from marks import slow
 import twodiscs as td
 from twodiscs.theory import channel, exact, three
 from twodiscs.theory.flux import Derivatives
-from twodiscs_paper.studies.more_discs.measure import known_derivatives
+from twodiscs.theory.n_discs import known_derivatives
 from twodiscs_paper.studies.passages.models.file import limit
 
 BOUND = 1e-10

@@ -11,7 +11,8 @@ from effect_scenes import SCENES, exchanged
 
 from twodiscs.model.scene import Scene
 from twodiscs.theory import exact, flux, virial
-from twodiscs_paper.studies.more_discs.measure import known_derivatives, virial_sum, virial_weights
+from twodiscs.theory.n_discs import known_derivatives
+from twodiscs_paper.studies.more_discs.measure import virial_sum, virial_weights
 
 
 @pytest.mark.parametrize(

@@ -1,8 +1,9 @@
 """The exact numbers of N discs, as far as they are known, by the method for each scene.
 
-Three discs have the quadrature between kinks, or Mayer's sum on a torus. Any number of discs has
-the transfer operator, if the channel is so low that they keep their order. For other scenes no
-exact value is known here; their events may be possible.
+Two plain discs have the volume and the areas of ``plain``. Three discs have the quadrature between
+kinks, or Mayer's sum on a torus. Any number of discs has the transfer operator, if the channel is
+so low that they keep their order. For other scenes no exact value is known here; their events may
+be possible.
 """
 
 import math
@@ -11,7 +12,7 @@ from functools import lru_cache
 
 from twodiscs.model.events import EVENT_WAYS, EVENTS, by_kind
 from twodiscs.model.many_geometry import has_volume, is_ordered
-from twodiscs.theory import channel, three
+from twodiscs.theory import channel, plain, three
 from twodiscs.theory.flux import Derivatives, flux_constant
 
 #: The largest shortest side in which exact values are computed without another unit of length.
@@ -19,7 +20,9 @@ LARGEST_UNIT = 2.0**20
 
 
 def exact_method(scene):
-    """Return the theory for a ``Scene``: "three", "channel", or None."""
+    """Return the theory for a ``Scene``: "plain", "three", "channel", or None."""
+    if scene.discs == 2:
+        return "plain" if scene.is_plain else None
     if scene.discs == 3 and scene.periodic in ("", "xy"):
         return "three"
     if scene.periodic:
@@ -55,6 +58,8 @@ def known_derivatives(scene, hops=True):
         rest = (value and value / unit for value in rest)
         return Derivatives(log_volume + 2 * scene.discs * math.log(unit), *rest)
     name = exact_method(scene)
+    if name == "plain":
+        return _plain_derivatives(scene)
     if name == "three":
         return (three.torus_derivatives if scene.periodic else three.derivatives)(scene)
     if name == "channel":
@@ -62,6 +67,19 @@ def known_derivatives(scene, hops=True):
             return channel.derivatives(scene, hops)
         return channel.derivatives(scene.turned(), hops).turned()
     return None
+
+
+def _plain_derivatives(scene):
+    volume, areas = plain.volume_and_areas(scene)
+    root = math.sqrt(2)
+    return Derivatives(
+        math.log(volume),
+        2 * areas["right_wall"] / volume,
+        2 * areas["top_wall"] / volume,
+        areas["disc_collision"] / root / volume,
+        areas["horizontal_hop"] / root / volume,
+        areas["vertical_hop"] / root / volume,
+    )
 
 
 def surfaces(scene, known):

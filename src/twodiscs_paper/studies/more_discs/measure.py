@@ -13,8 +13,9 @@ from twodiscs.dynamics.many.all_pairs import CLASSES
 from twodiscs.model.many_geometry import copies
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import insertions, many_initial_states
-from twodiscs.theory import flux, n_discs, plain, virial
+from twodiscs.theory import virial
 from twodiscs.theory.flux import rates
+from twodiscs.theory.n_discs import exact_method, known_derivatives
 from twodiscs_paper.studies.more_discs import tori
 from twodiscs_paper.study import row
 
@@ -32,22 +33,6 @@ REPLICAS_OF_MANY, EVENT_SHARE = {16: 128, 32: 96, 64: 48}, 1 / 8
 #: (number of discs on a torus, their packing fraction): three, whose rate of collisions is exact,
 #: and a fluid.
 ON_TORI = tuple((discs, packing) for discs in (3, 64) for packing in (0.1, 0.3, 0.45))
-
-
-def known_derivatives(scene, hops=True):
-    """Return ``n_discs.known_derivatives``, of two discs too."""
-    if scene.discs > 2:
-        return n_discs.known_derivatives(scene, hops)
-    volume, areas = plain.volume_and_areas(Scene(scene.width, scene.height, scene.radius))
-    root = math.sqrt(2)
-    return flux.Derivatives(
-        math.log(volume),
-        2 * areas["right_wall"] / volume,
-        2 * areas["top_wall"] / volume,
-        areas["disc_collision"] / root / volume,
-        areas["horizontal_hop"] / root / volume,
-        areas["vertical_hop"] / root / volume,
-    )
 
 
 def virial_weights(scene):
@@ -139,7 +124,7 @@ def _start(scene, theory):
 
 def _of_scene(scene, events, samples, seed):
     known = known_derivatives(scene)
-    theory = "plain" if scene.discs == 2 else n_discs.exact_method(scene) or "none"
+    theory = exact_method(scene) or "none"
     true = rates(scene, known) if known else {}
     has_samples = scene.discs not in REPLICAS_OF_MANY
     sampled, errors_of_samples = (
