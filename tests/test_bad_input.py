@@ -40,6 +40,7 @@ NAN, INF = math.nan, math.inf
 #: Disc 2 is where the next image of disc 1 is.
 ROUND_THE_RING = [-0.5, 0.0, 1.0, 0.1, 1.0, 0.0, 0.0, 0.0]
 START = dict(zip(components(PAPER), (-0.5, 0.0, 0.5, 0.0, 1.0, 0.0, 0.0, 0.0), strict=True))
+MOVING = [[-0.5, 0.0, 1.0, 0.0], [0.5, 0.0, 0.0, 0.0]]
 LYING = {"x1": -0.4, "y1": -0.3, "u1": 0.0, "x2": 0.4, "y2": 0.1, "u2": 0.68**0.5}
 
 
@@ -103,7 +104,7 @@ depth: 1, moment_of_inertia: 0.4 → moment_of_inertia must be left out in a box
 
 #: Calls of the face.
 CALLS = """
-Scene(1.5, 1, 0.1, depth=1e50) → depth must lie between … and 1e45
+Scene(1.5, 1, 0.1, depth=1e50) → depth must lie between 1e-45 and 1e45
 Scene(1.5, 1, 0.1, depth=1, periodic='x,y') → periodic must be some of the axes x, y and z, each
 Scene('0,3', 1, 0.1) → width must be a positive number, not '0,3'; decimals follow a point, 0.3
 Scene(1.5, 1, 0.1, n_discs=3) → 'n_discs'; did you mean discs?
@@ -112,6 +113,7 @@ td.simulate() → missing 1 required positional argument: 'scene'
 td.simulate(PAPER, 0.5, progress=1) → progress must be True, False or None, not 1
 td.simulate(PAPER, 0.1, duration=10) → error and duration must not both be given
 td.simulate(PAPER, duration=2.75e5, budget=1e6) → duration must be below 2.71e5, where
+td.trajectory(td.Scene(1.5, 1, 0.2, friction=2), 2e6) → duration must be below 1.76e6, where
 td.sample(PAPER, cores=10**6) → cores must be an integer from 1 to 1024, not 1000000
 td.simulate(PAPER, seed=2**63) → seed must be an integer from 0 to 2^63 - 1, not 9223372036854775808
 td.simulate(RING, events='right_wall') → 'right_wall': the periodic axis x has no walls
@@ -160,6 +162,8 @@ td.observe(PAPER, x1, [1], starts=td.starts(PAPER, 1)) → starts must be two st
 td.observe(PAPER, x1, [1], 3, starts=td.starts(PAPER, 3)) → replicas must be left out with starts
 td.observe(PAPER, x1, [1], starts=td.starts(FOUR, 3)) → an array of shape (number, 2, 4) of x, y, u
 td.observe(PAPER, x1, [1], starts=np.ones((2, 2, 4))) → must have disc 1 inside the box, with x1
+td.observe(PAPER, x1, [1], starts=[MOVING, np.add(MOVING, [9, 0, 0, 0])]) → disc 1 inside the box
+td.observe(PAPER, x1, [1], starts=[MOVING, np.add(MOVING, [0, 0, 0.5, 0])]) → of 0.5, not 1.25
 td.observe(PAPER, x1, [1], starts=np.zeros((2, 3, 4))) → must be states as starts or frames returns
 td.observe(PAPER, x1, [1], starts=np.full((2, 2, 4), NAN)) → must be states as starts or frames
 td.trajectory(PAPER, start=map(float, '12')) → start must be the numbers x1, …, not <map object at

@@ -76,12 +76,12 @@ def normal_quantile(confidence):
 def why_no_error(**numbers):
     """Return why an estimate has no error bar, such as "37 of the 100 hits", None if it has one.
 
-    ``numbers`` are {name: number} of independent events, such as hits or replicas. Each of them
-    must be ``LEAST_EVENTS`` or more.
+    ``numbers`` is {name: number} of independent events, such as hits or replicas. It must be
+    ``LEAST_EVENTS`` or more.
     """
-    short = min(numbers, key=numbers.get)
-    if numbers[short] < LEAST_EVENTS:
-        return f"{numbers[short]:.3g} of the {LEAST_EVENTS} {short} that an error needs"
+    ((name, number),) = numbers.items()
+    if number < LEAST_EVENTS:
+        return f"{number:.3g} of the {LEAST_EVENTS} {name} that an error needs"
     return None
 
 
