@@ -188,9 +188,10 @@ def test_an_error_asked_for_later_has_the_sums_of_one_asked_for_at_once(monkeypa
 def test_what_is_kept_is_not_done_again():
     """A run of shards does only the first round and the rest: the ranges between them join up."""
     run, counts = fabricated(0.003, 1e12)
-    shards, done, work = done_in_shards(run, 256), [], run.work
+    shards, done, told, work = done_in_shards(run, 256), [], [], run.work
     run = replace(run, work=lambda *ends: done.append(ends) or work(*ends))
-    kept = rounds.run_in_rounds(run, resume_from=shards)
+    kept = rounds.run_in_rounds(run, lambda *now: told.append(now), resume_from=shards)
+    assert {stop * run.block_work for _, stop in done} <= {now for now, _ in told}
     (sums,), blocks = reached(kept)
     assert blocks > 1000
     assert sums.tolist() == [counts[:blocks].sum()]

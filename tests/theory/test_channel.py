@@ -12,7 +12,7 @@ import pytest
 from marks import slow
 
 import twodiscs as td
-from twodiscs.theory import channel, exact, three
+from twodiscs.theory import channel, exact, n_discs, three
 from twodiscs.theory.flux import Derivatives
 from twodiscs.theory.n_discs import known_derivatives
 from twodiscs_paper.studies.passages.models.file import limit
@@ -35,6 +35,13 @@ def test_two_and_three_discs_have_their_other_theory(theory, discs, width, heigh
     found, expected = channel.derivatives(scene), theory(scene)
     assert found.log_volume == pytest.approx(expected.log_volume, abs=BOUND)
     assert found[1:] == pytest.approx(expected[1:], rel=BOUND)
+
+
+@pytest.mark.parametrize("radius", [0.1, 0.3])
+def test_two_discs_have_the_rates_of_their_areas(radius):
+    scene = td.Scene(1.5, 1.0, radius)
+    for event in scene.events:
+        assert n_discs.rate(scene, event) == pytest.approx(exact.rate(scene, event), rel=1e-14)
 
 
 def by_moments(scene, order=40):
