@@ -25,6 +25,7 @@ from matplotlib.backend_bases import FigureCanvasBase
 from numba.core.compiler_lock import global_compiler_lock
 
 import twodiscs as td
+from twodiscs.dynamics import averages
 from twodiscs.dynamics.stages import STAGES
 from twodiscs.measure import load
 from twodiscs.measure import result as progress_module
@@ -358,6 +359,14 @@ def test_a_bar_is_where_the_work_is(monkeypatch):
 # States -------------------------------------------------------------------------------------------
 
 
+def test_two_events_may_have_one_time():
+    """Discs that mirror each other hit their walls together."""
+    path = td.trajectory(PAPER, start=[-0.4, 0, 0.4, 0, -(0.5**0.5), 0, 0.5**0.5, 0], duration=3)
+    assert not path["time"].is_unique
+    (state,) = path.states_at(1.0)
+    assert state["x1"] == -state["x2"]
+
+
 @pytest.mark.parametrize("scene", [PAPER, SCENES["combination"]], ids=str)
 def test_states_between_rows_lead_from_one_to_the_next(scene):
     path = td.trajectory(scene, seed=2, duration=30)
@@ -469,6 +478,11 @@ def test_blocks_of_replicas_have_different_kicks():
     kicked = td.Scene(1.5, 1.0, 0.2, friction=1e5)
     speeds = td.frames(kicked, [1e-3], 2 * 4096)["u"][:, 0, 0]
     assert not np.any(speeds[:4096] == speeds[4096:])
+    done = []
+    averages.ObserveRun(kicked, 1, np.array([1e-3]), 5000, None).frames(
+        lambda *now: done.append(now)
+    )
+    assert [now for now in done if now[0]] == [(4096, 5000), (5000, 5000)]
 
 
 @pytest.mark.parametrize("which", [0, 1])

@@ -147,6 +147,12 @@ def test_what_cannot_be_followed_is_refused_in_a_sentence(scene, hop, said, monk
         of_many.require_coefficient(scene, hop)
 
 
+def test_hops_on_a_ring_can_be_followed_although_they_are_no_events():
+    ring = Scene(3, 1, 0.1, discs=4, periodic="x")
+    assert HOP not in ring.events
+    of_many.require_coefficient(ring, HOP)
+
+
 def test_all_tiny_discs_on_the_surface_of_a_hop_are_apart():
     accepted, proposals = of_many.surface_fraction(Scene(1.5, 1.0, 1e-6, discs=3), HOP)
     assert accepted == proposals
