@@ -72,11 +72,6 @@ def test_no_other_number_of_rows_is_better(discs, height, periodic):
         assert min(in_row, math.hypot(less * side, down), two_down) <= best * (1 + 1e-14)
 
 
-@pytest.mark.parametrize("sides", [(1.0, 2000.0), (2000.0, 1.0)])
-def test_more_than_a_thousand_discs_fit_in_one_row(sides):
-    assert Box(*sides, discs=1100).largest_radius == 0.5
-
-
 # As a scene --------------------------------------------------------------------------------------
 
 
