@@ -28,11 +28,15 @@ def test_a_run_waits_for_crowds_that_its_budget_can_show():
     """Of 0.0138 of all collisions, where one initial state in 1300 is."""
     scene = td.Scene(1.5, 1.0, 0.245, moment_of_inertia=0.5)
     needed = replicas_needed(scene, "disc_collision", 1e-2)
-    few, enough = (
-        td.simulate(scene, error=1e-2, budget=budget, events=["disc_collision", "right_wall"])
-        for budget in (1e6, 1e9)
+    few, coarse, enough = (
+        td.simulate(scene, error=error, budget=budget, events=["disc_collision", "right_wall"])
+        for error, budget in ((1e-2, 2.5e6), (0.05, 1e9), (1e-2, 1e9))
     )
     assert few.rows[0]["replicas"] < needed <= enough.rows[0]["replicas"]
+    # A budget that cannot show them is not spent, and does not end the run.
+    assert few.point.events < 2.2e6
+    for result in few, coarse:
+        assert result.note.endswith("A smaller error or a larger budget has more.")
     run = DynamicsRun(scene, {"disc_collision": 1e-2}, 10**9, 1).components["all"]
     assert run.planned * REPLICAS >= needed
     assert few["disc_collision_time"].status == "too-few"

@@ -396,6 +396,12 @@ def shortfall(rows, budget, events=None, seconds=None, ends="ended", what="event
             # Half more, because replicas come in whole blocks.
             enough = 1.5 * LEAST_EVENTS / replicas * events
             return f"{text}after {why}. A budget of {round_up(enough)} is enough."
+        if worst["status"] == "too-few" and worst.get("z", 0.0) is None:
+            return (
+                f"You asked for an error of {asked}, but the run had too few initial states for "
+                f"an error of {worst['event']}: bursts of rough discs follow a few of them. A "
+                "smaller error or a larger budget has more."
+            )
         seen = f"events {worst['event']}" if "event" in worst else f"hits for {worst['quantity']}"
         return f"{text}with too few {seen} for an error."
     text = f"{text}at {round_up(worst['relative_stderr'])} ({row_quantity(worst)})."
