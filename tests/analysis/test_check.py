@@ -154,7 +154,7 @@ def test_the_sum_rule_needs_a_thousand_of_each_of_its_events(rare, number, statu
     products = {f"{a}*{b}": counts[a] * counts[b] // 2048 + counts[a] * (a == b) for a, b in pairs}
     point = counts_point(0.2, counts=counts, products=products, target=dict.fromkeys(counts, 1.0))
     (row,) = check.comparisons([], [], [], [], [point])
-    assert (row["status"], row["z"] is None) == (status, status == "too-few")
+    assert (row["exact"], row["status"], row["z"] is None) == (1, status, status == "too-few")
 
 
 @pytest.mark.parametrize(("replicas", "status"), [(2**15, "too-few"), (2**16, "counted")])
