@@ -211,7 +211,7 @@ observe(times=np.ma.masked_array([1, 2], [0, 1])) → from 0 on, not a MaskedArr
 observe(lambda a, b: np.ma.masked_less(b['x1'], 0)) → 4096 replicas, not an array with masked values
 observe(times=np.array([10], 'm8[ms]')) → not a ndarray object: give numbers without units
 observe(times=[0.5, True]) → times must be ascending numbers from 0 on, not [0.5, True]
-observe(lambda a, b: [pd.to_timedelta(b['x1'])] * 2) → units would be lost: return plain numbers
+observe(lambda a, b: [b['x1'], pd.to_timedelta(b['x1'])]) → units would be lost: return plain
 td.trajectory(PAPER).positions(1j) → times must be numbers from 0.0 to … not 1j
 observe(lambda a, b: b['x3']) → function must use the fields x1, y1, x2, …, but there is no field of
 observe(lambda a, b: 1.0) → function must return a real number, or the same
@@ -443,7 +443,7 @@ WRONG = (
     | {"seed": [-1, 1.5, "1", True], "duration": [INF, "1", 0.0, -1.0]}
     | {"error": [0.0, 1.1, -0.5, True, "rough", {}, {"hop": 0.1}], "name": [3, b"a"]}
     | {"events": [["hop"], {"any_wall": 0.1}, b"any_wall", 5], "radii": [[], [0.9], [None]]}
-    | {"bins": [[], [1], [1, 0], [-1, 1], [0, INF], "x", 5]}
+    | {"bins": [[], [1], [0, 2, 1], [-1, 1], [0, INF], "x", 5]}
     | {"start": [[], [1.0] * 8, "x", [None] * 8], "times": [[-1], [1, 1], [1e9], [INF]]}
     | {"function": [1, lambda start, now: None, lambda start, now: "x1"], "path": [3.5, "a.txt"]}
     | {"result": [1, "scene", [PAPER, 1], {}]}

@@ -478,11 +478,15 @@ def test_blocks_of_replicas_have_different_kicks():
     kicked = td.Scene(1.5, 1.0, 0.2, friction=1e5)
     speeds = td.frames(kicked, [1e-3], 2 * 4096)["u"][:, 0, 0]
     assert not np.any(speeds[:4096] == speeds[4096:])
-    done = []
-    averages.ObserveRun(kicked, 1, np.array([1e-3]), 5000, None).frames(
-        lambda *now: done.append(now)
-    )
+
+
+def test_averages_tell_and_count_their_replicas():
+    run, done = averages.ObserveRun(PAPER, 1, np.array([0, 1e-3]), 5000, None, names=("x",)), []
+    run.frames(lambda *now: done.append(now))
     assert [now for now in done if now[0]] == [(4096, 5000), (5000, 5000)]
+    sums = 2 * 4096, np.zeros((2, 1)), np.array([[1.0], [-1.0]])
+    with pytest.raises(td.InputError, match="sums must be those of all"):
+        run.point({"all": {(0, 2): sums}})
 
 
 @pytest.mark.parametrize("which", [0, 1])
