@@ -219,6 +219,12 @@ def test_the_way_to_the_next_state_is_longer_in_a_long_box(width, height, discs,
         assert not chain.grid or (chain.grid.x.size - 1) * (chain.grid.y.size - 1) <= 4 * discs
 
 
+@pytest.mark.parametrize("room", [1e-3, 1e-9])
+def test_moves_of_crowded_discs_are_as_small_as_their_room(room):
+    scene = Scene(1.5, 1.0, 0.25 * (1 - room), discs=5)
+    assert 2.0 ** many_initial_states.make_initial(scene, "chain").chain.scales > 1 / room
+
+
 def test_discs_that_move_little_have_a_shorter_way_to_the_next_state():
     """Two contacts of each disc limit it. It grows as the square of length over height."""
     boxes = [Scene(width, 64 / width, 0.1, discs=64) for width in (8.0, 16.0, 4.0)]
