@@ -133,7 +133,8 @@ def test_a_flux_has_a_score_if_neither_of_its_errors_is_coarse(dynamics, samples
     row |= {"estimate": 2.1, "stderr": 2.1 * dynamics, "relative_stderr": dynamics}
     point = SimpleNamespace(radius=0.1, stage="monte_carlo", method="insertion")
     _, flux = check.comparisons([], [], [row], [], [point])
-    assert (flux["comparison"], flux["estimate"]) == ("flux", 1.05)
+    assert (flux["comparison"], flux["exact"], flux["estimate"]) == ("flux", 1, 1.05)
+    assert flux["radius"] == point.radius
     assert flux["stderr"] == pytest.approx(1.05 * math.hypot(dynamics, samples))
     fine = max(dynamics, samples) == 0.031
     assert flux["z"] == (pytest.approx(0.05 / flux["stderr"]) if fine else None)
@@ -154,7 +155,8 @@ def test_the_sum_rule_needs_a_thousand_of_each_of_its_events(rare, number, statu
     products = {f"{a}*{b}": counts[a] * counts[b] // 2048 + counts[a] * (a == b) for a, b in pairs}
     point = counts_point(0.2, counts=counts, products=products, target=dict.fromkeys(counts, 1.0))
     (row,) = check.comparisons([], [], [], [], [point])
-    assert (row["exact"], row["status"], row["z"] is None) == (1, status, status == "too-few")
+    assert (row["radius"], row["exact"], row["status"]) == (0.2, 1, status)
+    assert (row["z"] is None) == (status == "too-few")
 
 
 @pytest.mark.parametrize(("replicas", "status"), [(2**15, "too-few"), (2**16, "counted")])
