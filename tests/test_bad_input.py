@@ -114,6 +114,7 @@ td.simulate(PAPER, 0.5, progress=1) → progress must be True, False or None, no
 td.simulate(PAPER, 0.1, duration=10) → error and duration must not both be given
 td.simulate(PAPER, duration=2.75e5, budget=1e6) → duration must be below 2.71e5, where
 td.trajectory(td.Scene(1.5, 1, 0.2, friction=2), 2e6) → duration must be below 1.76e6, where
+td.trajectory(Scene(32, 32, 0.3, discs=1024), 1e9) → where 2.93e4 events are due and fill 0.96
 td.sample(PAPER, cores=10**6) → cores must be an integer from 1 to 1024, not 1000000
 td.simulate(PAPER, seed=2**63) → seed must be an integer from 0 to 2^63 - 1, not 9223372036854775808
 td.simulate(RING, events='right_wall') → 'right_wall': the periodic axis x has no walls
