@@ -189,7 +189,7 @@ def test_a_quantity_has_one_name(simulated, sampled):
     assert list(sampled) == list(sampled.frame().index) == ["volume", *areas]
     assert list(td.areas(PAPER)) == list(td.exact(PAPER)["areas"]) == areas
     columns = ["regime", "ergodic_components", "volume", *areas, *times]
-    table = td.exact_table(1.5, 1.0, [0.2, 0.5])  # of which the second does not fit
+    table = td.exact_table(1.5, 1.0, [0.2, 0.5])  # the second radius does not fit
     assert (list(table), [*table["ergodic_components"]]) == (columns, [1, None])
     for found in (simulated, sampled, td.mean_times(PAPER), td.areas(PAPER)):
         assert "any_wall" not in found

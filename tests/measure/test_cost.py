@@ -200,6 +200,14 @@ def test_a_sentence_says_what_was_not_reached(rows, said):
     assert found.endswith("ended the run at 2e-5 (any_wall_time). A budget of 4.8e9 is enough.")
     found = shortfall([row("any_wall", None, "too-few", 0.01) | {"replicas": 50}], 10**9, 1e8)
     assert found.endswith("50 of the 100 replicas that an error needs. A budget of 3e8 is enough.")
+    few = [row("any_wall", None, "too-few", 0.01) | {"replicas": 2048}]
+    for spent, begun in (
+        (9e8, "the budget of 1e9 events ended the"),
+        (1e8, "the run of 1e8 events"),
+    ):
+        assert shortfall(few, 10**9, spent).startswith(
+            f"You asked for an error of 0.01, but {begun}"
+        )
     found = shortfall([row("any_wall", 2e-5)], None)
     assert found.endswith(", but the limit of a day ended the run at 2e-5 (any_wall_time).")
 

@@ -90,7 +90,7 @@ def _sum_rule(point):
     rule, scene, replicas = sum_rule(point), point.scene, point.replicas
     stderr = z = None
     enough = min(point.counts[event] for event in SUM_RULE_EVENTS) >= scores.NORMAL_EVENTS
-    enough = enough and not why_no_error(replicas=replicas)
+    enough = enough and not why_no_error(replicas, "replicas")
     # A run of rough discs may have missed the initial states with very many events.
     if enough and all(replicas >= replicas_needed(scene, e, rule.stderr) for e in SUM_RULE_EVENTS):
         stderr = rule.stderr

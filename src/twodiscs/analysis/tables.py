@@ -227,7 +227,7 @@ def _sampled_row(point, quantity, sampled, exact, expectation, score=None):
     elif estimate is None:
         status = "none-seen"
     else:
-        status = "too-few" if why_no_error(hits=sampled.enough) else "sampled"
+        status = "too-few" if why_no_error(sampled.enough, "hits") else "sampled"
     return {
         "radius": point.radius,
         "quantity": quantity,
@@ -392,17 +392,18 @@ def shortfall(rows, budget, events=None, seconds=None, ends="ended", what="event
     text = f"You asked for an error of {asked}, but the {limit} {ends} the run "
     if not math.isfinite(more):
         replicas = worst.get("replicas", LEAST_EVENTS)
-        if events and (why := why_no_error(replicas=replicas)):
+        if events and (why := why_no_error(replicas, "replicas")):
             # Half more, because replicas come in whole blocks.
             enough = 1.5 * LEAST_EVENTS / replicas * events
             return f"{text}after {why}. A budget of {round_up(enough)} is enough."
-        if worst["status"] == "too-few" and worst.get("z", 0.0) is None:
-            return (
-                f"You asked for an error of {asked}, but the run had too few initial states for "
-                f"an error of {worst['event']}: bursts of rough discs follow a few of them. A "
-                "smaller error or a larger budget has more."
-            )
         seen = f"events {worst['event']}" if "event" in worst else f"hits for {worst['quantity']}"
+        if "replicas" in worst and events and events < (budget or math.inf) / 2:
+            # Rough discs near a threshold need initial states for the error that they reach, and a
+            # run to a larger one ends before it has them.
+            return (
+                f"You asked for an error of {asked}, but the run of {round_up(events)} {what} has "
+                f"too few {seen} for an error. A smaller error or a larger budget gives more."
+            )
         return f"{text}with too few {seen} for an error."
     text = f"{text}at {round_up(worst['relative_stderr'])} ({row_quantity(worst)})."
     if not events:
@@ -464,7 +465,7 @@ def _mean_interval(point):
     """Return the columns about the mean of a point; its exact mean may be None."""
 
     z, exact = None, theory.mean_times(point.scene)[point.event]
-    stderr = None if why_no_error(chains=point.chains) else point.stderr or None
+    stderr = None if why_no_error(point.chains, "chains") else point.stderr or None
     if stderr and exact is not None:
         z = scores.student_deviate((point.mean - exact) / stderr, point.chains - 1)
     known = {"intervals": point.intervals, "exact_mean": exact}

@@ -69,7 +69,7 @@ def with_error(estimate, *numbers):
     The numbers are those of independent hops with each of the results whose mix is the estimate. If
     all of them had the same result, their spread would be 0 although another result is possible.
     """
-    return replace(estimate, stderr=None) if why_no_error(hops=min(numbers)) else estimate
+    return replace(estimate, stderr=None) if why_no_error(min(numbers), "hops") else estimate
 
 
 def cluster_estimate(sizes):

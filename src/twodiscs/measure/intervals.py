@@ -128,7 +128,7 @@ class Intervals(Result):
         if self.edges[:3] == [0, width, 2 * width] and width <= most:
             density, status = point.density_at_zero, "extrapolated"
             at_zero, error = density.value, density.stderr
-            if why_no_error(intervals=min(self.counts[:2])):
+            if why_no_error(min(self.counts[:2]), "intervals"):
                 error, status = None, "too-few"
         values = at_zero, error, exact, None, sum(self.counts[:2]), status, "1/time"
         self.at_zero = Measurement("density_at_zero", *values)

@@ -635,7 +635,7 @@ def make_sampling(
             if row["status"] == "sampled":
                 row["status"] = "reached" if known <= row["target"] else "budget"
         # No budget ended a run with too few misses, whose binomial error is small.
-        short = [r for r in rows if r["status"] != "too-few" or why_no_error(hits=r["hits"])]
+        short = [r for r in rows if r["status"] != "too-few" or why_no_error(r["hits"], "hits")]
         drawn = point.samples * run.weight
         note = _note_of_error(rows, short, budget, drawn, "samples", "samples")
     return Measurements("sample", scene, rows, settings, point, note)

@@ -73,15 +73,14 @@ def normal_quantile(confidence):
     return float(-ndtri((1 - check_fraction("confidence", confidence)) / 2))
 
 
-def why_no_error(**numbers):
+def why_no_error(number, what):
     """Return why an estimate has no error bar, such as "37 of the 100 hits", None if it has one.
 
-    ``numbers`` is {name: number} of independent events, such as hits or replicas. It must be
+    The ``number`` of independent events, such as hits or replicas (``what``), must be
     ``LEAST_EVENTS`` or more.
     """
-    ((name, number),) = numbers.items()
     if number < LEAST_EVENTS:
-        return f"{number:.3g} of the {LEAST_EVENTS} {name} that an error needs"
+        return f"{number:.3g} of the {LEAST_EVENTS} {what} that an error needs"
     return None
 
 
@@ -176,7 +175,7 @@ def is_enough(total, squares, replicas, expected=None, least=LEAST_EVENTS):
     nobody foresaw are seen in the counts: they have far fewer effective events than expected.
     """
     effective = effective_count(total, squares, replicas)
-    if why_no_error(replicas=replicas):
+    if why_no_error(replicas, "replicas"):
         return False
     if expected is None:
         return effective >= least

@@ -257,7 +257,7 @@ class InsertionPoint(SampledPoint):
         """
         volume, _, enough = self._moments({"volume": 1.0})
         area, _, effective = self._moments(weights)
-        if estimates.why_no_error(samples=min(enough, effective)):
+        if estimates.why_no_error(min(enough, effective), "samples"):
             return None
         # The variance of Σ weight × q/area − volume/V, whose mean is 0.
         terms = {name: weight / area for name, weight in weights.items()} | {"volume": -1 / volume}

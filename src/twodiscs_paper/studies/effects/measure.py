@@ -116,7 +116,7 @@ def share_rows(start, scene, seed, blocks):
     stream = stream_seed(seed, start["scene"], "unmet", key(scene.radius))
     for time, count in zip(TIMES, survivors(scene, TIMES, blocks, stream), strict=True):
         share = estimates.binomial_estimate(count, starts, 1.0)
-        enough = not estimates.why_no_error(hits=count)
+        enough = not estimates.why_no_error(count, "hits")
         yield row(
             start,
             effects=json.dumps(scene.effects),
