@@ -25,16 +25,7 @@ from twodiscs_paper.configuration.yaml_files import load
 from twodiscs_paper.studies.estimates import sample_mean
 from twodiscs_paper.studies.passages import figure, figure_diffusion, figure_transmission, near
 from twodiscs_paper.studies.passages.models import file, plane
-from twodiscs_paper.studies.passages.near import passing_rate
-from twodiscs_paper.studies.passages.parts import (
-    displacements,
-    in_long_file,
-    in_pore,
-    in_the_limit,
-    near_threshold,
-    on_ring,
-    with_friction,
-)
+from twodiscs_paper.studies.passages.parts import displacements, on_ring, with_friction
 from twodiscs_paper.studies.passages.powers import fits
 from twodiscs_paper.studies.passages.study import PassagesTable
 
@@ -79,17 +70,14 @@ def smooth(function):
 def small(monkeypatch):
     """Make the study one of few distances and hops."""
     for name, value in {
-        "SMOOTH_HALVINGS": range(6, 9), "ROUGH_HALVINGS": range(6, 9), "RING": range(3, 4),
-        "MOST_HOPS": 2**12, "LIMIT_BLOCKS": 4, "PORE_BLOCKS": 8, "PORE_REPLICAS": 2**12,
-        "LONG_FILE": 18, "LONG_REPLICAS": 8, "RECORDS": 64,
+        "study.INERTIAS": (0.5, 1.0), "study.BLOCKED_RADII": (0.28,), "near.MOST_HOPS": 2**12,
+        "parts.near_threshold.MOST_HOPS": 2**12, "parts.in_the_limit.LIMIT_BLOCKS": 4,
+        "parts.near_threshold.SMOOTH_HALVINGS": range(6, 9), "parts.on_ring.RING": range(3, 4),
+        "parts.near_threshold.ROUGH_HALVINGS": range(6, 9), "parts.in_long_file.LONG_FILE": 18,
+        "parts.in_long_file.LONG_REPLICAS": 8, "parts.in_long_file.RECORDS": 64,
+        "parts.in_pore.PORE_BLOCKS": 8, "parts.in_pore.PORE_REPLICAS": 2**12,
     }.items():  # fmt: skip
-        modules = near, in_long_file, in_pore, in_the_limit, near_threshold, on_ring
-        own = [module for module in modules if hasattr(module, name)]
-        assert own, name
-        for module in own:
-            monkeypatch.setattr(module, name, value)
-    monkeypatch.setattr("twodiscs_paper.studies.passages.study.INERTIAS", (0.5, 1.0))
-    monkeypatch.setattr("twodiscs_paper.studies.passages.study.BLOCKED_RADII", (0.28,))
+        monkeypatch.setattr(f"twodiscs_paper.studies.passages.{name}", value)
 
 
 # A file of discs ----------------------------------------------------------------------------------
@@ -110,7 +98,7 @@ def test_two_discs_in_a_file_move_as_their_hops_are_correlated():
     due, *_ = of(rows, quantity="diffusion", method="hops")
     assert due["radius"] == scene.radius
     moved, hops = walked(Scene(1.5, 1.0, scene.radius, discs=2, periodic="x"), 64.0, 4096, 2)
-    assert abs(hops.value - passing_rate(scene, HOP)) < 5 * hops.stderr
+    assert abs(hops.value - near.passing_rate(scene, HOP)) < 5 * hops.stderr
     assert abs(moved.value - due["estimate"]) < 5 * math.hypot(moved.stderr, due["stderr"])
 
 
@@ -266,8 +254,9 @@ def test_the_table_is_written(rough, tmp_path, small, monkeypatch):
     if not rough:
         monkeypatch.setattr(near, "hop_sums", smooth(near.hop_sums))
     seeds, seed_of = [], near.hop_seed
-    for module in (near, in_long_file):
-        monkeypatch.setattr(module, "hop_seed", lambda *of: seeds.append(seed_of(*of)) or seeds[-1])
+    for module in ("near", "parts.in_long_file"):
+        name = f"twodiscs_paper.studies.passages.{module}.hop_seed"
+        monkeypatch.setattr(name, lambda *of: seeds.append(seed_of(*of)) or seeds[-1])
     PassagesTable.write(tmp_path / "passages.csv", joined("paper", BOX))
     rows = PassagesTable.read(tmp_path / "passages.csv")
     assert len({*seeds}) == len(seeds) > 20  # every estimate has separate streams
