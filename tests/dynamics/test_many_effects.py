@@ -6,7 +6,6 @@ replica.
 Statistical comparisons allow five standard errors.
 """
 
-import math
 from collections import Counter
 from dataclasses import replace
 from itertools import pairwise
@@ -17,20 +16,13 @@ from exact_motion import path_events
 from marks import slow
 from sampling.uniformity import assert_uniform_on_sphere
 
-import twodiscs as td
+from twodiscs import Scene, simulate
 from twodiscs.dynamics import ensemble
 from twodiscs.dynamics.ensemble import LANES, open_all, open_block_kicks
-from twodiscs.dynamics.many import (
-    all_pairs,
-    cell_list,
-    class_counts,
-    many_intervals,
-    many_paths,
-    many_rates,
-)
+from twodiscs.dynamics.many import all_pairs as many
+from twodiscs.dynamics.many import cell_list, class_counts, many_intervals, many_paths, many_rates
 from twodiscs.dynamics.rows import Rows
 from twodiscs.model.many_geometry import CELL_DISCS
-from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import many_initial_states
 from twodiscs.theory.exact import replicas_needed
 
@@ -72,10 +64,10 @@ def test_velocities_and_spins_are_on_a_sphere(scene, friction, time):
     scene, replicas, n = replace(scene, friction=friction), 4096, scene.discs
     states, laps = many_initial_states.states(scene, replicas, 7), np.zeros((2 * n, replicas))
     if time:
-        kicks = open_block_kicks(all_pairs.new_kicks(scene, replicas), 7)
+        kicks = open_block_kicks(many.new_kicks(scene, replicas), 7)
         many_paths.advance_all(scene, states, laps, time, kicks)
     unit = states[2 * n :].copy()
-    unit[2 * n :] *= math.sqrt(scene.moment_of_inertia)
+    unit[2 * n :] *= np.sqrt(scene.moment_of_inertia)
     assert np.sum(unit**2, axis=0) == pytest.approx(1, abs=1e-12)
     assert_uniform_on_sphere(unit)
 
@@ -90,7 +82,7 @@ def test_bursts_in_a_neck_need_initial_states_in_it():
         due = replicas_needed(pair, event, 0.005) / 3
         assert replicas_needed(near, event, 0.01) == pytest.approx(due)
     assert replicas_needed(replace(near, moment_of_inertia=None), "top_wall", 0.01) == 0
-    found = td.simulate(near, 0.02, budget=1e6, seed=1)
+    found = simulate(near, 0.02, budget=1e6, seed=1)
     assert found["disc_collision_time"].status == "too-few"
     assert found["right_wall_time"].status == "reached"
 
@@ -111,7 +103,7 @@ def test_a_kick_keeps_places_energy_and_momentum(scene):
         start[2 * scene.discs :] /= np.linalg.norm(start[2 * scene.discs :])
     rows = [*path_events(scene, start, time, seed=3)]
     names = Counter(row[1] for row in rows)
-    assert abs(names["kick"] - scene.friction * time) <= 5 * math.sqrt(scene.friction * time)
+    assert abs(names["kick"] - scene.friction * time) <= 5 * np.sqrt(scene.friction * time)
     momentum = start[2 * scene.discs : 3 * scene.discs].sum()
     for (before, *_, old), (now, name, first, second, new) in pairwise(rows):
         (x, y, u, v), (*_, w) = np.split(np.array(new), 4), np.split(np.array(old), 4)
@@ -147,9 +139,9 @@ def test_replicas_beyond_the_first_lanes_have_their_own_kicks_laps_and_hops():
     scene, more = Scene(2.25, 1.0, 0.2, discs=3, periodic="x", friction=4.0), 3
     states = many_initial_states.states(scene, LANES + more, 9)
     results = states, np.zeros((6, LANES + more)), np.zeros(LANES + more)
-    alone, kicks = [each[..., LANES:].copy() for each in results], all_pairs.new_kicks(scene, more)
+    alone, kicks = [each[..., LANES:].copy() for each in results], many.new_kicks(scene, more)
     open_all(np.uint64(9), LANES, kicks)
-    all_kicks = open_block_kicks(all_pairs.new_kicks(scene, LANES + more), 9)
+    all_kicks = open_block_kicks(many.new_kicks(scene, LANES + more), 9)
     for (now, laps, hops), own in ((results, all_kicks), (alone, kicks)):
         many_paths.advance_all(scene, now, laps, 20.0, own, hops)
     for each, due in zip(results, alone, strict=True):
@@ -174,7 +166,7 @@ def test_chains_have_the_kicks_of_their_numbers(monkeypatch):
     """In each block, and beyond the first lanes; nothing goes on after the kicks are opened."""
     opened, chains = [], LANES + 2
     monkeypatch.setattr(ensemble, "open_kicks", lambda *given: opened.append(given[:3]))
-    monkeypatch.setattr(all_pairs, "record_intervals", all_pairs.record_intervals.py_func)
+    monkeypatch.setattr(many, "record_intervals", many.record_intervals.py_func)
     bins, ended = (0.1, None, np.full(65, 65)), np.zeros(1, np.bool_)
     many_intervals.record_intervals(FEW, "vertical_hop", 3, 2, 4, chains, bins, ended, window=8.0)
     assert opened == [(chain % chains % LANES, 3, chain) for chain in range(2 * chains, 4 * chains)]
