@@ -1,6 +1,5 @@
 """One scene for each effect, two that combine many of them, and the same scene seen otherwise."""
 
-import math
 from dataclasses import replace
 
 from twodiscs.model.scene import Scene
@@ -37,5 +36,5 @@ def exchanged(scene):
     """
     ratio, mass = scene.radius_ratio, scene.mass_ratio
     names = {"radius": scene.radii[1], "radius_ratio": 1 / ratio, "mass_ratio": 1 / mass}
-    names |= {"field": mass * scene.field, "friction": math.sqrt(mass) * scene.friction}
-    return replace(scene, **names), math.sqrt(mass)
+    names |= {"field": mass * scene.field, "friction": mass**0.5 * scene.friction}
+    return replace(scene, **names), mass**0.5

@@ -3,8 +3,7 @@
 import math
 from itertools import islice, pairwise
 
-import mpmath
-from mpmath import mpf
+from mpmath import mp, mpf
 
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.theory.exact import event_rate
@@ -23,7 +22,7 @@ def exact_path(scene, state):
 
     ``state`` is (x1, y1, x2, y2, u1, v1, u2, v2); it and the ranges of the centres are doubles,
     taken without rounding. Names are as in ``path_events``. If events have the same time,
-    walls come first. Call it under ``mpmath.workdps``.
+    walls come first. Call it under ``mp.workdps``.
     """
     x, v = [mpf(float(q)) for q in state[:4]], [mpf(float(q)) for q in state[4:]]
     limits = [mpf(scene.range_x / 2), mpf(scene.range_y / 2)] * 2
@@ -36,7 +35,7 @@ def exact_path(scene, state):
         dx, dy, du, dv = x[0] - x[2], x[1] - x[3], v[0] - v[2], v[1] - v[3]
         a, b, c = du**2 + dv**2, dx * du + dy * dv, dx**2 + dy**2 - sigma**2
         if b < 0 and b**2 > a * c:
-            times["disc_collision"] = max((-b - mpmath.sqrt(b**2 - a * c)) / a, mpf(0))
+            times["disc_collision"] = max((-b - mp.sqrt(b**2 - a * c)) / a, mpf(0))
         name = min(times, key=times.get)
         time = times[name]
         both = ("vertical_hop", dy, dv), ("horizontal_hop", dx, du)
@@ -62,7 +61,7 @@ def compare(scene, state, number):
     Events within 1e-10 of it from one another may come in either order.
     """
     unit = 1 / event_rate(scene)
-    with mpmath.workdps(50):
+    with mp.workdps(50):
         exact = list(islice(exact_path(scene, state), number))
         found = [row[:2] for row in islice(path_events(scene, state, math.inf), number + 1)][1:]
         ends = [k for k in range(1, number) if exact[k][0] - exact[k - 1][0] > 1e-10 * unit]

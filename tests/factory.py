@@ -1,7 +1,6 @@
 """Points, rows and tables for tests, made from their classes: by simple laws, or as a test says."""
 
 import json
-import math
 from contextlib import contextmanager
 from functools import cached_property
 from itertools import combinations_with_replacement
@@ -172,7 +171,7 @@ class Laws:
         """Return an intervals point of the vertical hop, with exponential intervals."""
         mean = self.times["vertical_hop"]
         stderr = relative * mean
-        each = math.ceil(relative**-2 / chains)
+        each = int(np.ceil(relative**-2 / chains))
         width, intervals = mean / 4, each * chains
         edges = np.exp(-0.25 * np.arange(13))
         counts = rng.multinomial(intervals, [*-np.diff(edges), edges[-1]])

@@ -7,7 +7,6 @@ A sentence has the key, the value and what is allowed. In the tables, "…" stan
 """
 
 import itertools
-import math
 import os
 import re
 from copy import deepcopy
@@ -36,7 +35,7 @@ from twodiscs_paper.configuration.yaml_files import ConfigError, load, read
 RING, FIELD = Scene(1.5, 1.0, 0.2, periodic="x"), Scene(1.5, 1.0, 0.2, field=0.4)
 FOUR = Scene(6.0, 1.0, 0.2, discs=4, periodic="x")
 ROUGH, CENTRES = Scene(1.5, 1.0, 0.2, moment_of_inertia=0.4), [[0.3, 0.5], [1.2, 0.5]]
-NAN, INF = math.nan, math.inf
+NAN, INF = np.nan, np.inf
 #: Disc 2 is where the next image of disc 1 is.
 ROUND_THE_RING = [-0.5, 0.0, 1.0, 0.1, 1.0, 0.0, 0.0, 0.0]
 START = dict(zip(components(PAPER), (-0.5, 0.0, 0.5, 0.0, 1.0, 0.0, 0.0, 0.0), strict=True))

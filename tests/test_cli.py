@@ -28,11 +28,7 @@ from commands import command, python, refused
 from snakemake.jobs import Reason
 
 import twodiscs
-from twodiscs import cli
-from twodiscs.model.checks import InputError
-from twodiscs.model.effects import EFFECTS
-from twodiscs.model.events import EVENTS
-from twodiscs.model.scene import Scene
+from twodiscs import EFFECTS, EVENTS, InputError, Scene, cli
 from twodiscs.theory.exact import exact as exact_numbers
 from twodiscs_paper.configuration.yaml_files import load, read
 from twodiscs_paper.pipeline import build

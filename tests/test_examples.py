@@ -28,7 +28,6 @@ import twodiscs
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.measure.measurements import STATUSES
 from twodiscs_paper.configuration import yaml_files
-from twodiscs_paper.configuration.yaml_files import read
 from twodiscs_paper.pipeline import job_cost
 
 DOCS = sorted(path.name for path in (REPOSITORY / "docs").glob("*.md"))
@@ -104,7 +103,7 @@ def scenes(name):
 
 def with_examples():
     """Return the default configuration with the scenes of all pages."""
-    mapping = read(REPOSITORY / "config" / "config.yaml")
+    mapping = yaml_files.read(REPOSITORY / "config" / "config.yaml")
     mapping["scenes"] += [scene for name in NAMES for scene in scenes(name)]
     return mapping
 

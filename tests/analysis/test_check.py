@@ -3,7 +3,6 @@
 Without it a wrong theory, count or error bar could pass, or a right one fail.
 """
 
-import math
 from collections import Counter
 from dataclasses import replace
 from itertools import combinations_with_replacement
@@ -135,7 +134,7 @@ def test_a_flux_has_a_score_if_neither_of_its_errors_is_coarse(dynamics, samples
     _, flux = check.comparisons([], [], [row], [], [point])
     assert (flux["comparison"], flux["exact"], flux["estimate"]) == ("flux", 1, 1.05)
     assert flux["radius"] == point.radius
-    assert flux["stderr"] == pytest.approx(1.05 * math.hypot(dynamics, samples))
+    assert flux["stderr"] == pytest.approx(1.05 * np.hypot(dynamics, samples))
     fine = max(dynamics, samples) == 0.031
     assert flux["z"] == (pytest.approx(0.05 / flux["stderr"]) if fine else None)
     assert flux["status"] == ("counted" if fine else "too-few")

@@ -3,8 +3,6 @@
 Without it a digit, an empty cell or a truth value could change in a file.
 """
 
-import math
-
 import numpy as np
 import pytest
 from commands import python
@@ -25,7 +23,7 @@ def test_every_table_of_a_scene_is_known():
 
 CHECK_ROW = empty(tables.CheckTable, 
     comparison="area", quantity="right_wall_area", radius=0.1, method="monte_carlo", exact=1 / 3,
-    z=-math.inf, p=0.0, bound=5, passed=False, independent=True, status="none-seen",
+    z=-np.inf, p=0.0, bound=5, passed=False, independent=True, status="none-seen",
     test="exact-tail",
 )  # fmt: skip
 RNG = np.random.default_rng(1)
@@ -78,7 +76,7 @@ def test_cells_have_all_digits_one_truth_value_and_lines_that_end_alike(tmp_path
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"seconds": math.nan}, "seconds must be a float"),
+        ({"seconds": np.nan}, "seconds must be a float"),
         ({"seconds": "1.0"}, "seconds must be a float"),
         ({"seconds": True}, "seconds must be a float"),
         ({"events": 1.0}, "events must be a int"),

@@ -16,16 +16,15 @@ from twodiscs.dynamics.stages import STAGES
 from twodiscs.model.events import EVENT_AXES, EVENTS, HOPS
 from twodiscs.model.scene import Box, Scene
 from twodiscs.model.seeds import job_seed, stream_seed
-from twodiscs_paper.configuration import yaml_files
 from twodiscs_paper.configuration.request import RequestedQuantities
-from twodiscs_paper.configuration.yaml_files import ConfigError, read
+from twodiscs_paper.configuration.yaml_files import ConfigError, check_results, load, read
 
 PLAIN = {"scenes": [{"name": "one", "box": {"width": 1.5, "height": 1}}]}
 
 
 def one(**keys):
     """The only scene of a configuration: a 1.5 × 1 box with these keys."""
-    (request,) = yaml_files.load({"scenes": [PLAIN["scenes"][0] | keys]}).scenes
+    (request,) = load({"scenes": [PLAIN["scenes"][0] | keys]}).scenes
     return request
 
 
@@ -34,10 +33,10 @@ def one(**keys):
 
 def test_the_draft_is_a_quick_look_at_the_scenes_of_the_default_configuration():
     mapping = read(REPOSITORY / "config/config.yaml")
-    full = yaml_files.load(mapping)
+    full = load(mapping)
     # As --configfile does: the draft's lists replace, its blocks are merged.
     update_config(mapping, read(REPOSITORY / "config/draft.yaml"))
-    draft = yaml_files.load(mapping)
+    draft = load(mapping)
     assert (full.results, draft.results) == ("results", "results/draft")
     for quick, slow in zip(draft.scenes, full.scenes, strict=True):
         assert (quick.name, quick.box) == (slow.name, slow.box)
@@ -65,7 +64,7 @@ def test_a_name_and_a_box_are_enough(width, height):
 
 
 def test_the_check_and_the_cost_of_a_scene_read_the_points_of_all_stages():
-    configuration = yaml_files.load({"scenes": [PLAIN["scenes"][0]]})
+    configuration = load({"scenes": [PLAIN["scenes"][0]]})
     (scene,) = configuration.scenes
     for table in ("check", "cost"):
         assert [*configuration.points(scene.name, table)] == [*scene.keys]
@@ -121,7 +120,7 @@ def test_accuracy_has_three_forms():
 
 def test_numbers_have_one_form(tmp_path):
     mapping = deepcopy(PLAIN)
-    yaml_files.load(mapping)
+    load(mapping)
     assert mapping == PLAIN  # which stays as it was
     forms = [
         {"radii": [0.2, 0.1], "event_budget": "2e6", "accuracy": "1e-3"},
@@ -191,7 +190,7 @@ def test_seeds_differ_between_scenes_methods_and_radii_and_follow_the_root():
     every = []
     for seed in (1, 2):
         mapping = {"seed": seed, "scenes": [PLAIN["scenes"][0] | BASE | {"name": n} for n in "ab"]}
-        for request in yaml_files.load(mapping).scenes:
+        for request in load(mapping).scenes:
             every.append(request.trajectory_seed)
             for stage, key in (job for job in jobs(request) if len(job) == 2):
                 scene = request.box.scene(float(key))
@@ -277,16 +276,16 @@ def test_effects_that_are_absent_leave_no_trace(effects):
 def test_what_is_about_a_plain_scene_needs_one():
     plain = PLAIN["scenes"][0] | {"name": "plain"}
     field = PLAIN["scenes"][0] | {"name": "field", "effects": {"field": 1}}
-    assert yaml_files.load({"scenes": [field, plain]}).main.name == "plain"
-    alone = yaml_files.load({"scenes": [field]})
+    assert load({"scenes": [field, plain]}).main.name == "plain"
+    alone = load({"scenes": [field]})
     assert alone.main is None
     assert alone.shared == ("report",)
     with pytest.raises(ConfigError, match="shared must leave out 'tails' if every scene"):
-        yaml_files.load({"scenes": [field], "shared": ["report", "tails"]})
+        load({"scenes": [field], "shared": ["report", "tails"]})
     tiny = plain | {"box": {"width": 1e-50, "height": 1e-50}, "watch": {"volume": True}}
     with pytest.raises(ConfigError, match="shared must leave out 'stability' unless"):
-        yaml_files.load({"scenes": [tiny], "shared": ["stability"]})
-    assert yaml_files.load({"scenes": [tiny], "shared": ["errata"]}).main.name == "plain"
+        load({"scenes": [tiny], "shared": ["stability"]})
+    assert load({"scenes": [tiny], "shared": ["errata"]}).main.name == "plain"
 
 
 def test_radii_too_close_to_the_largest_are_refused_for_dynamics_alone():
@@ -306,7 +305,7 @@ def test_more_discs_are_a_scene_of_their_own():
     assert ring.quantities.trajectory == 0.143  # half of the largest radius
     histogram = one(discs=3, radii=[0.1], watch={"hop_histogram": {"event": "horizontal_hop"}})
     assert histogram.quantities.hop_histogram == (0.025, 0.075, 0.125, 0.175)
-    configuration = yaml_files.load({"scenes": [PLAIN["scenes"][0] | {"discs": 3, "radii": [0.1]}]})
+    configuration = load({"scenes": [PLAIN["scenes"][0] | {"discs": 3, "radii": [0.1]}]})
     assert configuration.plain == ()
 
 
@@ -317,10 +316,10 @@ def test_results_are_a_folder_that_holds_no_sources(tmp_path, monkeypatch):
     (tmp_path / "README.md").write_text("text")
     (tmp_path / "link").symlink_to(tmp_path.parent)
     for good in ("out", "out/new", "results", f"{tmp_path}/out", "link"):
-        yaml_files.check_results(good, tmp_path)
+        check_results(good, tmp_path)
     for bad in ("README.md", "README.md/new", f"{tmp_path}/docs", f"{tmp_path}/docs/new"):
         with pytest.raises(ConfigError, match=f"results must be .*, not '{bad}'"):
-            yaml_files.check_results(bad, tmp_path)
+            check_results(bad, tmp_path)
 
 
 def test_monte_carlo_samples_at_most_64_discs():
@@ -335,5 +334,5 @@ def test_described_scenes_name_the_events_that_dynamics_detects():
     box = {"width": 1.5, "height": 1.0}
     some = {"name": "some", "box": box, "watch": {"mean_times": ["top_wall", "disc_collision"]}}
     none = {"name": "none", "box": box, "watch": {"volume": True, "mean_times": False}}
-    described = yaml_files.load({"scenes": [some, none]}).described()
+    described = load({"scenes": [some, none]}).described()
     assert [scene["detected"] for scene in described] == [["disc_collision", "top_wall"], []]

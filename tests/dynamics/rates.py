@@ -1,7 +1,5 @@
 """How tests of dynamics decide that a number is not the exact one: by five standard errors."""
 
-import math
-
 import numpy as np
 
 from twodiscs.dynamics.engine import find_engine
@@ -24,8 +22,8 @@ def same_sizes(counts, other):
     own = np.repeat(np.arange(counts.size), counts)
     for of in (lambda n: n % 2 / n, lambda n: n == 1, lambda n: np.minimum(n, 64)):
         values = [np.asarray(of(sizes), float) for sizes in (own, other)]
-        errors = [part.std() / math.sqrt(part.size) for part in values]
-        five(values[0].mean(), values[1].mean(), math.hypot(*errors))
+        errors = [part.std() / np.sqrt(part.size) for part in values]
+        five(values[0].mean(), values[1].mean(), np.hypot(*errors))
 
 
 def check_rates(scene, seed, blocks, duration=None):

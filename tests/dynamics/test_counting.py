@@ -4,7 +4,6 @@ Without these tests counts of the ensemble could miss an event, or end before or
 enough.
 """
 
-import math
 from itertools import product
 
 import numpy as np
@@ -56,7 +55,7 @@ def test_an_event_is_seen_by_its_disc_its_axis_and_its_side(event, identical, fi
 def test_an_error_begins_with_the_first_count():
     """One count in four replicas has the relative error √((1/4 − 1/16)/4)/(1/4)."""
     errors = runs.relative_errors(np.array([1, 0]), np.diag([1, 0]), 4)
-    assert errors.tolist() == [pytest.approx(math.sqrt(3) / 2), math.inf]
+    assert errors.tolist() == [pytest.approx(np.sqrt(3) / 2), np.inf]
 
 
 def test_packed_counts_do_not_run_over():

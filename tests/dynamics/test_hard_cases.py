@@ -10,9 +10,8 @@ from exact_motion import compare, path_events
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from twodiscs import trajectory
+from twodiscs import Box, Scene, trajectory
 from twodiscs.dynamics.law import two_disc_law
-from twodiscs.model.scene import Box, Scene
 from twodiscs.sampling.initial_states import states
 from twodiscs_paper.studies.single import advance
 

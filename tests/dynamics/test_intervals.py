@@ -23,7 +23,6 @@ from twodiscs.points.intervals_point import BIN_GROWTH, N_BINS, wide_edges
 from twodiscs.sampling.initial_states import STATE_ROWS, draw_states, start_sampler
 from twodiscs.sampling.many import many_initial_states
 from twodiscs.sampling.streams import open_stream
-from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import density_at_zero
 
 
@@ -32,7 +31,7 @@ from twodiscs.theory.laws import density_at_zero
 def test_hop_intervals_have_their_exact_mean_and_density_at_zero(event, side, scene):
     """p(0⁺) = 3√2 / (16 (side − 2r)). In a field horizontal hops have separate starts."""
     found = runs.IntervalsRun(scene, event, 1_000_000, 10).run()
-    assert abs(found.mean - mean_times(scene)[event]) <= 5 * found.stderr
+    assert abs(found.mean - td.mean_times(scene)[f"{event}_time"]) <= 5 * found.stderr
     assert sum(found.equal.counts) + found.overflow == found.intervals >= 1_000_000
     width, n = found.bin_width, found.intervals
     assert math.frexp(width)[0] == 0.5  # a power of two

@@ -11,7 +11,6 @@ from collections import Counter
 from dataclasses import replace
 
 import effect_scenes
-import mpmath
 import numpy as np
 import pytest
 from effect_scenes import exchanged
@@ -194,10 +193,10 @@ def test_time_of_fall(position, velocity, field):
         left = v * v - 2 * g * (mpf(0.5) - y)
         assume(abs(left) > 1e-12 * v * v)
         if v > 0 and left > 0:
-            true = (v - mpmath.sqrt(left)) / g
+            true = (v - mp.sqrt(left)) / g
         else:
             left = v * v + 2 * g * (y + mpf(0.5))
-            true = (v + mpmath.sqrt(left)) / g
+            true = (v + mp.sqrt(left)) / g
         slope = abs(v - g * true)
         terms = abs(y) + mpf(0.5) + abs(v * true) + g * true**2
         bound = 8 * EPS * (true + terms / slope)

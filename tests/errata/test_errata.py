@@ -19,7 +19,6 @@ from twodiscs_paper import reference
 from twodiscs_paper.errata import measure as errata
 from twodiscs_paper.errata.statements import LIMITS, NUMERATOR, REGIMES, STATEMENTS
 from twodiscs_paper.errata.study import ErrataTable
-from twodiscs_paper.reference import MpScene, mean_time
 
 WRONG = {
     "axis of the cylinder", "volumewhd", "factor of 2 or 4", "VolumenCasoFeo", "eq:surface-area",
@@ -140,6 +139,6 @@ def test_the_correction_is_right(label):
 
 
 def test_the_time_left_in_long_boxes():
-    q = MpScene(mpf(3), mpf(1), mpf(1) / 2 - mpf("1e-30"))
+    q = reference.MpScene(mpf(3), mpf(1), mpf(1) / 2 - mpf("1e-30"))
     limit = value(formulas_of("collision time goes to zero")[1], q)
-    assert abs(mean_time("disc_collision", q) / limit - 1) < 1e-20
+    assert abs(reference.mean_time("disc_collision", q) / limit - 1) < 1e-20

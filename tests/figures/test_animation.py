@@ -17,12 +17,11 @@ from PIL import Image, ImageSequence
 import twodiscs as td
 from twodiscs.analysis.tables import TrajectoryTable
 from twodiscs.figures import animation, style
-from twodiscs.figures.animation import FRAMES_AFTER, MARKED_FRAMES
 
 BOX, RADIUS = td.Box(1.5, 1.0), 0.24
 
 #: Frames on either side of a hop in a file: a few more than those with its sign.
-FEW = MARKED_FRAMES + 4
+FEW = animation.MARKED_FRAMES + 4
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +75,7 @@ TWO = [(3.0, "vertical_hop"), (4.0, "vertical_hop")]
         # Many discs are shown from the start, for as long as a hop of two.
         (at((300.0, "vertical_hop")), 3, None, 0.0, range(171)),
         # Hops that are never alone, and a trajectory that is too short.
-        (at(*TWO), 2, "vertical_hop", 3.0, range(4 + FRAMES_AFTER)),
+        (at(*TWO), 2, "vertical_hop", 3.0, range(4 + animation.FRAMES_AFTER)),
         (at((3.0, "disc_collision"), end=9.5), 2, None, 0.0, range(10)),
     ],
 )  # fmt: skip
@@ -117,7 +116,7 @@ def test_the_hop_is_a_frame_and_the_only_one_that_stops(rows, tmp_path, monkeypa
     assert shown == [*([50] * FEW), 1500, *([50] * (FEW - 1)), 1000]  # milliseconds
     orange = np.array([0xE6, 0x9F, 0x00])
     marked = [k for k, (_, pixels) in enumerate(frames) if (pixels == orange).all(2).any()]
-    assert marked == list(range(FEW, FEW + MARKED_FRAMES))
+    assert marked == list(range(FEW, FEW + animation.MARKED_FRAMES))
 
 
 #: Paths that are straight, that bend and go on beyond the box, and of discs that turn.

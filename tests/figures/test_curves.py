@@ -8,14 +8,13 @@ import pytest
 from figure_cases import BOXES, PAPER
 
 from twodiscs.figures import curves
-from twodiscs.figures.curves import limits
 from twodiscs.figures.scene_figures import FIGURES
 from twodiscs.model.scene import Box
 
 
 @pytest.mark.parametrize("box", BOXES.values(), ids=BOXES)
 def test_curves_approach_every_limit_from_both_sides(box):
-    ends = [0, *(radius for radius, _ in limits(box))]
+    ends = [0, *(radius for radius, _ in curves.limits(box))]
     for branch, (low, high) in zip(curves.branches(box), pairwise(ends), strict=True):
         assert (np.diff(branch) > 0).all()
         assert low < branch[0]
@@ -62,7 +61,7 @@ def test_curves_break_where_times_jump():
 )
 def test_limits_have_their_radii_and_names(effects, expected):
     box = Box(**{"width": 1.5, "height": 1.0} | effects)
-    marked = limits(box)
+    marked = curves.limits(box)
     texts = " ".join(name for _, name in marked)
     caption = FIGURES["volume"].caption(box)
     assert {*re.findall(r"r_(\w+)", caption)} == {*re.findall(r"r_{\\mathrm{(\w+)", texts)}

@@ -13,11 +13,10 @@ from figure_cases import BOXES, OTHERS, PAPER, bars, draw, points, tables_of, un
 from matplotlib.legend import Legend
 from matplotlib.markers import CARETUPBASE
 
+from twodiscs import EVENTS, Box
 from twodiscs.analysis.tables import row_quantity
 from twodiscs.figures import curves, panels, radius, style
 from twodiscs.figures.scene_figures import FIGURES
-from twodiscs.model.events import EVENTS
-from twodiscs.model.scene import Box
 from twodiscs.theory import exact, virial
 from twodiscs.theory.laws import small_radius_time
 from twodiscs_paper.studies.thresholds.measure import leading_law

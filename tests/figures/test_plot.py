@@ -17,7 +17,6 @@ from matplotlib.image import imread
 import twodiscs as td
 from twodiscs.figures import curves, style
 from twodiscs.figures.draw import BOX_DRAWINGS, TABLE_FIGURES
-from twodiscs.figures.style import EVENT_LOOKS
 
 HOPS, COLLISIONS = "vertical_hop", "disc_collision"
 RADII = (0.1, 0.2, 0.24)
@@ -46,14 +45,14 @@ def test_all_events_of_a_scan_are_drawn_with_their_errors():
     main, lower = figure.axes
     assert [axes.get_label() for axes in figure.axes] == ["main", "residuals"]
     for event in (HOPS, COLLISIONS):
-        look = EVENT_LOOKS[event]
+        look = style.EVENT_LOOKS[event]
         np.testing.assert_allclose(bars(main, *look), due_bars(found, event), rtol=1e-9)
         z = {(row["radius"], row["z"]) for one in found for row in of(one.rows, event=event)}
         assert z <= points(lower, *look)
         assert len(z) == len(RADII)
     both = td.plot([scan(HOPS), scan(COLLISIONS)]).axes[0]
     for event in (HOPS, COLLISIONS):
-        assert bars(both, *EVENT_LOOKS[event]) == bars(main, *EVENT_LOOKS[event])
+        assert bars(both, *style.EVENT_LOOKS[event]) == bars(main, *style.EVENT_LOOKS[event])
 
 
 def test_a_warning_names_what_is_not_drawn():
@@ -77,7 +76,7 @@ def test_two_boxes_are_drawn_in_axes_of_the_user(tmp_path):
     td.plot(two, tmp_path / "two.pdf", ax=axes)
     assert (tmp_path / "two.pdf").stat().st_size > 5000
     assert axes.get_ylim()[0] <= low[0] < low[1] <= axes.get_ylim()[1]
-    for found, look in zip((one, two), EVENT_LOOKS.values(), strict=False):
+    for found, look in zip((one, two), style.EVENT_LOOKS.values(), strict=False):
         np.testing.assert_allclose(bars(axes, *look), due_bars(found, HOPS), rtol=1e-9)
         exact = curves.exact_curves(found[0].scene.box)[1][f"{HOPS}_time"]
         drawn = [line.get_ydata() for line in axes.lines if line.get_color() == look[0]]
@@ -92,7 +91,7 @@ def test_what_a_transmission_leaves_falls_at_twice_its_rate():
     known = frame["stderr"].notna()
     assert 0 < known.sum() < len(frame)
     due = frame.loc[known, ["time", "kappa", "stderr"]]
-    np.testing.assert_allclose(bars(axes, *EVENT_LOOKS["horizontal_hop"]), due, rtol=1e-9)
+    np.testing.assert_allclose(bars(axes, *style.EVENT_LOOKS["horizontal_hop"]), due, rtol=1e-9)
     (crosses,) = (line.get_xydata() for line in axes.lines if line.get_marker() == "x")
     np.testing.assert_allclose(crosses, frame.loc[~known, ["time", "kappa"]], rtol=1e-12)
     (times, values), *_ = (line.get_data() for line in axes.lines if "clusters" in line.get_label())

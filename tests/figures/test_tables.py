@@ -17,10 +17,7 @@ from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.dynamics.transmission import box_time
 from twodiscs.figures import curves, style
 from twodiscs.figures.scene_figures import FIGURES
-from twodiscs.figures.style import EVENT_LOOKS
 from twodiscs.model.events import HOPS, SHELL_EVENTS
-from twodiscs.model.scene import Box
-from twodiscs.theory import exact
 from twodiscs_paper.catalogue import STUDY_FIGURES, TABLES, read_table
 from twodiscs_paper.draw import DRAW
 from twodiscs_paper.studies.effects import figure as effects
@@ -92,7 +89,7 @@ def cases():
         yield "tails", "ratio" if law else "exponential", look, due
     rows = [row for row in select(table("more_discs"), periodic=None) if row["dynamics"]]
     for radius in {row["radius"] for row in rows}:
-        for event, look in EVENT_LOOKS.items():
+        for event, look in style.EVENT_LOOKS.items():
             due = []
             for row in select(rows, radius=radius, event=event):
                 n = row["discs"]
@@ -227,7 +224,7 @@ def unit(row):
 
 def threshold_cases():
     for event in SHELL_EVENTS:
-        law, look = leading_law(PAPER, event), EVENT_LOOKS[event]
+        law, look = leading_law(PAPER, event), style.EVENT_LOOKS[event]
         rows = near(PAPER, law, select(table("mean_times"), event=event)) if law else []
         places = [1 - row["radius"] / law.limit for row in rows]
         if event in HOPS:
@@ -294,7 +291,7 @@ def test_a_table_without_a_figure_or_alone_is_one_sentence(tmp_path):
 
 def test_a_study_whose_hops_are_rare_or_do_not_end_has_a_figure():
     """Without rows it names the box, or shows the long run in the box of this."""
-    box, tables = Box(1.0, 3.0), {"passages": [], "kept": long_run("passages")}
+    box, tables = td.Box(1.0, 3.0), {"passages": [], "kept": long_run("passages")}
     rates, _ = DRAW["distributions"](box, {"distributions": []}).axes
     assert rates.get_title("left").endswith(r"1\times3$: hops are too rare to record intervals")
     assert r"1.5\times1" in DRAW["friction"](box, tables).axes[0].get_title("left")
@@ -460,7 +457,7 @@ def test_the_panels_of_stability_of_runs_are_those_of_the_table():
         assert {x for x, _ in points(axes["b"], *look)} == due != set()
     extremes = select(rows, part="extremes")
     places = [*dict.fromkeys(row["case"] for row in extremes)]
-    for event, look in EVENT_LOOKS.items():
+    for event, look in style.EVENT_LOOKS.items():
         own = [row for row in select(extremes, quantity=f"{event}_time") if row["z"] is not None]
         due = {(row["z"], places.index(row["case"])) for row in own}
         assert points(axes["d"], *look) == due != set()
@@ -493,7 +490,7 @@ def test_tails_are_those_of_the_table_with_their_laws():
 
 def test_curves_of_thresholds_are_exact_and_crosses_are_first_passages():
     hops, ratios = drawn("thresholds").values()
-    for event, (colour, _) in EVENT_LOOKS.items():
+    for event, (colour, _) in style.EVENT_LOOKS.items():
         law = leading_law(PAPER, event) if event in SHELL_EVENTS else None
         if law is None:
             continue
@@ -501,7 +498,7 @@ def test_curves_of_thresholds_are_exact_and_crosses_are_first_passages():
             lines = [line for line in axes.lines if line.get_color() == colour]
             curve = max(lines, key=lambda n: (n.get_linestyle() == "-", len(n.get_xdata())))
             radii = law.limit * (1 - np.array(curve.get_xdata()))
-            due = [exact.mean_times(PAPER.scene(radius))[event] for radius in radii]
+            due = [td.mean_times(PAPER.scene(radius))[f"{event}_time"] for radius in radii]
             unit = law(radii) if axes is ratios else 1
             np.testing.assert_allclose(curve.get_ydata(), np.divide(due, unit), rtol=1e-9)
         if event in HOPS:

@@ -11,10 +11,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from twodiscs.model.checks import InputError
-from twodiscs.model.effects import EFFECTS as DECLARED
+from twodiscs import EFFECTS as DECLARED
+from twodiscs import Box, InputError, Scene
 from twodiscs.model.events import EVENTS, HOPS
-from twodiscs.model.scene import Box, Scene
 from twodiscs.model.seeds import key, seed_text, stream_seed
 from twodiscs_paper.configuration.radii import even_radii, radii
 

@@ -10,9 +10,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from twodiscs import EFFECTS, Box, Scene
 from twodiscs.model import checks
-from twodiscs.model.effects import EFFECTS
-from twodiscs.model.scene import Box, Scene
 from twodiscs.model.seeds import stream_seed
 
 

@@ -13,7 +13,6 @@ from unittest.mock import Mock
 import pytest
 from commands import python
 
-import twodiscs
 from twodiscs.dynamics import law
 from twodiscs.sampling import jit
 
@@ -36,7 +35,7 @@ def test_an_edit_of_what_a_kernel_imports_changes_the_result(tmp_path):
     """
     sources, cache = tmp_path / "twodiscs", tmp_path / "cache"
     ignore = shutil.ignore_patterns("__pycache__")
-    shutil.copytree(Path(twodiscs.__file__).parent, sources, ignore=ignore)
+    shutil.copytree(Path(law.__file__).parents[1], sources, ignore=ignore)
     environment = os.environ | {
         "PYTHONPATH": str(tmp_path),
         "NUMBA_CACHE_DIR": str(cache),

@@ -3,8 +3,6 @@
 Without these tests a shell could be hit with another probability than its exact expectation.
 """
 
-import math
-
 import numpy as np
 import pytest
 from effect_scenes import ALL, PAPER, SCENES, exchanged
@@ -110,7 +108,7 @@ def test_samples_have_the_generator_of_its_authors():
     )
     distance, walls = np.hypot(x1 - x2, y1 - y2), ranges / 2 - [x1, y1]
     free = distance >= PAPER.contact_distance
-    pairs = np.abs([y1 - y2, x1 - x2, distance - PAPER.contact_distance]) / math.sqrt(2)
+    pairs = np.abs([y1 - y2, x1 - x2, distance - PAPER.contact_distance]) / np.sqrt(2)
     depths = dict(zip(names, [*pairs, *walls], strict=True))
     sets = {name: free & (depths[name] <= point.quantities[name].epsilon) for name in names}
     hits = {name: np.count_nonzero(inside) for name, inside in ({"volume": free} | sets).items()}

@@ -19,7 +19,6 @@ import twodiscs as td
 from twodiscs.dynamics import runs
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.two import event_counts
-from twodiscs.model.events import EVENTS
 from twodiscs.points.base import added, reached
 from twodiscs.sampling import montecarlo, rounds
 from twodiscs.sampling.many import insertions
@@ -218,7 +217,7 @@ def test_counts_in_pieces_are_those_of_their_blocks_and_reach_what_is_asked():
     blocks = found[0].replicas // REPLICAS
     assert blocks == run.components["all"].planned
     sums, _ = event_counts.run_blocks(scene, [*TARGET], 3, 0, blocks, found[0].duration)
-    assert [*found[0].counts.values()] == [sums[EVENTS.index(event)] for event in found[0].counts]
+    assert [*found[0].counts.values()] == [sums[td.EVENTS.index(e)] for e in found[0].counts]
     assert all_reached(found[0])
     for hop, one in found[0].strips.items():
         assert one.estimate().relative_stderr <= TARGET[hop]

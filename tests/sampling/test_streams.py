@@ -3,8 +3,6 @@
 Without these tests two streams could be the same, or a draw have another law.
 """
 
-import math
-
 import numpy as np
 from sampling.uniformity import assert_uniform
 
@@ -16,7 +14,7 @@ def test_exponential_numbers():
     values = np.array([streams.exponential(state) for _ in range(50_000)])
     assert_uniform(np.exp(-values))
     # They do not know of one another.
-    assert abs(np.corrcoef(values[1:], values[:-1])[0, 1]) <= 5 / math.sqrt(values.size)
+    assert abs(np.corrcoef(values[1:], values[:-1])[0, 1]) <= 5 / np.sqrt(values.size)
 
 
 def test_streams_differ_by_seed_and_by_block():
@@ -24,7 +22,7 @@ def test_streams_differ_by_seed_and_by_block():
     assert len(set(states)) == len(states)
     bits = np.array(states, dtype=np.uint64).view(np.uint8)
     ones = np.unpackbits(bits).mean()
-    assert abs(ones - 0.5) <= 5 / (2 * math.sqrt(bits.size * 8))
+    assert abs(ones - 0.5) <= 5 / (2 * np.sqrt(bits.size * 8))
 
 
 def test_the_generators_are_those_of_their_authors():

@@ -17,7 +17,6 @@ from figure_cases import points, unclear
 
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.figures import style
-from twodiscs.figures.style import EVENT_LOOKS
 from twodiscs.model.events import EVENTS
 from twodiscs.sampling.conditioned import conditioned_sampler
 from twodiscs_paper import benchmark
@@ -285,4 +284,4 @@ def test_c_by_distance_is_drawn_for_each_method_and_quantity(rows, panels):
         for quantity in {row["quantity"] for row in own}:
             due = {(row["distance"], row["c"]) for row in of(own, quantity=quantity)}
             assert points(panels[panel], *looks[quantity]) == due
-    assert looks["top_wall_area"] == looks["top_wall_time"] == EVENT_LOOKS["top_wall"]
+    assert looks["top_wall_area"] == looks["top_wall_time"] == style.EVENT_LOOKS["top_wall"]

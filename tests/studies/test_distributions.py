@@ -7,7 +7,6 @@ their scores are turned into normal deviates; with some 150 comparisons a false 
 than 1e-4 of the seeds.
 """
 
-import math
 from itertools import pairwise
 
 import mpmath
@@ -110,7 +109,7 @@ def test_what_is_measured_meets_what_is_exact(box, radius, hop):
         assert zero["reference"] == laws.density_at_zero(scene, hop)
         assert abs(zero["z"]) < 5
     passage, cut = by_name["first_passage", True], by_name["first_passage", False]
-    off = (cut["estimate"] - cut["reference"]) / math.hypot(cut["stderr"], cut["reference_stderr"])
+    off = (cut["estimate"] - cut["reference"]) / np.hypot(cut["stderr"], cut["reference_stderr"])
     assert abs(cut["z"]) < 5
     assert cut["z"] == pytest.approx(student_deviate(off, distributions.INTERVAL_BLOCKS - 1))
     assert cut["estimate"] <= passage["estimate"]
@@ -184,6 +183,6 @@ def test_late_hazards_are_hops_over_their_time_at_risk():
     hops, risk = 175, 150.0
     assert (falling["first"], falling["last"], falling["count"]) == (6.0, 9.0, hops)
     assert falling["estimate"] == pytest.approx(hops / risk)
-    assert falling["stderr"] == pytest.approx(math.sqrt(hops) / risk)
+    assert falling["stderr"] == pytest.approx(np.sqrt(hops) / risk)
     (plateau,) = distributions.shape(case("vertical_hop", 0.1, 0.5, 0.5, FALLING))
     assert (plateau["estimate"], plateau["last"]) == (1.6, 10.0)

@@ -9,8 +9,7 @@ import math
 import pytest
 from theory.antiderivatives import reference, reference_times, relative_error
 
-from twodiscs.model.events import EVENTS
-from twodiscs.model.scene import Box, Scene
+from twodiscs import EVENTS, Box, Scene
 from twodiscs_paper.reference import exact_numbers
 
 BOXES = [(1.5, 1.0), (1.0, 1.0), (2.0, 1.0), (1.0, 2.0), (3.0, 1.0), (1.0, 1.7), (1e6, 1), (1, 1e6)]
