@@ -37,10 +37,7 @@ SCENES = effect_scenes.SCENES | {
 }
 
 
-@compiled
-def fall(position, velocity, limit, field):
-    return fall_quotient(position, velocity, limit, field)
-
+fall = compiled(lambda position, velocity, *other: fall_quotient(position, velocity, *other))
 
 #: Python runs these two, and their inner functions are compiled: a whole law takes seconds.
 next_event, after_event = event_law.next_event.py_func, event_law.after_event.py_func
