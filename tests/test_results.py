@@ -120,20 +120,6 @@ def test_results_go_on_and_come_back(name, tmp_path, monkeypatch):
     assert json.dumps(less.to_dict()) == before
 
 
-@pytest.mark.parametrize(
-    ("make", "name"),
-    [
-        (lambda: td.simulate(PAPER, duration=1)["any_wall_time"], "stderr"),
-        (lambda: td.cost(PAPER, 0.1).prices[0], "seconds"),
-        (lambda: td.observe(PAPER, seen, [0], 1), "mean"),
-        (lambda: td.transmission(NARROW, "horizontal_hop", 1), "coefficient"),
-    ],
-)
-def test_what_was_measured_cannot_be_set(make, name):
-    with pytest.raises(AttributeError, match="cannot assign to field"):
-        setattr(make(), name, 0.0)
-
-
 def emptied(plain):
     """Empty a dict or a list and all that is in it, as a careless reader may."""
     for child in plain.values() if isinstance(plain, dict) else plain:
