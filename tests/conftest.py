@@ -1,7 +1,9 @@
-"""The settings of all tests: threads, garbage collection, order of the files."""
+"""The settings of all tests: threads, garbage collection, order of the files; pilots of runs."""
 
 import gc
 import os
+
+import pytest
 
 # Threads of OpenBLAS wait for each other by spinning: small products take ten times as long where
 # other processes have work for the cores. Only modules that are imported later use the setting.
@@ -25,3 +27,10 @@ def pytest_collection_modifyitems(items):
     built = {item.path for item in items if "complete" in item.fixturenames}
     first = min(built, key=lambda file: (file.stem != "test_build", file), default=None)
     items.sort(key=lambda item: item.path != first)
+
+
+@pytest.fixture
+def blocks(monkeypatch):
+    """Let a pilot have 32 blocks, the first round of a run, each of a millisecond."""
+    for module in ("twodiscs.measure.cost", "twodiscs_paper.pipeline.forecast"):
+        monkeypatch.setattr(f"{module}.timed", lambda work, *_: (work(0, 32), 32, 1e-3))

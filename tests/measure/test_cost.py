@@ -31,16 +31,6 @@ SCENE = td.Scene(1.5, 1.0, 0.2)
 NEAR = SCENE.with_radius(0.2499)
 
 
-@pytest.fixture
-def blocks(monkeypatch):
-    """Let a pilot have 32 blocks, the first round of a run, each of a millisecond."""
-
-    def timed(work, seconds, fewest=1):
-        return work(0, 32), 32, 1e-3
-
-    monkeypatch.setattr(cost, "timed", timed)
-
-
 def new_run(scene, error, budget=None):
     """Return the run of ``simulate(scene, error, budget=budget)``."""
     target = dict.fromkeys(scene.events, error)

@@ -4,7 +4,6 @@ Without these tests a job could be killed at its limit, or blocks be counted twi
 """
 
 from dataclasses import replace
-from itertools import pairwise
 
 import pytest
 from factory import write_rows
@@ -68,9 +67,8 @@ def test_shards_cover_all_blocks_once(stage):
     assert {component for component, *_ in shards} == {*components}
     for component, run in components.items():
         ranges = sorted((first, stop) for name, first, stop in shards if name == component)
-        assert ranges[0][0] == 0
-        assert ranges[-1][1] == run.planned
-        assert all(a[1] == b[0] for a, b in pairwise(ranges))
+        starts, stops = zip(*ranges, strict=True)
+        assert (*starts, run.planned) == (0, *stops)
         most = max(stop - first for first, stop in ranges)
         assert most == 1 or most * run.block_events * run.cost_ratio <= request.shard_events
 
@@ -97,15 +95,6 @@ def test_the_limit_of_a_study_grows_with_what_is_asked_of_it():
 
 
 # Errors of a forecast and of a run ----------------------------------------------------------------
-
-
-@pytest.fixture
-def blocks(monkeypatch):
-    """Let a pilot have 32 blocks, each of a millisecond."""
-    for module in ("twodiscs.measure.cost", "twodiscs_paper.pipeline.forecast"):
-        monkeypatch.setattr(
-            f"{module}.timed", lambda work, seconds, fewest=1: (work(0, 32), 32, 1e-3)
-        )
 
 
 @pytest.mark.parametrize("radius", [0.01, 0.2, 0.24, 0.3, 0.38])
