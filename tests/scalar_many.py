@@ -21,11 +21,7 @@ LOOK_AGAIN, END = -1, 5
 @compiled
 def time_to_wall(position, velocity, half):
     """Return the time to the wall ahead."""
-    if velocity > 0:
-        return (half - position) / velocity
-    if velocity < 0:
-        return (-half - position) / velocity
-    return math.inf
+    return (math.copysign(half, velocity) - position) / velocity if velocity != 0 else math.inf
 
 
 @compiled
@@ -71,12 +67,10 @@ def first_event(discs, box, most):
         if 0 < ring < 4 * best:
             best, kind = ring / 4, LOOK_AGAIN
     for i in range(x.size):
-        t = time_to_wall(x[i], u[i], half_x) if ring_x == 0 else math.inf
-        if t < best:
-            best, kind, first = t, 3, i
-        t = time_to_wall(y[i], v[i], half_y) if ring_y == 0 else math.inf
-        if t < best:
-            best, kind, first = t, 4, i
+        for wall, at, way, half, ring in ((3, x, u, half_x, ring_x), (4, y, v, half_y, ring_y)):
+            t = time_to_wall(at[i], way[i], half) if ring == 0 else math.inf
+            if t < best:
+                best, kind, first = t, wall, i
         for j in range(i):
             near_x = ring_x * round((x[i] - x[j]) / ring_x) if ring_x > 0 else 0.0
             near_y = ring_y * round((y[i] - y[j]) / ring_y) if ring_y > 0 else 0.0
@@ -96,9 +90,8 @@ def advance(discs, event, kappa):
     x, y, u, v, s = discs
     time, kind, i, j, shift = event
     jx = jy = turn = 0.0
-    for k in range(x.size):
-        x[k] += time * u[k]
-        y[k] += time * v[k]
+    x += time * u
+    y += time * v
     if kind == 2:
         dx, dy = x[i] - x[j] - shift[0], y[i] - y[j] - shift[1]
         distance = math.hypot(dx, dy)
@@ -161,10 +154,8 @@ def put_velocities(u, v, s, normal, kappa, box, flux):
         u[i] += (0.0 if i > 1 else (1 - 2 * i) * math.copysign(1.0, apart)) * change
         s[i] = normal[2 * n + i] / math.sqrt(kappa) if kappa > 0 else 0.0
         square += u[i] ** 2 + v[i] ** 2 + kappa * s[i] ** 2
-    for i in range(n):
-        u[i] /= math.sqrt(square)
-        v[i] /= math.sqrt(square)
-        s[i] /= math.sqrt(square)
+    for part in (u, v, s):
+        part /= math.sqrt(square)
 
 
 def constants(scene):

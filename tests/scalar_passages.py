@@ -82,8 +82,7 @@ def fill(seed, found, sizes, n, box, kappa, times, gap, mean):
     for k in range(sizes.size):
         on_surface(discs, box, kappa)
         for part in range(5):
-            for i in range(n):
-                past[part][i] = discs[part][i] * (1 if part < 2 else -1)
+            past[part][:] = discs[part] * (1 if part < 2 else -1)
         sizes[k] = 1 + follow(discs, box, kappa, times, found[k], gap, mean)
         if gap > 0:
             sizes[k] += follow(past, box, kappa, times, found[k], gap, mean)
