@@ -80,10 +80,8 @@ def test_binomial_z_is_normal_where_hits_and_misses_are_many():
 
 
 def test_a_probability_of_zero_or_one_leaves_nothing_to_chance():
-    assert scores.binomial_z(0, 100, 0.0) == (0.0, "certain")
-    assert scores.binomial_z(1, 100, 0.0) == (math.inf, "certain")
-    assert scores.binomial_z(100, 100, 1.0)[0] == 0
-    assert scores.binomial_z(99, 100, 1.0) == (-math.inf, "certain")
+    for hits, share, z in ((0, 0.0, 0), (1, 0.0, math.inf), (100, 1.0, 0), (99, 1.0, -math.inf)):
+        assert scores.binomial_z(hits, 100, share) == (z, "certain")
     assert scores.impossible_z(1) == (-math.inf, "certain")  # its time is too short
 
 
