@@ -212,7 +212,6 @@ def test_intervals_have_a_mean_and_a_density_at_zero(intervals):
     # The curvature of the density over two bins of τ/16 is below a hundredth of it.
     assert abs(zero.value - zero.exact) < 5 * zero.stderr + 0.01 * zero.exact
     assert math.isclose(zero.exact, 3 * math.sqrt(2) / 16 / 0.6)
-    assert sum(intervals.counts) + intervals.overflow == intervals.intervals
     frame = intervals.frame()
     assert len(intervals.density) == len(intervals.edges) - 1
     assert [*frame["count"]] == intervals.counts

@@ -167,10 +167,8 @@ def test_the_widest_strip_is_within_the_smaller_disc(ratio, hop):
 
 
 def test_only_rare_hops_of_a_neck_have_strips():
-    assert strip.rare_hops(PAPER.with_radius(0.1)) == ()
-    assert strip.rare_hops(PAPER.with_radius(0.24)) == ("horizontal_hop",)
-    assert strip.rare_hops(PAPER.with_radius(0.3)) == ()
-    assert strip.rare_hops(PAPER.with_radius(0.374)) == ("vertical_hop",)
+    for radius, hops in ((0.1, ()), (0.24, HOPS[1:]), (0.3, ()), (0.374, HOPS[:1])):
+        assert strip.rare_hops(PAPER.with_radius(radius)) == hops
     # Walls are hit often in a low box, but its discs pass freely: in a straight flight.
     assert strip.rare_hops(Scene(100.0, 1.0, 0.01)) == ()
     for scene, hop in NECKS.values():

@@ -97,8 +97,7 @@ def test_the_leading_law_is_that_of_the_threshold_in_powers(box, event):
         assert ends[1] == pytest.approx(ends[0], rel=1e-4)
         assert limit == box.largest_radius
         return
-    assert law.limit == limit
-    assert law.power == (-2 if limit < box.largest_radius else 1)
+    assert (law.limit, law.power) == (limit, -2 if limit < box.largest_radius else 1)
     for distance in (1e-4, 1e-6, 1e-8):
         scene = box.scene(limit * (1 - distance))
         expected = threshold_time(scene, event)
