@@ -6,6 +6,7 @@ cover it.
 
 import math
 from itertools import product
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -225,16 +226,12 @@ def test_a_budget_is_one_of_events_or_of_64_proposals_for_each(scene, hop):
 
 def test_every_rare_hop_has_random_numbers_of_its_own(monkeypatch):
     """In a square both hops are rare together, and the same numbers would give the same counts."""
-    streams = {}
-
-    def recorded(scene, hop, band, seed, first, stop):
-        streams[scene.radius, hop, root] = seed
-        return np.zeros(2), 0
-
-    monkeypatch.setattr(strip, "run_blocks", recorded)
+    run_blocks = Mock(return_value=(np.zeros(2), 0))
+    monkeypatch.setattr(strip, "run_blocks", run_blocks)
     for radius, root in product((0.2499, 0.24999), (1, 2)):
         run = runs.DynamicsRun(Scene(1.0, 1.0, radius), dict.fromkeys(HOPS, 0.1), 10**6, root)
         assert {*HOPS} < {*run.components}
         for hop in HOPS:
             run.components[hop].work(0, 1)
-    assert len({*streams.values(), 1, 2}) == len(streams) + 2 == 10
+    seeds = [one.args[3] for one in run_blocks.mock_calls]
+    assert len({*seeds, 1, 2}) == len(seeds) + 2 == 10
