@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 from twodiscs.model.scene import Scene
 
 #: Without effects.
@@ -38,3 +40,14 @@ def exchanged(scene):
     names = {"radius": scene.radii[1], "radius_ratio": 1 / ratio, "mass_ratio": 1 / mass}
     names |= {"field": mass * scene.field, "friction": mass**0.5 * scene.friction}
     return replace(scene, **names), mass**0.5
+
+
+def distance_square(scene, places):
+    """Return |Δ|² to the nearest image; ``places`` are {axis: (q1, q2)}."""
+    total = 0.0
+    for axis, (q1, q2) in places.items():
+        gap = q1 - q2
+        if axis in scene.periodic:
+            gap = gap - scene.side(axis) * np.round(gap / scene.side(axis))
+        total = total + gap**2
+    return total

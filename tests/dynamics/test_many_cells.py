@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from effect_scenes import distance_square
 from exact_motion import path_events
 from marks import slow
 
@@ -263,10 +264,8 @@ def check_state(scene, state):
     """Discs do not overlap and are between the walls; energy and momenta are what they were."""
     x, y, u, v, *s = np.reshape(state, (-1, scene.discs))
     i, j = np.array([*itertools.combinations(range(scene.discs), 2)]).T
-    apart = {"x": x[i] - x[j], "y": y[i] - y[j]}
-    for axis in scene.periodic:
-        apart[axis] -= scene.side(axis) * np.round(apart[axis] / scene.side(axis))
-    gap = np.min(np.hypot(*apart.values())) - scene.contact_distance
+    square = distance_square(scene, {"x": (x[i], x[j]), "y": (y[i], y[j])})
+    gap = np.sqrt(np.min(square)) - scene.contact_distance
     assert gap >= -1e-13 * max(scene.width, scene.height)
     assert "x" in scene.periodic or np.max(np.abs(x)) <= scene.range_x / 2 * (1 + 1e-15)
     assert "y" in scene.periodic or np.max(np.abs(y)) <= scene.range_y / 2 * (1 + 1e-15)

@@ -15,6 +15,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from effect_scenes import distance_square
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse import coo_array
@@ -86,11 +87,7 @@ def grid(scene, axis, disc, cells=CELLS):
 
 def allowed(scene, x1, y1, x2, y2):
     """Say of centres, arrays that broadcast, whether the discs are apart and have energy."""
-    square = 0.0
-    for axis, gap in (("x", x1 - x2), ("y", y1 - y2)):
-        if axis in scene.periodic:
-            gap = gap - scene.side(axis) * np.round(gap / scene.side(axis))
-        square = square + gap**2
+    square = distance_square(scene, {"x": (x1, x2), "y": (y1, y2)})
     (r1, r2), (m1, m2) = scene.radii, scene.masses
     potential = scene.field * (m1 * (y1 - r1) + m2 * (y2 - r2))
     return (square >= scene.contact_distance**2 * (1 - 1e-12)) & (potential < ENERGY)

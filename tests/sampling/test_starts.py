@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 import pytest
-from effect_scenes import PAPER, SCENES
+from effect_scenes import PAPER, SCENES, distance_square
 from marks import slow
 from sampling import uniformity
 
@@ -33,17 +33,6 @@ STARTS = {
 
 
 # The law ----------------------------------------------------------------------------------------
-
-
-def distance_square(scene, places):
-    """Return |Δ|² to the nearest image; ``places`` are {axis: (q1, q2)}."""
-    total = 0.0
-    for axis, (q1, q2) in places.items():
-        d = np.abs(q1 - q2)
-        if axis in scene.periodic:
-            d = np.minimum(d, scene.side(axis) - d)
-        total = total + d**2
-    return total
 
 
 def rejected(scene, surface, n):
