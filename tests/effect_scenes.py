@@ -26,9 +26,7 @@ SCENES = {
 }
 
 #: Discs in the plane with all effects that go together; its kernels take longest to compile.
-ALL = Scene(
-    1.5, 1.0, 0.2, periodic="x", field=0.3, radius_ratio=1.2, mass_ratio=2.0, moment_of_inertia=0.4
-)
+ALL = replace(SCENES["channel"], field=0.3, radius_ratio=1.2, mass_ratio=2, moment_of_inertia=0.4)
 
 
 def exchanged(scene):

@@ -292,9 +292,7 @@ def dag(*targets, made=()):
     return SimpleNamespace(targetjobs=jobs, jobs=[SimpleNamespace(output=made)])
 
 
-def test_a_build_ends_with_what_is_older_than_its_configuration_or_not_reached(
-    tmp_path, monkeypatch
-):
+def test_a_build_ends_with_what_is_older_than_its_configuration_or_missed(tmp_path, monkeypatch):
     """The verdict of another build may be in the folder; test_build has one of its own."""
     passed, mine, other = (tmp_path / name for name in ("check.passed", "my.yaml", "other.yaml"))
     (tmp_path / "report.html").touch()

@@ -101,9 +101,8 @@ def cases():
     for k, scene in enumerate(dict.fromkeys(row["scene"] for row in rows)):
         for panel, event in zip("abc", effects.SHOWN_EVENTS, strict=False):
             own = select(rows, scene=scene, quantity=f"{event}_time")
-            due = [
-                symbol(r["radius"], r, 1 / r["plain"]) for r in own if r["stderr"] and r["plain"]
-            ]
+            own = [row for row in own if row["stderr"] and row["plain"]]
+            due = [symbol(row["radius"], row, 1 / row["plain"]) for row in own]
             yield "effects", panel, effects._look(k), due
     # Open and full symbols of one look are of crossings and of first passages.
     (path,) = STUDY_FIGURES["brownian"].long_runs.values()

@@ -122,11 +122,9 @@ def test_ten_times_the_accuracy_takes_a_hundred_times_as_long(blocks):
     found = td.cost(NEAR)
     assert found.seconds(1e-6) == pytest.approx(100 * found.seconds(1e-5))
     # All times take what the worst of those that share a run takes, and the strips beside it.
-    shared = [
-        p.c for p in found.prices if p.method == "dynamics" and "horizontal" not in p.quantity
-    ]
+    costs = [p.c for p in found.prices if p.method == "dynamics" and "horizontal" not in p.quantity]
     strips = found["horizontal_hop_time", "strips"].c
-    assert found.seconds(1e-5) == pytest.approx(ROUND_MARGIN * 1e10 * (max(shared) + strips))
+    assert found.seconds(1e-5) == pytest.approx(ROUND_MARGIN * 1e10 * (max(costs) + strips))
 
 
 def test_without_a_budget_a_run_has_a_day():
@@ -191,13 +189,9 @@ def test_a_sentence_says_what_was_not_reached(rows, said):
     found = shortfall([row("any_wall", None, "too-few", 0.01) | {"replicas": 50}], 10**9, 1e8)
     assert found.endswith("50 of the 100 replicas that an error needs. A budget of 3e8 is enough.")
     few = [row("any_wall", None, "too-few", 0.01) | {"replicas": 2048}]
-    for spent, begun in (
-        (9e8, "the budget of 1e9 events ended the"),
-        (1e8, "the run of 1e8 events"),
-    ):
-        assert shortfall(few, 10**9, spent).startswith(
-            f"You asked for an error of 0.01, but {begun}"
-        )
+    for used, said in ((9e8, "the budget of 1e9 events ended the"), (1e8, "the run of 1e8 events")):
+        found = shortfall(few, 10**9, used)
+        assert found.startswith(f"You asked for an error of 0.01, but {said}")
     found = shortfall([row("any_wall", 2e-5)], None)
     assert found.endswith(", but the limit of a day ended the run at 2e-5 (any_wall_time).")
 

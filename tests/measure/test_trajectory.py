@@ -76,10 +76,8 @@ def test_ase_reads_it(path, tmp_path):
     assert first.get_kinetic_energy() == pytest.approx(0.5) or scene.field
     assert second.info["Time"] == 2.5
     # A path goes on from the last frame, or from the same arrays with any energy.
-    arrays = (
-        second.positions[:, :axes],
-        second.get_velocities()[:, :axes] * (3 - 2 * bool(scene.field)),
-    )
+    faster = 1 if scene.field else 3
+    arrays = second.positions[:, :axes], faster * second.get_velocities()[:, :axes]
     del second.arrays["id"]
     ase.write(tmp_path / "b.xyz.gz", second, format="extxyz")  # to eight digits
     rounded = (tmp_path / "b.xyz.gz").rename(tmp_path / "B.XYZ.GZ")

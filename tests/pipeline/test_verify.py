@@ -58,9 +58,8 @@ def expected(results, tmp_path, monkeypatch):
     """The expected results, renewed from the results, with the table of a long run beside them."""
     folder, rows = tmp_path / "expected", [empty(GridTable, radius=0.125)]
     (tmp_path / "long_run").mkdir()
-    monkeypatch.setattr(
-        verify, "long_run_tables", lambda kept: [(kept / "grid.csv", GridTable, rows)]
-    )
+    table = GridTable, rows
+    monkeypatch.setattr(verify, "long_run_tables", lambda kept: [(kept / "grid.csv", *table)])
     write(folder / "gone" / "volume.csv", "of an earlier configuration\n")
     points = sorted((results / "small/points/dynamics").glob("*.json"))
     verify.renew(results, folder, [results / name for name in TABLES], points)

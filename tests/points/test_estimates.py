@@ -39,11 +39,9 @@ def test_combination_keeps_its_digits_where_terms_cancel():
 
 def sums_of(counts):
     """Return sums and products of counts by replica, {event: array}, in the order of EVENTS."""
-    names = [event for event in EVENTS if event in counts]
-    products = {
-        f"{a}*{b}": int(counts[a] @ counts[b]) for i, a in enumerate(names) for b in names[i:]
-    }
-    return {event: int(counts[event].sum()) for event in names}, products, 100
+    own = [event for event in EVENTS if event in counts]
+    products = {f"{a}*{b}": int(counts[a] @ counts[b]) for i, a in enumerate(own) for b in own[i:]}
+    return {event: int(counts[event].sum()) for event in own}, products, 100
 
 
 def test_a_count_is_a_sum_of_others_if_it_is_so_in_every_replica():

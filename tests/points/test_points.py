@@ -152,10 +152,8 @@ def test_the_area_of_all_walls_is_as_sure_as_that_of_the_rarer_wall():
     # If all hits are of both shells, they are those of one shell of twice the area.
     hits["right_wall_area"] = hits["top_wall_area"]
     point = replace(point, quantities=hits, right_and_top=50)
-    area = point.all_walls().estimate
-    assert area.relative_stderr == pytest.approx(
-        point.sampled("top_wall_area").estimate.relative_stderr
-    )
+    area, top = point.all_walls().estimate, point.sampled("top_wall_area").estimate
+    assert area.relative_stderr == pytest.approx(top.relative_stderr)
 
 
 PART = {"mean": 0.1 + 0.2, "sums": {(0, 1): [[2**62 + 1], [3]]}}

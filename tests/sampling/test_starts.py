@@ -40,10 +40,8 @@ def rejected(scene, surface, n):
     rng = np.random.default_rng(17)
     places, power = {}, scene.velocity_components / 2 - 1
     for axis in scene.axes:
-        half = [
-            scene.side(axis) / 2 - (0 if axis in scene.periodic else radius)
-            for radius in scene.radii
-        ]
+        beside = scene.radii if axis in scene.walled else (0, 0)
+        half = [scene.side(axis) / 2 - room for room in beside]
         places[axis] = np.array([rng.uniform(-h, h, n) for h in half])
         if axis == surface:
             places[axis][:] = rng.uniform(-min(half), min(half), n)

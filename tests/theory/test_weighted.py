@@ -125,16 +125,14 @@ def beyond(axes, square):
 
 def ring_separation(axes, square):
     """Return the integral of the densities of two axes along the circle."""
-    rho = mp.sqrt(square)
+    r = mp.sqrt(square)
     points = [k * mp.pi / 2 for k in range(5)]
     for kinks, turn in ((axes[0].kinks(), mpf(0)), (axes[1].kinks(), mp.pi / 2)):
         for k in kinks:
-            if abs(k) <= rho:
-                points += [(turn + sign * mp.acos(k / rho)) % (2 * mp.pi) for sign in (1, -1)]
+            if abs(k) <= r:
+                points += [(turn + sign * mp.acos(k / r)) % (2 * mp.pi) for sign in (1, -1)]
     one, two = axes
-    return integral(
-        lambda a: rho * one.density(rho * mp.cos(a)) * two.density(rho * mp.sin(a)), points
-    )
+    return integral(lambda a: r * one.density(r * mp.cos(a)) * two.density(r * mp.sin(a)), points)
 
 
 def reference(scene):

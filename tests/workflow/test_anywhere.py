@@ -103,9 +103,7 @@ def test_in_a_storage_it_makes_the_same_files(own, tmp_path):
 
 
 @pytest.mark.parametrize("more", ['config:\n        config["discs"]', ""])
-def test_as_a_module_it_plans_every_job_of_the_default_configuration(
-    unbuilt, planned, tmp_path, more
-):
+def test_a_module_plans_every_job_of_the_default_configuration(unbuilt, planned, tmp_path, more):
     place = Checkout(tmp_path, unbuilt)
     use(place, yaml.safe_load(unbuilt.configuration.read_text()), more)
     alone = [(f"discs_{rule}", wildcards) for rule, wildcards in planned]
