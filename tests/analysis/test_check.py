@@ -22,12 +22,9 @@ from twodiscs.theory import exact
 
 SAMPLES = 10**12  # at 0.36 a sample in 300 000 is a hit of a shell
 
-#: Walls that are hit as often as another one of their axis, in every replica.
-MIRRORED = [
-    wall
-    for i, wall in enumerate(WALLS)
-    if any(EVENT_AXES[wall] == EVENT_AXES[other] for other in WALLS[:i])
-]
+#: {axis: its first wall}; the others are hit as often as this one, in every replica.
+FIRST = {EVENT_AXES[wall]: wall for wall in reversed(WALLS)}
+MIRRORED = [wall for wall in WALLS if wall not in FIRST.values()]
 
 #: How many quantities have scores at several radii: volume, areas, times, intervals, the sum rule.
 SCORED = 3 + 2 * len(EVENTS)

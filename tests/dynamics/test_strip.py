@@ -149,10 +149,7 @@ def test_starts_in_a_strip_are_those_from_everywhere_that_are_in_it(scene, hop):
     drawn = np.zeros((STATE_ROWS, 40_000))
     draw_states(open_stream(np.uint64(6), 0), start_sampler(scene, hop, distance), drawn)
     assert np.max(np.abs(drawn[k] - drawn[k + 2])) <= distance
-    both = [
-        np.concatenate((one, one**2, [(one[0] - one[2]) ** 2, (one[1] - one[3]) ** 2]))
-        for one in (seen, drawn)
-    ]
+    both = [np.vstack((x, x**2, (x[0] - x[2]) ** 2, (x[1] - x[3]) ** 2)) for x in (seen, drawn)]
     found = ((x.mean(axis=1), x.std(axis=1) / math.sqrt(x.shape[1])) for x in both)
     means, errors = zip(*found, strict=True)
     assert np.all(np.abs(means[0] - means[1]) <= 5 * np.hypot(*errors) + 1e-15)

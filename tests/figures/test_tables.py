@@ -195,10 +195,8 @@ def long_file_cases():
             and (row["radius"] == 0.28 or row["distance"] > 0.1)
         ]
         yield "files", "moved", look, due
-    due = [
-        symbol(row["time"] / math.sqrt(3 * row["discs"]), row)
-        for row in select(moved, moment_of_inertia=0.5)
-    ]
+    rough = select(moved, moment_of_inertia=0.5)
+    due = [symbol(row["time"] / math.sqrt(3 * row["discs"]), row) for row in rough]
     yield "files", "moved", files.ROUGH_FILE, due
     kicked = [row for row in order if row["friction"]]
     for look, row in zip(files.COLLAPSE_LOOKS, kicked, strict=True):
@@ -464,10 +462,8 @@ def test_the_panels_of_stability_of_runs_are_those_of_the_table():
     radii = sorted({row["radius"] for row in returns})
     for radius, look in zip(radii, (*style.SERIES, (style.ORANGE, "v")), strict=True):
         (exponent,) = select(rows, radius=radius, quantity="exponent", case="separation")
-        due = {
-            (exponent["value"] * row["count"] / math.log(2), row["value"])
-            for row in select(returns, radius=radius)
-        }
+        own = select(returns, radius=radius)
+        due = {(exponent["value"] * row["count"] / math.log(2), row["value"]) for row in own}
         assert points(axes["c"], *look) == due
 
 

@@ -258,9 +258,8 @@ def test_a_run_has_its_first_round_whatever_is_asked_and_the_replicas_of_bursts(
     assert needed > 8
     # Initial states in a strip are in the neck, so it needs no others.
     pilot = pilot._replace(first_round=8, errors={"disc_collision": 0.01, "horizontal_hop": 0.01})
-    found = cost.blocks_wanted(
-        rough, {"all": pilot, "horizontal_hop": pilot}, dict.fromkeys(pilot.errors, 0.02)
-    )
+    pilots = {"all": pilot, "horizontal_hop": pilot}
+    found = cost.blocks_wanted(rough, pilots, dict.fromkeys(pilot.errors, 0.02))
     assert found == {"all": pytest.approx(needed), "horizontal_hop": 8}
 
 

@@ -50,9 +50,7 @@ def test_the_commit_is_that_of_the_sources_and_says_if_files_differ(repository, 
     assert unknown["commit"] is unknown["changed_since_the_commit"] is None
 
 
-def test_a_worktree_has_its_own_commit_whatever_repository_a_hook_is_about(
-    repository, tmp_path, monkeypatch
-):
+def test_a_worktree_has_its_own_commit_whatever_a_hook_is_about(repository, tmp_path, monkeypatch):
     git(repository, "worktree", "add", "-q", tmp_path / "other")
     (tmp_path / "other" / "paper.typ").write_text("two\n")
     git(tmp_path / "other", "commit", "-q", "-a", "-m", "Two")
