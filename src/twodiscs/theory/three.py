@@ -60,7 +60,7 @@ def _ends(a, b, sigma):
         _root(4 * sigma**2 - a * a),  # p + q reaches A at P = Q
         _root(sigma**2 - (a - sigma) ** 2),  # … and at Q = 0, like q + c
         _root(sigma**2 - a * a / 4),  # p + c at Q = 0
-        level, 2 * level, sigma + level,
+        2 * level, sigma + level,
     ]  # fmt: skip
     if a < sigma:
         # p + c = q = A.
@@ -97,23 +97,21 @@ def _kinks(a, sigma, t, c):
     matters in the root if Q is exactly σ.
     """
     level = _root(sigma**2 - a * a)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        middle = np.arctan2(t, a)
+    with np.errstate(invalid="ignore"):
         apart = np.arccos(np.hypot(t, a) / (2 * sigma))
-        beside = np.where(a >= c, np.sqrt(sigma**2 - (a - c) ** 2), np.nan)
+        beside = np.sqrt(sigma**2 - (a - c) ** 2)
         by_p = [
             t,
             np.full_like(t, sigma),
-            np.full_like(t, level),
-            np.where(middle + apart <= math.pi / 2, sigma * np.sin(middle + apart), np.nan),
+            sigma * np.sin(np.arctan2(t, a) + apart),
             beside,
-            np.where(c > 0, sigma * np.sin(2 * math.pi / 3 - np.arcsin(t / sigma)), np.nan),
+            sigma * np.sin(2 * math.pi / 3 - np.arcsin(t / sigma)),
         ]
         by_q = [np.full_like(t, sigma), np.full_like(t, level), beside]
     p = np.array(by_p + [t - q for q in by_q])
     q = np.array([t - p for p in by_p] + by_q)
-    # A kink outside of the range is replaced by an end of it.
-    p, q = np.clip(np.where(np.isnan(p), t, p), t / 2, t), np.clip(np.nan_to_num(q), 0.0, t / 2)
+    # A kink that is not in the range, or is none, is replaced by an end of it.
+    p, q = np.fmax(np.fmin(p, t), t / 2), np.fmin(np.fmax(q, 0.0), t / 2)
     order = np.argsort(p, axis=0)
     return np.take_along_axis(p, order, 0), np.take_along_axis(q, order, 0)
 
@@ -128,7 +126,7 @@ def _gaps(a, sigma, t, c):
 
     def sines(start, stop):
         """Return (gap, d(gap), weight) between two gaps, σ times the sines of their angles."""
-        start, stop = (np.arcsin(np.clip(gap / sigma, 0.0, 1.0)) for gap in (start, stop))
+        start, stop = (np.arcsin(np.minimum(gap / sigma, 1.0)) for gap in (start, stop))
         angle = start + (stop - start) * x
         d = sigma * np.cos(angle)
         return sigma * np.sin(angle), d, (stop - start) * d * w
@@ -218,7 +216,7 @@ def integrals(a, b, sigma):
     contact = both**2 / 2 * (over_p + over_q) + beside**2 / 2 * (over_q + over_c)
     contact += across_slope * (over_p + over_c) + far_slope * over_q
 
-    beyond_p, beyond_q, beyond_t = ~near_p, ~near_p & ~near_q, c == 0
+    beyond_p, beyond_q, beyond_t = ~near_p, ~near_q, c == 0
     level = a * a * beyond_q + most**2 * (1.0 * beyond_p + beyond_t)
 
     def integrate_gaps(integrand):
