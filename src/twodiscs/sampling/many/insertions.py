@@ -246,9 +246,8 @@ def estimate(scene, sums, products, samples):
         raise InputError(f"samples must be more than {samples}: in none of them {n} discs fit")
     unit = WEIGHT_UNITS * samples
     mean = np.asarray(sums) / unit
-    second = np.triu(products) / unit
-    second = second + np.triu(second, 1).T
-    covariance = (second - np.outer(mean, mean)) / samples
+    # Only the upper triangle of the products is counted, and used.
+    covariance = (np.asarray(products) / unit - np.outer(mean, mean)) / samples
     pairs = n * (n - 1) / 2
     factors = np.array(
         [n / a, n / b, pairs * 2 * math.pi * scene.contact_distance / (a * b), pairs / a, pairs / b]
