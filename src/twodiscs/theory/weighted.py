@@ -137,7 +137,7 @@ class Branch:
 
     def beyond(self, square, room):
         """Return ∫ f over t² ≥ ``square``, with ``room`` = reach² − square, arrays of one shape."""
-        end = np.maximum(room, 0.0) / (float(self.reach) + np.sqrt(square))
+        end = room / (float(self.reach) + np.sqrt(square))
         distances = self.distances
         cuts = np.minimum(distances, np.minimum(end, distances[-1])[..., None])
         z, weights = _nodes(cuts, SINGULAR_RULE if self.curved else LINEAR_RULE)
@@ -204,7 +204,6 @@ def _outside(branches, square, room, surface, less=None):
     returns square − c of an exact c, if it is known better than from ``square``.
     """
     first, *rest = branches
-    square = np.maximum(square, 1e-300)
     reach, rho = float(first.reach), np.sqrt(square)
     if not rest:
         if not surface:
@@ -229,13 +228,13 @@ def _outside(branches, square, room, surface, less=None):
     missing = np.array([float(sums[-1] - c) for c in sums])
     t_square = np.stack([less(c) if less else square - float(c) for c in sums], axis=-1)
     rise = np.where(k_square < room0, k_square - k0_square, room0 - missing)
-    touches = np.sqrt(np.clip(t_square, 0.0, t0**2))
-    falls = np.clip(rise, 0.0, t0**2) / (t0 + touches)
+    touches = np.sqrt(np.maximum(t_square, 0.0))
+    falls = rise / (t0 + touches)
     marks = np.array([float(t) for t in (first.reach, *first.kinks, first.start)])
     below = np.where(marks < reach / 2, t0 - marks, first.distances - z0[..., None])
     end = np.minimum(falls[..., -1:], below[..., -1:]), np.maximum(touches[..., -1:], marks[-1:])
     t = np.concatenate((touches, np.broadcast_to(marks, below.shape)), axis=-1)
-    t = -np.sort(-np.clip(t, np.minimum(end[1], t0), t0), axis=-1)
+    t = -np.sort(-np.clip(t, end[1], t0), axis=-1)
     y = np.concatenate((falls, below), axis=-1)
     y = np.sort(np.clip(y, 0.0, np.maximum(end[0], 0.0)), axis=-1)
 
