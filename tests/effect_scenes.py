@@ -49,3 +49,10 @@ def distance_square(scene, places):
             gap = gap - scene.side(axis) * np.round(gap / scene.side(axis))
         total = total + gap**2
     return total
+
+
+def in_unit(scene, unit):
+    """Return the same scene in another unit of length; the speed is 1 in it."""
+    scaled = {name: unit * getattr(scene, name) for name in scene.LENGTHS}
+    scaled |= {"depth": scene.depth and unit * scene.depth}
+    return replace(scene, **scaled, field=scene.field / unit, friction=scene.friction / unit)

@@ -301,19 +301,23 @@ def test_what_changes_with_time_is_drawn_with_its_errors(tmp_path):
 
 
 def test_tables_come_back_with_units_and_provenance(simulated, sampled, tmp_path):
-    folder, provenance = tmp_path / "one", {"seed": 7, "scenes": [{"name": "one"}]}
+    scene = {"name": "one", "box": {"width": 1.5, "height": 1.0}, "discs": 3}
+    folder, provenance = tmp_path / "one", {"seed": 7, "scenes": [scene]}
     folder.mkdir()
+    SCENE_TABLES["theory"].write(folder / "theory.csv", [])
     SCENE_TABLES["mean_times"].write(folder / "mean_times.csv", simulated.rows)
     SCENE_TABLES["volume"].write(folder / "volume.csv", sampled.rows[:1])
     (folder / "mine.csv").write_text("a,b\n1,2\n")
     (tmp_path / "configuration.json").write_text(json.dumps(provenance))
     found = td.load(folder)
-    assert [*found] == ["mean_times", "volume"]
+    assert [*found] == ["mean_times", "theory", "volume"]
     times = found["mean_times"]
     for column in ("estimate", "count"):
         assert [*times[column]] == [row[column] for row in simulated.rows]
     assert times["bound"].isna().all()
     assert times.attrs["units"]["estimate"] == "time"
+    assert found["theory"].attrs["units"]["exact"] == "length⁶, length⁵ or time"
+    assert times.attrs["meaning"].startswith("One row per radius and event: ")
     assert times.attrs["configuration"] == provenance
     (folder / "volume.csv").write_text("radius,quantity\nx,y\n")
     with pytest.raises(td.InputError, match=r"volume\.csv "):

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from effect_scenes import PAPER, SCENES, THREE, in_unit
 from factory import LAWS, RADII, Laws, as_theory, bins_point, counts_point, hits_point
 from scipy.special import ndtri, stdtr
 
@@ -217,28 +218,34 @@ def test_a_density_at_zero_needs_few_events_and_many_intervals(discs, events, co
 # Units ------------------------------------------------------------------------------------------
 
 
-#: Powers of the length; the speed is 1.
-POWERS = {"": 0, "length": 1, "time": 1, "1/time": -1, "length³": 3, "length⁴": 4}
+UNIT = 2.0**-6
 
 
-def test_columns_scale_as_their_units_say():
-    """Two boxes, one twice as large, have the same random numbers."""
+@pytest.mark.parametrize(
+    "scene",
+    [PAPER, *(SCENES[n] for n in ("field", "rough")), THREE,
+     td.Scene(5.0, 1.0, 0.24, discs=5, friction=0.2)],
+    ids=str,
+)  # fmt: skip
+def test_columns_scale_as_their_units_say(scene):
+    """The random numbers are the same in each unit of length."""
+    sampled = ["volume", "vertical_hop_area", "disc_collision_area"]
+    powers = {"": 0, "length": 1, "time": 1, "1/time": -1}
+    dimensions = scene.discs * len(scene.axes)
+    powers |= {"length⁴": dimensions, "length³": dimensions - 1}  # the units of two discs
     found = []
-    for unit in (1, 2):
-        box, radius = td.Box(1.5 * unit, 1.0 * unit), 0.2 * unit
-        scene = box.scene(radius)
-        sampled = ["volume", "vertical_hop_area", "disc_collision_area"]
+    for one in (scene, in_unit(scene, UNIT)):
         points = [
-            runs.DynamicsRun(scene, dict.fromkeys(td.EVENTS, 1.0), 1, 7).run(),
-            runs.IntervalsRun(scene, "vertical_hop", 1, 7).run(),
-            MonteCarloRun(scene, sampled, 1, 0.02, 7).run(),
+            runs.DynamicsRun(one, dict.fromkeys(td.EVENTS, 1.0), 1, 7).run(),
+            runs.IntervalsRun(one, "vertical_hop", 1, 7).run(),
+            MonteCarloRun(one, sampled, 1, 0.02, 7).run(),
         ]
         made = VolumeTable, AreasTable, MeanTimesTable, HopHistogramTable
         rows = [(table, row) for table in made for row in table.rows(points)]
         found.append([(name, c, row[name]) for t, row in rows for name, c in t.columns.items()])
     for (name, column, one), (*_, other) in zip(*found, strict=True):
         if column.type is float and one is not None:
-            one = pytest.approx(one * 2.0 ** POWERS[column.unit], rel=1e-9, abs=1e-12)
+            one = pytest.approx(one * UNIT ** powers[column.unit], rel=1e-9, abs=1e-300)
         assert other == one, name
 
 

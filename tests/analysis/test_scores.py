@@ -88,8 +88,8 @@ def test_a_probability_of_zero_or_one_leaves_nothing_to_chance():
 def test_two_shells_that_overlap_have_a_normal_sum():
     rng = np.random.default_rng(4)
     samples, trials = 10**6, 2000
-    measures, both = (3.0, 5.0), 0.01
-    only = (0.02, 0.005)
+    measures, both = (3.0, 5.0), 0.2
+    only = (0.1, 0.3)
     counts = rng.multinomial(samples, [both, *only, 1 - both - sum(only)], trials)
     law = samples, measures, (both + only[0], both + only[1])
     found = [scores.shells_z((int(n + a), int(n + b)), int(n), *law) for n, a, b, _ in counts]
@@ -183,4 +183,5 @@ def test_the_cluster_bound_knows_the_clusters_that_were_counted(size):
     z, test = score(size)
     assert test == "cluster-bound"
     assert z == pytest.approx(score(4)[0], rel=1e-9)
-    assert 3 < z < 7
+    half_of_p = (due / found) ** found * math.exp(found - due)
+    assert z == pytest.approx(-ndtri(half_of_p), rel=1e-9)

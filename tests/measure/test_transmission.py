@@ -40,6 +40,12 @@ def test_errors_of_a_correlation_between_walls_are_binomial():
     assert found.stderr == pytest.approx(math.sqrt((1 - found.value**2) / n), rel=1e-14)
 
 
+def test_hops_are_simulated_in_whole_blocks():
+    one = hop_clusters.HOPS_PER_BLOCK
+    found = td.transmission(td.Scene(1.5, 1.0, 0.249), "horizontal_hop", one + 1)
+    assert found.curve[0].n == sum(found.clusters.values()) == 2 * one
+
+
 LAWS = {
     "order": order_correlation,
     "clusters": transmission.odd_clusters_per_passage,

@@ -204,6 +204,9 @@ def test_energy_to_pass_one_above_the_other_is_that_of_the_cheaper_order():
     # No energy to spare is none.
     assert not Scene(3.0, 2.0, 0.25, field=1.0).horizontal_hops
     assert Scene(3.0, 2.0, 0.25, field=math.nextafter(1.0, 0)).horizontal_hops
+    corner = Scene(1.5, 0.6, 0.25, radius_ratio=0.25, mass_ratio=0.25, field=8.0)
+    assert corner.confined == (True, False)
+    assert replace(corner, field=math.nextafter(8.0, 0)).confined == (False, False)
 
 
 def test_friction_is_limited_by_the_time_along_the_shortest_side():

@@ -15,7 +15,7 @@ from itertools import pairwise, product
 import numpy as np
 import pytest
 from commands import python
-from effect_scenes import exchanged
+from effect_scenes import exchanged, in_unit
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from marks import slow
@@ -25,6 +25,7 @@ from theory.antiderivatives import TURNED, relative_error
 from twodiscs.model.events import DECLARED_EVENTS, EVENT_AXES, EVENTS, HOPS, SHELL_EVENTS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.theory import exact, flux, weighted
+from twodiscs.theory.clusters import corner_variance
 from twodiscs_paper.studies.passages.near import passing_rate
 
 BOUND, DIGITS = 1e-13, 40
@@ -356,6 +357,20 @@ def test_no_number_depends_on_which_disc_and_which_axis_is_the_first(scene, shar
     for hop in hops:
         near = exact.fraction_near(turned, TURNED[hop], shell)
         agree(near, exact.fraction_near(scene, hop, shell))
+
+
+@given(scenes(), st.floats(0.01, 1.4), st.sampled_from([2.0**-20, 2.0**7]))
+@settings(max_examples=10, deadline=None, derandomize=True)
+def test_no_bit_depends_on_the_unit_of_length(scene, share, unit):
+    other, shell, dimensions = in_unit(scene, unit), share * min(scene.radii), 2 * len(scene.axes)
+    assert exact.volume(other) == unit**dimensions * exact.volume(scene)
+    for event in scene.events:
+        assert exact.rate(other, event) == exact.rate(scene, event) / unit
+        assert corner_variance(other, event, unit) == corner_variance(scene, event, 1.0)
+        if event in SHELL_EVENTS or not scene.is_plain:
+            near = exact.shell_expectation(scene, event, shell)
+            in_shell = exact.shell_expectation(other, event, unit * shell)
+            assert in_shell == unit ** (dimensions - 1) * near
 
 
 @pytest.mark.parametrize("periodic", ["", "x"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from importlib import metadata
 from os import PathLike
@@ -83,13 +84,17 @@ def read(path, table):
         "table": table.name(),
         "meaning": table.meaning(),
         "meanings": {name: column.meaning for name, column in columns.items()},
-        "units": {name: column.unit for name, column in columns.items()},
+        "units": (units := {name: column.unit for name, column in columns.items()}),
         "path": str(path),
         "sha256": digest(path),
         "configuration": configuration,
     }
     if (box := read_box(configuration)) is not None:
         frame.attrs["box"] = box.parameters()
+        # The table has those of two discs.
+        of_two = {"length⁴": box.unit("volume"), "length³": box.unit("area")}
+        for name, unit in units.items():
+            units[name] = re.sub("length[⁴³]", lambda found: of_two[found[0]], unit)
     return frame
 
 
