@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from twodiscs import EFFECTS, Box, Scene
-from twodiscs.model import checks
+from twodiscs.model import checks, formats
 from twodiscs.model.seeds import stream_seed
 
 
@@ -60,3 +60,12 @@ def test_odd_values_are_named_in_a_short_sentence(value):
         with pytest.raises(checks.InputError, match=r"must|does not fit") as caught:
             call()
         assert len(str(caught.value)) < 300
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "texts"),
+    [(1.23456, 0.0996, ("1.23", "0.10")), (-4e-4, 0.02, ("0.000", "0.020")),
+     (2.5, None, ("2.5", "")), (None, None, ("–", ""))],
+)  # fmt: skip
+def test_a_value_ends_at_the_second_digit_of_its_error_and_a_zero_has_no_sign(value, error, texts):
+    assert formats.texts_with_error(value, error) == texts
