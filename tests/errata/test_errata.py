@@ -17,6 +17,7 @@ from mpmath import mp, mpf
 
 from twodiscs_paper import reference
 from twodiscs_paper.errata import measure as errata
+from twodiscs_paper.errata import statements
 from twodiscs_paper.errata.statements import LIMITS, NUMERATOR, REGIMES, STATEMENTS
 from twodiscs_paper.errata.study import ErrataTable
 
@@ -90,6 +91,19 @@ def test_a_spoilt_formula_is_wrong(label):
         lambda value: value / mpf(0),
     ):
         assert judged(label, lambda q, change=change: change(printed(q)))["verdict"] == "wrong"
+
+
+@pytest.mark.parametrize("roots", [(0, 0), (1, 0), (0, 1)])
+def test_a_time_with_a_root_on_one_side_of_h_4_is_not_smooth(roots, monkeypatch):
+    """The curvature of |d|^(3/2), with the distance d from it, is infinite at 0."""
+
+    def time(event, q):
+        distance = q.r - q.h / 4
+        return distance**2 + roots[distance > 0] * abs(distance) ** 1.5
+
+    monkeypatch.setattr(statements, "mean_time", time)
+    is_smooth = BY_LABEL["collision time is smooth"].printed
+    assert is_smooth(reference.MpScene(mpf(3), mpf(1), mpf(0))) == (roots == (0, 0))
 
 
 # Corrections --------------------------------------------------------------------------------------

@@ -11,7 +11,7 @@ import pytest
 from checkout import REPOSITORY, one_scene
 
 from twodiscs.model.effects import EFFECTS
-from twodiscs_paper.catalogue import STUDIES
+from twodiscs_paper.catalogue import STUDIES, is_reproducible
 from twodiscs_paper.configuration.yaml_files import load, read
 from twodiscs_paper.draw import DRAW
 
@@ -62,13 +62,18 @@ def test_budgets_follow_the_main_scene_within_limits():
         keys = {} if budget is None else {"event_budget": budget}
         return STUDIES[study].parameters(load(one_scene("a", radii=[0.1], **keys)))
 
-    tails = [parameters("tails", budget) for budget in (10**4, 10**8, 10**12)]
-    assert [one["replicas"] for one in tails] == [4_000, 5_000, 100_000]
-    assert [one["samples"] for one in tails] == [2, 5, 100]
+    for study, name, *numbers in (
+        ("tails", "replicas", 4_000, 5_000, 100_000),
+        ("tails", "samples", 2, 5, 100),
+        ("distributions", "events", 2**16, 250_000, 2**22),
+        ("stability", "ordinary", 10**7, 12_500_000, 250_000_000),
+        ("stability", "hard", 10**6, 1_250_000, 25_000_000),
+        ("more_discs", "events", 10**5, 200_000, 10**8),
+        ("more_discs", "samples", 10**4, 25_000, 10**7),
+    ):
+        assert [parameters(study, 10**power)[name] for power in (4, 8, 12)] == numbers
     for name in ("tails", "distributions", "passages", "stability", "more_discs"):
         assert parameters(name, None) == parameters(name, 2 * 10**9)
-    found = [parameters("distributions", budget)["events"] for budget in (10**4, 10**8, 10**12)]
-    assert found == [2**16, 250_000, 2**22]
 
 
 def test_a_configuration_without_plain_scenes_has_studies():
@@ -94,3 +99,13 @@ def test_figures_are_drawn_from_all_tables_of_the_study_and_those_with_seconds_a
     for table in study.tables:
         seconds = [name for name, column in table.columns.items() if column.unit == "s"]
         assert not seconds or table.name() in study.timed
+
+
+def test_results_with_seconds_and_documents_are_not_the_same_on_every_run():
+    """A figure has the seconds of its tables; that of the effects shows their cost."""
+    same = ["a/check.csv", "tails.csv", "a/figures/volume.png", "a/figures/animation.gif"]
+    same += ["figures/stability_of_runs.pdf", "effects.csv"]
+    other = ["a/cost.csv", "accuracy_cost.csv", "benchmark.csv", "effects_cost.csv", "report.html"]
+    other += ["figures/accuracy_cost_by_radius.pdf", "figures/effects.png", "paper.pdf"]
+    other += ["configuration.json", "a/points/dynamics/0.1.json"]
+    assert [path for path in same + other if is_reproducible(path)] == same
