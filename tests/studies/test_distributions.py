@@ -78,7 +78,10 @@ def test_bins_of_a_hazard_follow_one_another():
     counts = np.bincount((times / 0.25).astype(int), minlength=30)
     rows = list(distributions.hazard(counts[:30], 10**4, 0.25))
     assert len(rows) > 10
+    assert rows[0].alive == 10**4
     for row, after in pairwise(rows):
+        assert row.alive - row.count == np.count_nonzero(times >= row.last)
+        assert abs(row.rate - 0.5) < 5 * row.error < 5 * 0.7 / np.sqrt(row.count)
         assert (row.last, row.alive - row.count) == (after.first, after.alive)
         assert row.last - row.first >= distributions.GROWTH * row.first
         assert row.count >= distributions.FEWEST_IN_BIN
@@ -113,6 +116,10 @@ def test_what_is_measured_meets_what_is_exact(box, radius, hop):
     assert abs(cut["z"]) < 5
     assert cut["z"] == pytest.approx(student_deviate(off, distributions.INTERVAL_BLOCKS - 1))
     assert cut["estimate"] <= passage["estimate"]
+    # Passages take half of (1 + the squared variation) mean intervals.
+    square, mean = by_name["squared_cv", True], by_name["mean", True]["reference"]
+    assert square["estimate"] == pytest.approx(2 * passage["reference"] / mean - 1)
+    assert square["stderr"] == pytest.approx(2 * passage["reference_stderr"] / mean)
     cubic = tail_constant(scene, hop) > 0
     assert (passage["z"] is None) == cubic
 

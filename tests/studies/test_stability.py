@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import yaml
 from effect_scenes import PAPER
-from factory import BOX, LONG_RUNS, of, written
+from factory import BOX, EXPECTED, LONG_RUNS, of, written
 from marks import slow
 from mpmath import mpf
 from scipy.stats import chi2, norm
@@ -40,6 +40,15 @@ any_box = pytest.mark.parametrize("box", [*BOXES, *map(slow, OTHERS)], ids=str)
 
 def failed(rows):
     return of(rows, passed=False)
+
+
+def compare_cases(box, rows):
+    """Compare what the rows of a box are about with the expected table, which is of 1.5 × 1."""
+    names = "part", "case", "radius", "distance", "method", "quantity"
+    parts = {row["part"] for row in rows}
+    kept = [row for row in StabilityTable.read(EXPECTED / "stability.csv") if row["part"] in parts]
+    found, due = ([[row.get(name) for name in names] for row in some] for some in (rows, kept))
+    assert box != BOX or found == due
 
 
 # Radii ------------------------------------------------------------------------------------------
@@ -81,6 +90,7 @@ def test_a_row_passes_within_its_bounds(value, bounds, passed):
 def test_theory_holds_where_closed_forms_fail(box):
     rows = list(stability.theory_rows(box))
     assert failed(rows) == []
+    compare_cases(box, rows)
     stable = of(rows, method="stable")
     assert len(stable) >= 100
     assert all(row["passed"] for row in stable)
@@ -106,9 +116,10 @@ def test_sampling_and_estimates_hold(box, monkeypatch):
     monkeypatch.setattr(stability, "ESTIMATE_PROPOSALS", 2**18)
     shares = list(stability.sampling_rows(box, seed=1))
     assert failed(shares) == []
-    assert all(row["exact"] >= 0.25 for row in shares if row["method"] == "conditioned")
+    assert all(0.25 <= row["exact"] <= 1 for row in shares if row["method"] == "conditioned")
     estimates = list(stability.estimate_rows(box, seed=1))
     assert failed(estimates) == []
+    compare_cases(box, [*shares, *estimates])
     assert all(0 < row["value"] < math.inf for row in of(estimates, quantity="volume"))
 
 
@@ -117,7 +128,9 @@ def test_sampling_and_estimates_hold(box, monkeypatch):
 
 @pytest.mark.parametrize("box", [BOX, td.Box(1e6, 1e-6)], ids=str)
 def test_predicted_times_are_right_to_a_few_roundings(box):
-    ours = of(stability.time_rows(box, seed=4), method="stable")
+    rows = list(stability.time_rows(box, seed=4))
+    compare_cases(box, rows)
+    ours = of(rows, method="stable")
     assert len(ours) == 8
     assert all(row["passed"] and row["count"] >= 350 for row in ours)
     assert all(0.05 < row["value"] < 4 for row in ours)
@@ -166,6 +179,7 @@ def test_rows_of_extremes_are_their_mean_times(monkeypatch):
             assert own[case, f"{event}_time"]["exact"] == time
     assert own["long", "disc_collision_time"]["z"] is own["long", "virial"]["z"] is None
     assert own["long", "disc_collision_time"]["passed"] is None
+    assert own["long", "virial"]["distance"] == pytest.approx(0.4 - 1)  # up to half the height
     assert own["long", "top_wall_time"]["passed"] is True
     virial = own["ordinary", "virial"]
     assert abs(virial["value"] - 1) < 5 * virial["stderr"] < 0.05
@@ -196,6 +210,7 @@ def test_a_bound_that_says_something_is_judged(monkeypatch):
 def test_everything_is_conserved_at_every_hard_radius(box):
     rows = list(stability.dynamics_rows(box, seed=5, ordinary=4_000_000, hard=2_000_000))
     assert len(rows) == 4 * len(stability.hard_radii(box))
+    compare_cases(box, rows)
     assert all(row["passed"] is True and row["count"] >= 2_000_000 for row in rows)
 
 
@@ -279,10 +294,14 @@ def test_scores_of_values_with_errors_that_are_right_and_wrong():
 def test_a_row_of_calibration_counts_what_the_face_prints(monkeypatch):
     """One seed of few bodies: scores of simulate are the deviations over the printed errors."""
     monkeypatch.setitem(calibration.CALL_SIZES, "simulate", {"least": {"budget": 1}})
-    rows, name, z = calibration.rows(2, 5, ("r = 0.2",), ("simulate",)), "disc_collision_time", []
+    name, z = "disc_collision_time", []
+    rows = [*calibration.rows(2, 5, ("r = 0.2",), ("simulate",))]
     for seed in (5, 6):
         one = td.simulate(PAPER, budget=1, seed=seed)[name]
         z.append((one.value - one.exact) / one.stderr)
+    cells = {"case": "r = 0.2", "call": "simulate", "size": "least"}
+    kept = of(CalibrationTable.read(KEPT / "calibration.csv"), **cells)
+    assert [row["quantity"] for row in rows] == [row["quantity"] for row in kept]
     (row,) = of(rows, quantity=name)
     assert (row["scores"], row["withheld"]) == (2, 0)
     assert row["mean"] == pytest.approx(np.mean(z))

@@ -16,6 +16,7 @@ from factory import BOX, of, written
 
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Box
+from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 from twodiscs_paper.studies.estimates import sample_mean
@@ -131,6 +132,11 @@ def test_the_error_of_a_rate_between_survivals_is_that_of_those_that_last_longer
     rate = tails.rate_between(early, late)
     assert rate["estimate"] == pytest.approx(math.log(5) / 2)
     assert rate["stderr"] == pytest.approx(math.sqrt(0.2 * 0.8 / 50) / 0.2 / 2)
+
+
+def test_a_mean_of_runs_has_their_replicas():
+    found = tails.joined([Estimate(1.0, 0.3, 10), Estimate(3.0, 0.4, 10)])
+    assert (found.value, found.stderr, found.n) == (2.0, pytest.approx(0.25), 20)
 
 
 def test_cases_of_other_boxes():
