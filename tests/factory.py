@@ -1,6 +1,7 @@
 """Points, rows and tables for tests, made from their classes: by simple laws, or as a test says."""
 
 import json
+import math
 from contextlib import contextmanager
 from functools import cached_property
 from itertools import combinations_with_replacement
@@ -41,6 +42,17 @@ def write_rows(folder, table, names, rows, **same):
 def of(rows, **where):
     """Return those of ``rows`` that have these values."""
     return [row for row in rows if where.items() <= row.items()]
+
+
+def cells(rows, *names):
+    """Return these cells of each of ``rows``."""
+    return [[row.get(name) for name in names] for row in rows]
+
+
+def deviation(one, other):
+    """Return by how many standard errors two rows differ."""
+    error = math.hypot(one["stderr"], other["stderr"])
+    return abs(one["estimate"] - other["estimate"]) / error
 
 
 def sample_point(scene, quantities, samples, shell, seed):

@@ -98,12 +98,12 @@ def test_a_time_with_a_root_on_one_side_of_h_4_is_not_smooth(roots, monkeypatch)
     """The curvature of |d|^(3/2), with the distance d from it, is infinite at 0."""
 
     def time(event, q):
-        distance = q.r - q.h / 4
-        return distance**2 + roots[distance > 0] * abs(distance) ** 1.5
+        d = q.r - q.h / 4
+        return d**2 + roots[d > 0] * abs(d) ** 1.5
 
     monkeypatch.setattr(statements, "mean_time", time)
-    is_smooth = BY_LABEL["collision time is smooth"].printed
-    assert is_smooth(reference.MpScene(mpf(3), mpf(1), mpf(0))) == (roots == (0, 0))
+    smooth = statements.collision_time_is_smooth(reference.MpScene.of(3, 1, 0))
+    assert smooth == (roots == (0, 0))
 
 
 # Corrections --------------------------------------------------------------------------------------

@@ -47,6 +47,12 @@ def written(path, scenes):
     return path
 
 
+def shown_scenes(text):
+    """Return the scenes in the data of the page."""
+    data = re.search(r'<script id="data"[^>]*>(.*?)</script>', text, re.DOTALL)[1]
+    return json.loads(data)["scenes"]
+
+
 def evaluated(expression, *scripts):
     """Return the value of an expression about the ``scripts``, by V8."""
     script = "".join((SOURCES / name).read_text(encoding="utf-8") for name in scripts)
@@ -267,9 +273,10 @@ def test_times_by_monte_carlo_know_the_conserved_momenta(effects, tmp_path):
     areas = [(f"{event}_area", area, area) for event, area in exact.areas(scene).items()]
     write_rows(tmp_path, AreasTable, ("quantity", "estimate", "exact"), areas, **given)
     write_rows(tmp_path, VolumeTable, ["estimate"], [[exact.volume(scene)]], **given)
-    paths = {name: tmp_path / f"{name}.csv" for name in ("volume", "areas")}
+    own = SCENES[0] | {"name": tmp_path.name, "effects": effects}
+    page = explorer.explorer(PARTS, [*TABLES, *tmp_path.glob("*.csv")], [own], seed=1)
     times = exact.mean_times(scene)
-    for event, by in explorer.points(paths, effects.get("periodic", "")).items():
+    for event, by in shown_scenes(page)[0]["points"].items():
         found = [row[1] for row in by["monte_carlo"]]
         assert found == pytest.approx([times[event]] if times[event] else [])
 
@@ -280,8 +287,7 @@ def test_the_page_is_one_file_and_names_the_scenes_that_are_left_out(tmp_path, s
     text = path.read_text(encoding="utf-8")
     assert not re.search(r"""(?:src|href)=["']|@import|url\(|fetch\(|XMLHttpRequest""", text)
     assert path.stat().st_size < 100_000
-    data = json.loads(re.search(r'<script id="data"[^>]*>(.*?)</script>', text, re.DOTALL)[1])
-    assert [scene["name"] for scene in data["scenes"]] == [SCENES[i]["name"] for i in shown]
+    assert [scene["name"] for scene in shown_scenes(text)] == [SCENES[i]["name"] for i in shown]
     assert ("because of their effects: balls." in text) == ("balls" in text) == (1 in some)
 
 

@@ -67,16 +67,28 @@ def test_mean_times_are_those_of_their_table():
     assert report.mean_times(EXPECTED, scene | {"name": "absent"}) == {}
 
 
-def test_an_animation_stands_still_at_the_picture_that_is_shown_longest(tmp_path):
+def picture(uri):
+    """Return the image that an address holds."""
+    return Image.open(BytesIO(b64decode(uri.partition(",")[2])))
+
+
+def test_pictures_are_in_their_sections_and_an_animation_stands_still_at_the_longest(tmp_path):
+    """A figure of no key is small, in the section of all scenes if it is of none."""
     frames = [Image.new("RGB", (60, 40), (12 * x, 0, 0)) for x in range(20)]
     path = PurePosixPath("one/figures/animation.png")
     (tmp_path / path).parent.mkdir(parents=True)
     times = [1500 if k == 12 else 50 for k in range(20)]
     frames[0].save(tmp_path / path, save_all=True, append_images=frames[1:], duration=times, loop=0)
+    (tmp_path / "figures").mkdir()
+    Image.new("RGB", (641, 1000)).save(tmp_path / "figures/thresholds.png")
     scene = {"name": "one", "box": "1.5 × 1", "width": 1.5, "height": 1.0, "effects": {}}
-    still = report.movie(tmp_path, path, {"one": scene})["still"]
-    with Image.open(BytesIO(b64decode(still.partition(",")[2]))) as image:
-        assert image.convert("RGB").tobytes() == frames[12].tobytes()
+    files = [str(path), "figures/thresholds.png"]
+    one, of_all = report.contents(tmp_path, files, [scene], "run")["sections"]
+    still = picture(one["animation"]["still"]).convert("RGB")
+    assert still.tobytes() == frames[12].tobytes()
+    (small,) = of_all["thumbnails"]
+    assert (small["name"], small["width"]) == ("thresholds", 641 // 2)
+    assert picture(small["uri"]).size == (320, 499)
 
 
 def test_boxes_are_described_with_their_effects_and_events():

@@ -10,7 +10,7 @@ import math
 import pandas as pd
 import pytest
 import yaml
-from factory import EXPECTED, LONG_RUNS, empty, of
+from factory import EXPECTED, LONG_RUNS, deviation, empty, of
 
 from twodiscs.dynamics.two.hop_clusters import HOPS_PER_BLOCK
 from twodiscs.points.base import read_json
@@ -30,12 +30,6 @@ def kept(name, table):
     configuration = yaml.safe_load((folder / "config.yaml").read_text(encoding="utf-8"))
     counts = next((read_json(path) for path in folder.glob("*.json")), None)
     return configuration, table.read(folder / f"{table.name()}.csv"), counts
-
-
-def deviation(one, other):
-    """Return by how many standard errors two rows differ."""
-    error = math.hypot(one["stderr"], other["stderr"])
-    return abs(one["estimate"] - other["estimate"]) / error
 
 
 def test_counts_are_of_all_blocks_and_points_of_their_configuration():

@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from factory import LONG_RUNS, empty, of
+from factory import EXPECTED, LONG_RUNS, cells, deviation, empty, of
 from marks import slow
 
 from twodiscs.dynamics.two import strip
@@ -22,10 +22,10 @@ from twodiscs.sampling.many import insertions
 from twodiscs.theory.flux import rates
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.yaml_files import load
-from twodiscs_paper.studies.estimates import sample_mean
 from twodiscs_paper.studies.passages import figure, figure_diffusion, figure_transmission, near
 from twodiscs_paper.studies.passages.models import file, plane
 from twodiscs_paper.studies.passages.parts import displacements, on_ring, with_friction
+from twodiscs_paper.studies.passages.parts.in_long_file import one_long_file
 from twodiscs_paper.studies.passages.powers import fits
 from twodiscs_paper.studies.passages.study import PassagesTable
 
@@ -83,23 +83,29 @@ def small(monkeypatch):
 # A file of discs ----------------------------------------------------------------------------------
 
 
-def walked(scene, time, replicas, seed):
-    """Return (D/(ν ℓ²), hops of a disc per time) by displacements from ``time`` to twice of it."""
-    places, hops = file.recorded(scene, time, 2, replicas, seed)
-    early, late = file.squares(places, [1, 2]) / (scene.width / scene.discs) ** 2
-    per_time = hops / (2 * time)
-    return file.quotient((late - early) / time, per_time), sample_mean(per_time)
+def rows_of_file(monkeypatch, discs, *given):
+    """Return the rows of a long file of a few ``discs``."""
+    monkeypatch.setitem(one_long_file.__globals__, "LONG_FILE", discs)
+    return [*one_long_file("", BOX, *given)]
 
 
-def test_two_discs_in_a_file_move_as_their_hops_are_correlated():
-    """Against the exact rate, and D by correlations of hops, which another kernel counts."""
+def test_two_discs_in_a_file_move_as_their_hops_are_correlated(monkeypatch):
+    """Against the exact rate, and D by correlations of hops, which another kernel counts.
+
+    Displacements at two times are correlated, so that their difference has a smaller error.
+    """
     scene = Box(1.5, 1.0, periodic="x").scene(0.21875)
     rows = list(on_ring.one_ring("ring", BOX, None, 2**18, 1))
     due, *_ = of(rows, quantity="diffusion", method="hops")
     assert due["radius"] == scene.radius
-    moved, hops = walked(Scene(1.5, 1.0, scene.radius, discs=2, periodic="x"), 64.0, 4096, 2)
-    assert abs(hops.value - near.passing_rate(scene, HOP)) < 5 * hops.stderr
-    assert abs(moved.value - due["estimate"]) < 5 * math.hypot(moved.stderr, due["stderr"])
+    rows = rows_of_file(monkeypatch, 2, scene.radius, [None], 2, None, 2048)
+    (hops,), (ordered,) = (of(rows, quantity=name) for name in ("rate", "diffusion"))
+    assert abs(hops["estimate"] - near.passing_rate(scene, HOP)) < 5 * hops["stderr"]
+    early, late = of(rows, quantity="displacement")[4::2]
+    number = (late["time"] - early["time"]) * hops["estimate"]
+    moved = {"estimate": (late["estimate"] - early["estimate"]) / number}
+    moved["stderr"] = math.hypot(early["stderr"], late["stderr"]) / number
+    assert max(deviation(one, due) for one in (ordered, moved)) < 5
 
 
 @pytest.mark.parametrize(("inertia", "blocks"), [(None, 2), (0.5, 255), (0.5, 256)])
@@ -124,15 +130,15 @@ def test_diffusion_on_a_ring_is_the_slope_of_squares_after_the_start(inertia, bl
 
 
 @pytest.mark.parametrize("inertia", [None, slow(0.5)])
-def test_hops_in_a_file_are_those_of_monte_carlo(inertia):
+def test_hops_in_a_file_are_those_of_monte_carlo(inertia, monkeypatch):
     scene = Scene(2.25, 1.0, 0.2, discs=3, periodic="x", moment_of_inertia=inertia)
-    _, hops = walked(scene, 16.0, 2048, 3)
+    (hops,) = of(rows_of_file(monkeypatch, 3, 0.2, [None], 3, inertia, 512), quantity="rate")
     value, error = (
         2 / scene.discs * rates(scene, part)["horizontal_hop"]  # two discs take part in a hop
         for part in insertions.sample(scene, 10**5, 4)
     )
     assert error < 0.05 * value
-    assert abs(hops.value - value) < 5 * math.hypot(hops.stderr, error)
+    assert deviation(hops, {"estimate": value, "stderr": error}) < 5
 
 
 # Long files -------------------------------------------------------------------------------------
@@ -261,11 +267,10 @@ def test_the_table_is_written(rough, tmp_path, small, monkeypatch):
     assert len({*seeds}) == len(seeds) > 20  # every estimate has separate streams
     judged = [row for row in rows if rough or row["moment_of_inertia"] is None]
     assert max(abs(row["z"]) for row in judged if row["z"] is not None) < 5
-    assert {row["quantity"] for row in rows} == {
-        "correlation", "coefficient", "passage_time", "plateau", "slope", "exponent",
-        "last_exponent", "rate", "diffusion", "single_file", "displacement",
-        "file", "amplitude", "local_exponent", "scaled_coefficient",
-    }  # fmt: skip
+    kept = PassagesTable.read(EXPECTED / "passages.csv")
+    assert {row["quantity"] for row in rows} == {row["quantity"] for row in kept}
+    names = "event", "width", "height", "discs", "radius", "distance", "friction", "quantity"
+    assert cells(of(rows, scene="pore"), *names) == cells(of(kept, scene="pore"), *names)
     # Nothing but the passages tells time between passages from time between hops.
     times, kappa = of(rows, quantity="passage_time"), of(rows, quantity="coefficient")
     for time, fraction in zip(times, kappa, strict=True):

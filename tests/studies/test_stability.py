@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import yaml
 from effect_scenes import PAPER
-from factory import BOX, EXPECTED, LONG_RUNS, of, written
+from factory import BOX, EXPECTED, LONG_RUNS, cells, of, written
 from marks import slow
 from mpmath import mpf
 from scipy.stats import chi2, norm
@@ -47,8 +47,7 @@ def compare_cases(box, rows):
     names = "part", "case", "radius", "distance", "method", "quantity"
     parts = {row["part"] for row in rows}
     kept = [row for row in StabilityTable.read(EXPECTED / "stability.csv") if row["part"] in parts]
-    found, due = ([[row.get(name) for name in names] for row in some] for some in (rows, kept))
-    assert box != BOX or found == due
+    assert box != BOX or cells(rows, *names) == cells(kept, *names)
 
 
 # Radii ------------------------------------------------------------------------------------------
@@ -299,9 +298,8 @@ def test_a_row_of_calibration_counts_what_the_face_prints(monkeypatch):
     for seed in (5, 6):
         one = td.simulate(PAPER, budget=1, seed=seed)[name]
         z.append((one.value - one.exact) / one.stderr)
-    cells = {"case": "r = 0.2", "call": "simulate", "size": "least"}
-    kept = of(CalibrationTable.read(KEPT / "calibration.csv"), **cells)
-    assert [row["quantity"] for row in rows] == [row["quantity"] for row in kept]
+    kept = of(CalibrationTable.read(KEPT / "calibration.csv"), case="r = 0.2", size="least")
+    assert cells(rows, "quantity") == cells(of(kept, call="simulate"), "quantity")
     (row,) = of(rows, quantity=name)
     assert (row["scores"], row["withheld"]) == (2, 0)
     assert row["mean"] == pytest.approx(np.mean(z))

@@ -16,7 +16,6 @@ from factory import BOX, of, written
 
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Box
-from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 from twodiscs_paper.studies.estimates import sample_mean
@@ -135,8 +134,8 @@ def test_the_error_of_a_rate_between_survivals_is_that_of_those_that_last_longer
 
 
 def test_a_mean_of_runs_has_their_replicas():
-    found = tails.joined([Estimate(1.0, 0.3, 10), Estimate(3.0, 0.4, 10)])
-    assert (found.value, found.stderr, found.n) == (2.0, pytest.approx(0.25), 20)
+    found = tails.joined([sample_mean([0, 2]), sample_mean([1, 5])])  # 1 ± 1 and 3 ± 2
+    assert (found.value, found.stderr, found.n) == (2.0, pytest.approx(math.sqrt(5) / 2), 4)
 
 
 def test_cases_of_other_boxes():
