@@ -49,8 +49,7 @@ def written(path, scenes):
 
 def shown_scenes(text):
     """Return the scenes in the data of the page."""
-    data = re.search(r'<script id="data"[^>]*>(.*?)</script>', text, re.DOTALL)[1]
-    return json.loads(data)["scenes"]
+    return json.loads(re.search(r'<script id="data"[^>]*>(.*?)</script>', text, re.S)[1])["scenes"]
 
 
 def evaluated(expression, *scripts):

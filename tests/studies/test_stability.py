@@ -42,12 +42,13 @@ def failed(rows):
     return of(rows, passed=False)
 
 
-def compare_cases(box, rows):
-    """Compare what the rows of a box are about with the expected table, which is of 1.5 × 1."""
-    names = "part", "case", "radius", "distance", "method", "quantity"
+def compared(box, rows):
+    """Return the rows of a box; those of 1.5 × 1 are about what the expected ones are about."""
+    rows, names = [*rows], ("part", "case", "radius", "distance", "method", "quantity")
     parts = {row["part"] for row in rows}
     kept = [row for row in StabilityTable.read(EXPECTED / "stability.csv") if row["part"] in parts]
     assert box != BOX or cells(rows, *names) == cells(kept, *names)
+    return rows
 
 
 # Radii ------------------------------------------------------------------------------------------
@@ -87,9 +88,8 @@ def test_a_row_passes_within_its_bounds(value, bounds, passed):
 
 @any_box
 def test_theory_holds_where_closed_forms_fail(box):
-    rows = list(stability.theory_rows(box))
+    rows = compared(box, stability.theory_rows(box))
     assert failed(rows) == []
-    compare_cases(box, rows)
     stable = of(rows, method="stable")
     assert len(stable) >= 100
     assert all(row["passed"] for row in stable)
@@ -113,12 +113,11 @@ def test_sampling_and_estimates_hold(box, monkeypatch):
     """Five sigma on every share and estimate: with some 1000 of them a false alarm in 6e-4."""
     monkeypatch.setattr(stability, "SHARE_PROPOSALS", 2**16)
     monkeypatch.setattr(stability, "ESTIMATE_PROPOSALS", 2**18)
-    shares = list(stability.sampling_rows(box, seed=1))
+    shares = compared(box, stability.sampling_rows(box, seed=1))
     assert failed(shares) == []
     assert all(0.25 <= row["exact"] <= 1 for row in shares if row["method"] == "conditioned")
-    estimates = list(stability.estimate_rows(box, seed=1))
+    estimates = compared(box, stability.estimate_rows(box, seed=1))
     assert failed(estimates) == []
-    compare_cases(box, [*shares, *estimates])
     assert all(0 < row["value"] < math.inf for row in of(estimates, quantity="volume"))
 
 
@@ -127,9 +126,7 @@ def test_sampling_and_estimates_hold(box, monkeypatch):
 
 @pytest.mark.parametrize("box", [BOX, td.Box(1e6, 1e-6)], ids=str)
 def test_predicted_times_are_right_to_a_few_roundings(box):
-    rows = list(stability.time_rows(box, seed=4))
-    compare_cases(box, rows)
-    ours = of(rows, method="stable")
+    ours = of(compared(box, stability.time_rows(box, seed=4)), method="stable")
     assert len(ours) == 8
     assert all(row["passed"] and row["count"] >= 350 for row in ours)
     assert all(0.05 < row["value"] < 4 for row in ours)
@@ -207,9 +204,8 @@ def test_a_bound_that_says_something_is_judged(monkeypatch):
 
 @pytest.mark.parametrize("box", [*BOXES, td.Box(1e40, 1.5e40), *map(slow, OTHERS)], ids=str)
 def test_everything_is_conserved_at_every_hard_radius(box):
-    rows = list(stability.dynamics_rows(box, seed=5, ordinary=4_000_000, hard=2_000_000))
+    rows = compared(box, stability.dynamics_rows(box, 5, ordinary=4_000_000, hard=2_000_000))
     assert len(rows) == 4 * len(stability.hard_radii(box))
-    compare_cases(box, rows)
     assert all(row["passed"] is True and row["count"] >= 2_000_000 for row in rows)
 
 
@@ -293,14 +289,13 @@ def test_scores_of_values_with_errors_that_are_right_and_wrong():
 def test_a_row_of_calibration_counts_what_the_face_prints(monkeypatch):
     """One seed of few bodies: scores of simulate are the deviations over the printed errors."""
     monkeypatch.setitem(calibration.CALL_SIZES, "simulate", {"least": {"budget": 1}})
-    name, z = "disc_collision_time", []
-    rows = [*calibration.rows(2, 5, ("r = 0.2",), ("simulate",))]
+    rows, z = [*calibration.rows(2, 5, ("r = 0.2",), ("simulate",))], []
     for seed in (5, 6):
-        one = td.simulate(PAPER, budget=1, seed=seed)[name]
+        one = td.simulate(PAPER, budget=1, seed=seed)["disc_collision_time"]
         z.append((one.value - one.exact) / one.stderr)
     kept = of(CalibrationTable.read(KEPT / "calibration.csv"), case="r = 0.2", size="least")
     assert cells(rows, "quantity") == cells(of(kept, call="simulate"), "quantity")
-    (row,) = of(rows, quantity=name)
+    (row,) = of(rows, quantity="disc_collision_time")
     assert (row["scores"], row["withheld"]) == (2, 0)
     assert row["mean"] == pytest.approx(np.mean(z))
     assert row["mean_square"] == pytest.approx(np.mean(np.square(z)))
