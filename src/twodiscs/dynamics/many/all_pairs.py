@@ -478,7 +478,7 @@ def add_hops(counts, first, hops):
 
 
 @compiled
-def advance_states(states, laps, time, law, kicks, hops, lanes=ensemble.LANES):
+def advance_states(states, laps, time, law, kicks, hops):
     """Advance the columns of ``states`` (rows, replicas) by a ``time`` > 0.
 
     The rounds of discs along periodic axes are added to ``laps`` (2N, replicas), those along x
@@ -486,8 +486,8 @@ def advance_states(states, laps, time, law, kicks, hops, lanes=ensemble.LANES):
     ``hops`` (replicas,) unless it is None.
     """
     discs, replicas = laps.shape[0] // 2, laps.shape[1]
-    for first in range(0, replicas, lanes):
-        stop = min(first + lanes, replicas)
+    for first in range(0, replicas, ensemble.LANES):
+        stop = min(first + ensemble.LANES, replicas)
         some, rounds = states[:, first:stop].copy(), np.zeros((2 * discs, stop - first))
         moving = new_lanes(some, np.full(stop - first, time), law)
         some_kicks = lane_kicks(first, stop, kicks)

@@ -128,14 +128,14 @@ def steps_method(scene, seed, step):
     return _by_counts("time_step", scene, scalar.COUNTED, FEW_REPLICAS, block, **more)
 
 
-def strip_method(scene, seed, blocks=8):
-    """Return the ``Method`` of initial states in a strip next to the hop, ``blocks`` as one."""
+def strip_method(scene, seed):
+    """Return the ``Method`` of initial states in a strip next to the hop, eight blocks as one."""
     near = strip.choose_strip(scene, TIMED_HOP)
     fractions = strip.stratum_fractions(scene, TIMED_HOP, near)
     expected = exact.rate(scene, TIMED_HOP) * 2 * near.time / near.fraction
 
     def block(i):
-        return strip.run_blocks(scene, TIMED_HOP, near, seed, i * blocks, (i + 1) * blocks)[0]
+        return strip.run_blocks(scene, TIMED_HOP, near, seed, 8 * i, 8 * (i + 1))[0]
 
     return Method(
         "strip", f"{TIMED_HOP}_time", scene, block,
