@@ -140,6 +140,9 @@ def test_intervals_of_many_are_those_of_trajectories(scene, event, monkeypatch):
     wide, going = np.full(65, 65), np.ones(1, np.bool_)
     given = scene, event, 7, 3, 4, replicas, (width, None, wide)
     (times, numbers), sums = many_intervals.record_intervals(*given, going, window=window)
+    # The same block after another one.
+    two, _ = many_intervals.record_intervals(*given[:3], 2, 4, *given[5:], going, window=window)
+    assert np.array_equal(two[:, replicas:], [times, numbers])
     # A call that is stopped has none, nor a window without a hop.
     for none in ({"going": ~going, "window": window}, {"going": going, "window": 1e-9}):
         assert not any(found.any() for found in many_intervals.record_intervals(*given, **none))
