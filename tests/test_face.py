@@ -381,6 +381,8 @@ td.sample(td.Scene(1.5, 1, 0.38), 1e7) → You asked for 10000000 samples and go
 td.sample(PAPER, error=0.5) → You asked for an error of 0.5 and got 0.01, because the
 td.sample(PAPER, error=0.01, budget=1e6, shell=2e-5, quantities="top_wall_area") → You asked
 td.sample(PAPER, error=0.5, budget=10) → You asked for a budget of 10, but the smallest
+td.sample(PAPER, error=0.5, budget=4e5) → You asked for a budget of 400000, but the smallest
+td.sample(PAPER, error=0.5, budget=6e5) → You asked for an error of 0.5 and got 0.058
 td.intervals(PAPER, "vertical_hop", 10) → You asked for 10 intervals and got 65536
 td.observe(PAPER, lambda a, b: b["x1"], [1], 10) → You asked for 10 replicas and
 td.observe(PAPER, lambda a, b: b["x1"], [1], 8192) →
