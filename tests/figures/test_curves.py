@@ -8,7 +8,7 @@ import pytest
 from figure_cases import BOXES, PAPER
 
 from twodiscs.figures import curves
-from twodiscs.figures.scene_figures import FIGURES
+from twodiscs.figures.scene_figures import FIGURES, Caption
 from twodiscs.model.scene import Box
 
 
@@ -71,3 +71,11 @@ def test_limits_have_their_radii_and_names(effects, expected):
     names = {radius: re.findall(pattern, text) for radius, text in marked}
     named = {index: radius for radius, some in names.items() for index in some}
     assert named == pytest.approx(expected, rel=1e-15)
+
+
+def test_a_caption_has_the_sentences_that_its_scenes_call_for():
+    caption = Caption("text", "plain", "square", "other", "discs", "field", "periodic")
+    assert caption.full_text() == caption.full_text(Box(1.5, 1.0)) == "text plain"
+    assert caption.full_text(Box(1.0, 1.0)) == "text plain square"
+    for name, value in (("discs", 3), ("field", 0.3), ("periodic", "x")):
+        assert caption.full_text(Box(1.0, 1.0, **{name: value})) == f"text other {name}"
