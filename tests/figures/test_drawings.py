@@ -22,10 +22,11 @@ def test_the_largest_discs_touch_each_other_and_walls(box):
     np.testing.assert_allclose([-one, two], [room, room], rtol=1e-12)
     longer = max(box.width, box.height) >= 2 * min(box.width, box.height)
     assert longer or math.dist(one, two) == pytest.approx(2 * radius, rel=1e-12)
-    # The map: both limits at every shape, and this box.
-    _, passing, largest, *_ = (line.get_data() for line in regimes.lines)
+    # The map: all limits at every shape, and this box.
+    either, passing, largest, *_ = (line.get_data() for line in regimes.lines)
     high = box.width < box.height
     for (shapes, radii), limit in (
+        (either, lambda b: 0.25),
         (passing, lambda b: b.threshold("horizontal_hop" if high else "vertical_hop")),
         (largest, lambda b: b.largest_radius),
     ):
@@ -71,6 +72,7 @@ def test_both_shells_are_equally_thick(box):
     distances = [abs(ends @ (1, -1)) / math.sqrt(2) for ends in edges]
     np.testing.assert_allclose(distances, shell.width, rtol=1e-12)
     assert shell.r - shell.width == pytest.approx(rim.r, rel=1e-12)
+    assert {(one.center, one.theta1, one.theta2) for one in (rim, shell)} == {((0, 0), 0, 90)}
 
 
 @pytest.mark.parametrize(("azimuth", "elevation"), [(-112.0, 24.0), (35.0, 60.0), (170.0, -10.0)])
