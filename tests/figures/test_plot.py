@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 import pytest
 from effect_scenes import PAPER, SCENES
-from factory import of
+from factory import EXPECTED, of
 from figure_cases import bars, points
 from matplotlib.figure import Figure
 from matplotlib.image import imread
@@ -53,6 +53,8 @@ def test_all_events_of_a_scan_are_drawn_with_their_errors():
     both = td.plot([scan(HOPS), scan(COLLISIONS)]).axes[0]
     for event in (HOPS, COLLISIONS):
         assert bars(both, *style.EVENT_LOOKS[event]) == bars(main, *style.EVENT_LOOKS[event])
+    loaded = td.plot(td.load(EXPECTED / "paper")["mean_times"]).axes[0]
+    assert all(points(loaded, *look) for look in style.EVENT_LOOKS.values())
 
 
 def test_a_warning_names_what_is_not_drawn():
@@ -87,6 +89,7 @@ def test_what_a_transmission_leaves_falls_at_twice_its_rate():
     """The points with their errors, and the curve κ exp(−2κt/τ) of the coefficient."""
     found = td.transmission(td.Scene(1.5, 1.0, 0.249), "horizontal_hop", 2**12)
     (axes,) = td.plot(found).axes
+    assert axes.get_title("left").endswith(r"1.5\times1$,  $r=0.249$,  horizontal hops")
     frame = found.frame().reset_index()
     known = frame["stderr"].notna()
     assert 0 < known.sum() < len(frame)
@@ -98,6 +101,8 @@ def test_what_a_transmission_leaves_falls_at_twice_its_rate():
     kappa = found.coefficient.value
     expected = kappa * np.exp(-2 * kappa * times / found.exact_mean)
     np.testing.assert_allclose(values, expected, rtol=1e-12)
+    times, values = next(n.get_data() for n in axes.lines if n.get_label() == "exact slope at 0")
+    np.testing.assert_allclose(values, 1 - 3 * 2**0.5 / 8 * times / (1.5 - 2 * 0.249), rtol=1e-12)
     # Hops that are not rare, in a field: neither the exact slope nor the plateau is known.
     (axes,) = td.plot(td.transmission(SCENES["field"], "horizontal_hop", 2**8)).axes
     assert axes.get_legend() is None
