@@ -200,8 +200,7 @@ def unclear(figure):
 
     An axis with numbers has "no label". A label has no "unit". A text is "beyond" the figure,
     "pale" on white, on an "other" text, or on a "line", an edge or a symbol, if no white box or rim
-    of the text covers them. Symbols are "unnamed" if no legend has their colour, marker and
-    filling. Each may stand in another entry, and a filling in a grey one.
+    of the text covers them. Others are ``misnamed``.
     """
     texts = shown_texts(figure)
     (width, height), named = figure.bbox.size, [(t.get_text(), b) for t, b in texts]
@@ -217,7 +216,29 @@ def unclear(figure):
         *(("pale", t.get_text()) for t, _ in texts if contrast(t.get_color()) < CONTRAST),
         *(("other", s, t) for (s, a), (t, b) in combinations(named, 2) if shared(a, b)),
         *(("line", t.get_text()) for t, b in bare if any(on(shared(b, c), e) for e, c in edges)),
+        *misnamed(figure),
+    ]
+
+
+def misnamed(figure):
+    """Return the faults of names in a figure, which need no layout, as ``unclear`` does.
+
+    Symbols are "unnamed" if no legend has their colour, marker and filling. Each may stand in
+    another entry, and a filling in a grey one. A name has "no legend", or is "twice" in one. A
+    number is at another "tick". The "letter" of a panel is not the next one.
+    """
+    keys = [[text.get_text() for text in key.get_texts()] for key in figure.findobj(Legend)]
+    names = {name for axes in figure.axes for name in axes.get_legend_handles_labels()[1]}
+    letters = [a.get_title("left")[1] for a in figure.axes if a.get_title("left")[:1] == "("]
+    axises = [axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)]
+    ticks = [t for axis in axises for t in axis.get_ticklabels(which="both")]
+    ticks = [(t.get_text(), t.get_position()) for t in ticks if t.get_text().isdecimal()]
+    return [
         *(("unnamed", *one) for one in sorted(unnamed_looks(figure))),
+        *(("no legend", name) for name in sorted(names.difference(*keys))),
+        *(("twice", *key) for key in keys if len({*key}) < len(key)),
+        *(("tick", text) for text, xy in ticks if int(text) not in xy),
+        *(("letter", one) for one, due in zip(letters, "abcdefgh", strict=False) if one != due),
     ]
 
 
