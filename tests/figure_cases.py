@@ -230,14 +230,13 @@ def misnamed(figure):
     keys = [[text.get_text() for text in key.get_texts()] for key in figure.findobj(Legend)]
     names = {name for axes in figure.axes for name in axes.get_legend_handles_labels()[1]}
     letters = [a.get_title("left")[1] for a in figure.axes if a.get_title("left")[:1] == "("]
-    axises = [axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)]
-    ticks = [t for axis in axises for t in axis.get_ticklabels(which="both")]
-    ticks = [(t.get_text(), t.get_position()) for t in ticks if t.get_text().isdecimal()]
+    axes = [axis for one in figure.axes for axis in (one.xaxis, one.yaxis)]
+    ticks = [(t.get_text(), t.get_position()) for k in axes for t in k.get_ticklabels(which="both")]
     return [
         *(("unnamed", *one) for one in sorted(unnamed_looks(figure))),
         *(("no legend", name) for name in sorted(names.difference(*keys))),
         *(("twice", *key) for key in keys if len({*key}) < len(key)),
-        *(("tick", text) for text, xy in ticks if int(text) not in xy),
+        *(("tick", text) for text, xy in ticks if text.isdecimal() and int(text) not in xy),
         *(("letter", one) for one, due in zip(letters, "abcdefgh", strict=False) if one != due),
     ]
 

@@ -99,8 +99,7 @@ def test_what_a_transmission_leaves_falls_at_twice_its_rate():
     np.testing.assert_allclose(crosses, frame.loc[~known, ["time", "kappa"]], rtol=1e-12)
     (times, values), *_ = (line.get_data() for line in axes.lines if "clusters" in line.get_label())
     kappa = found.coefficient.value
-    expected = kappa * np.exp(-2 * kappa * times / found.exact_mean)
-    np.testing.assert_allclose(values, expected, rtol=1e-12)
+    np.testing.assert_allclose(values, kappa * np.exp(-2 * kappa * times / found.exact_mean), 1e-12)
     times, values = next(n.get_data() for n in axes.lines if n.get_label() == "exact slope at 0")
     np.testing.assert_allclose(values, 1 - 3 * 2**0.5 / 8 * times / (1.5 - 2 * 0.249), rtol=1e-12)
     # Hops that are not rare, in a field: neither the exact slope nor the plateau is known.

@@ -319,6 +319,11 @@ def test_a_study_whose_hops_are_rare_or_do_not_end_has_a_figure():
     assert r"1.5\times1" in DRAW["friction"](box, tables).axes[0].get_title("left")
 
 
+def test_a_place_with_rows_of_a_build_and_of_a_long_run_is_named_once():
+    run = [row for row in long_run("passages") if row["distance"] != 2.0**-6]
+    assert misnamed(DRAW["transmission"](PAPER, {"passages": table("passages"), "kept": run})) == []
+
+
 def test_every_figure_of_a_study_is_compared():
     """Costs are times, which no table of the repository has: tests of the study compare them."""
     elsewhere = "accuracy_cost accuracy_cost_by_radius calibration stability stability_of_runs tori"
@@ -390,8 +395,7 @@ LAWS = {
     ("friction", "kappa"): [lambda x: 0.75 / x, np.ones_like, transmission_with_friction],
     ("files", "collapse"): [lambda u: np.sqrt(u) + u],
     ("distributions", "rates"): [lambda t: 3 / t],
-    ("tails", "tails"): [lambda t: np.exp(-t)],
-    ("tails", "exponential"): [lambda t: np.exp(-t)],
+    **{("tails", panel): [lambda t: np.exp(-t)] for panel in ("tails", "exponential")},
     ("thresholds", "hops"): [lambda x: 10 * (x / 4e-5) ** -2, lambda x: 10 * (x / 4e-5) ** -1.5],
     ("stability_of_runs", "c"): [lambda bits: 2.0**bits / 2**53],
     # Henderson's equation of state, for the full and for the dotted line.
