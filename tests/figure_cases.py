@@ -224,17 +224,18 @@ def misnamed(figure):
     """Return the faults of names in a figure, which need no layout, as ``unclear`` does.
 
     Symbols are "unnamed" if no legend has their colour, marker and filling. Each may stand in
-    another entry, and a filling in a grey one. A name has "no legend", or is "twice" in one. A
-    number is at another "tick". The "letter" of a panel is not the next one.
+    another entry, and a filling in a grey one. A name has "no legend", unless it is the only one,
+    or is "twice" in one. A whole number is at another "tick", on an axis with no power of ten at
+    its end. The "letter" of a panel is not the next one.
     """
     keys = [[text.get_text() for text in key.get_texts()] for key in figure.findobj(Legend)]
     names = {name for axes in figure.axes for name in axes.get_legend_handles_labels()[1]}
     letters = [a.get_title("left")[1] for a in figure.axes if a.get_title("left")[:1] == "("]
-    axes = [axis for one in figure.axes for axis in (one.xaxis, one.yaxis)]
-    ticks = [(t.get_text(), t.get_position()) for k in axes for t in k.get_ticklabels(which="both")]
+    axs = [k for a in figure.axes for k in (a.xaxis, a.yaxis) if not k.major.formatter.get_offset()]
+    ticks = [(t.get_text(), t.get_position()) for k in axs for t in k.get_ticklabels(which="both")]
     return [
         *(("unnamed", *one) for one in sorted(unnamed_looks(figure))),
-        *(("no legend", name) for name in sorted(names.difference(*keys))),
+        *(("no legend", one) for one in names.difference(*keys) if keys or len(names) > 1),
         *(("twice", *key) for key in keys if len({*key}) < len(key)),
         *(("tick", text) for text, xy in ticks if text.isdecimal() and int(text) not in xy),
         *(("letter", one) for one, due in zip(letters, "abcdefgh", strict=False) if one != due),
