@@ -16,7 +16,7 @@ from zipfile import ZipFile
 
 import pytest
 import yaml
-from checkout import REPOSITORY
+from checkout import REPOSITORY, Checkout
 from commands import python
 from jinja2 import Environment, StrictUndefined
 
@@ -60,8 +60,7 @@ def installed(tmp_path_factory):
     target = folder / "my packages"
     python(*pip, "install", *offline, "--target", target, built, check=True)
     absent = {{"pyyaml": "yaml"}.get(name, name) for name in EXTRAS}
-    (folder / "blocked").mkdir()
-    (folder / "blocked/sitecustomize.py").write_text(BLOCKED.format(absent=absent))
+    Checkout(folder / "blocked").edit("sitecustomize.py", BLOCKED.format(absent=absent))
     return target
 
 
@@ -200,8 +199,7 @@ def test_the_lock_has_everything():
 def test_make_keeps_an_environment_that_it_did_not_make(tmp_path):
     for name in ("Makefile", "requirements.lock", "pyproject.toml"):
         shutil.copy(REPOSITORY / name, tmp_path)
-    (tmp_path / ".venv").mkdir()
-    (tmp_path / ".venv/mine").touch()
+    Checkout(tmp_path).edit(".venv/mine", "")
     run = subprocess.run(["make", "test"], cwd=tmp_path, capture_output=True, text=True)
     assert run.returncode == 2
     assert run.stderr.startswith("make did not make this .venv, and keeps it: give it another name")

@@ -7,7 +7,7 @@ import re
 import shutil
 
 import pytest
-from checkout import REPOSITORY, copy_tables
+from checkout import REPOSITORY, Checkout, copy_tables
 from typst import TypstError
 
 from twodiscs.analysis.tables import SCENE_TABLES
@@ -72,7 +72,7 @@ def paper(tmp_path_factory):
     with style.context():
         style.save(style.new_figure(1.0), page)
 
-    def make(figures=(*FIGURES,), common=(*STUDY_FIGURES,), scenes=1, empty=(), edit=("", "", "")):
+    def make(figures=(*FIGURES,), common=(*STUDY_FIGURES,), scenes=1, empty=(), edit=()):
         tmp_path = tmp_path_factory.mktemp("paper")
         results, folder = tmp_path / "results", tmp_path / "elsewhere"
         names = ["paper", "other", "third"][:scenes]
@@ -83,11 +83,8 @@ def paper(tmp_path_factory):
                 shutil.copy(page, results / own / "figures" / f"{name}.pdf")
         shutil.copytree(PAPER, folder, ignore=shutil.ignore_patterns("expected", "shards"))
         shutil.copy(PAPER.parent / "CITATION.cff", tmp_path)
-        file, old, new = edit
-        if file:
-            text = (tmp_path / file).read_text()
-            assert text.count(old) == 1
-            (tmp_path / file).write_text(text.replace(old, new))
+        if edit:
+            Checkout(tmp_path).replace(*edit)
         one = {"width": 1.5, "height": 1.0, "figures": figures, "tables": []}
         output = tmp_path / "results" / "paper.pdf"
         given = {"figures": common, "seed": 1908, "configuration": "0123456789abcdef"}

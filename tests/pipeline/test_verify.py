@@ -9,7 +9,7 @@ import signal
 
 import pandas as pd
 import pytest
-from checkout import REPOSITORY
+from checkout import REPOSITORY, Checkout
 from commands import python
 from factory import EXPECTED, empty
 
@@ -34,23 +34,18 @@ TABLES = {
 }
 
 
-def write(path, text):
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text)
-
-
 @pytest.fixture
 def results(tmp_path):
     """Results as far as they are compared."""
-    folder = tmp_path / "results"
+    place = Checkout(tmp_path / "results")
     for name, text in TABLES.items():
-        write(folder / name, text)
+        place.edit(name, text)
     for radius in ("0.1", "0.24"):
         content = POINT | {"radius": float(radius), "seconds": 3.25, "sha256": "0"}
-        write(folder / f"small/points/dynamics/{radius}.json", json.dumps(content))
+        place.edit(f"small/points/dynamics/{radius}.json", json.dumps(content))
     keys = {"seed": 1, "scenes": [{"name": "small"}], "accuracy_cost": {"seconds": 5}}
-    write(folder / "configuration.json", json.dumps(keys))
-    return folder
+    place.edit("configuration.json", json.dumps(keys))
+    return place.path
 
 
 @pytest.fixture
@@ -60,7 +55,7 @@ def expected(results, tmp_path, monkeypatch):
     (tmp_path / "long_run").mkdir()
     table = GridTable, rows
     monkeypatch.setattr(verify, "long_run_tables", lambda kept: [(kept / "grid.csv", *table)])
-    write(folder / "gone" / "volume.csv", "of an earlier configuration\n")
+    Checkout(folder).edit("gone/volume.csv", "of an earlier configuration\n")
     points = sorted((results / "small/points/dynamics").glob("*.json"))
     verify.renew(results, folder, [results / name for name in TABLES], points)
     return folder
@@ -209,7 +204,7 @@ def test_missing_files_and_another_configuration_are_named(results, expected):
 
 def test_nothing_expected_is_no_pass(results, tmp_path):
     empty = tmp_path / "empty"
-    write(empty / "configuration.json", "{}")
+    Checkout(empty).edit("configuration.json", "{}")
     with pytest.raises(ValueError, match="holds no expected results"):
         verify.differences(results, empty)
 

@@ -80,8 +80,7 @@ def test_as_a_module_it_builds_in_a_folder_with_a_prefix(own, tmp_path):
     names = {"Snakefile", "mine.yaml", "mine.txt", "below", ".snakemake"}
     assert {path.name for path in tmp_path.iterdir()} == names
     # The configuration may come from the command, and a report needs no cores.
-    snakefile = place.path / "Snakefile"
-    snakefile.write_text(snakefile.read_text().replace('configfile: "mine.yaml"', ""))
+    place.replace("Snakefile", 'configfile: "mine.yaml"', "")
     assert place.jobs("--configfile", "mine.yaml", "--", "discs_all") == []
     place.snakemake("--configfile", "mine.yaml", "--report", "report.html")
     assert "check.csv" in (tmp_path / "report.html").read_text()

@@ -11,7 +11,7 @@ from pathlib import Path
 import psutil
 import pytest
 import yaml
-from checkout import REPOSITORY, folder
+from checkout import REPOSITORY, Checkout, folder
 
 #: Points that are small enough for one job; and one with effects, in shards.
 BLOCK = {"box": {"width": 1.5, "height": 1.0}, "watch": {"mean_times": ["top_wall"]}}
@@ -49,10 +49,9 @@ def local(unbuilt, tmp_path_factory):
 def profile(home, name, **other):
     """Return the arguments for a profile with ``other`` settings, kept beside it."""
     settings = yaml.safe_load((REPOSITORY / "profiles" / name / "config.yaml").read_text())
-    place = home / f"{name}-here"
-    place.mkdir()
-    (place / "config.yaml").write_text(yaml.safe_dump(settings | other))
-    return "--profile", str(place)
+    place = Checkout(home / f"{name}-here")
+    place.edit("config.yaml", yaml.safe_dump(settings | other))
+    return "--profile", str(place.path)
 
 
 def test_a_queue_knows_how_a_job_ended(tmp_path, monkeypatch):

@@ -73,8 +73,7 @@ def test_a_run_that_fails_ends_with_the_reason_its_log_and_what_to_do(built):
     cut = "results/full/check.csv is not what its job wrote; delete it, and it is made again"
 
     def last_lines():
-        lines = built.twodiscs_run(configuration, "check", passes=False).stderr.splitlines()
-        return lines[-3:]
+        return built.twodiscs_run(configuration, "check", passes=False).stderr.splitlines()[-3:]
 
     # A picture that another one was copied over is not believed.
     one, other = (results / f"full/figures/{name}.pdf" for name in ("mean_hop_time", "volume"))
@@ -107,9 +106,8 @@ def test_a_run_that_fails_ends_with_the_reason_its_log_and_what_to_do(built):
 
 def test_results_are_where_the_run_is_and_a_build_beside_the_file_is_named(place):
     """A new configuration is the report on mean times at three radii, with key figures."""
-    for name in ("elsewhere", "results-my"):
-        (place.path / name).mkdir()
-    (place.path / "results-my/configuration.json").write_text(json.dumps(read("my.yaml")))
+    (place.path / "elsewhere").mkdir()
+    place.edit("results-my/configuration.json", json.dumps(read("my.yaml")))
     done = Checkout(place.path / "elsewhere", place.home).twodiscs_run("../my.yaml", "--dry-run")
     lines = done.stdout.splitlines()
     assert lines[0] == f"Results: {place.path}/elsewhere/results-my"
