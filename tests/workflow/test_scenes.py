@@ -54,10 +54,10 @@ CALLED = {
 }
 
 
-def jobs(checkout, path, scenes, *targets):
-    """Return the jobs of a dry run of these ``scenes`` and nothing that is made once."""
-    path.write_text(yaml.safe_dump({"shared": [], "scenes": scenes}))
-    return checkout.jobs("--configfile", str(path), "--", *targets)
+def jobs(checkout, path, scenes, **shared):
+    """Return the jobs of a dry run of these ``scenes`` and of what is ``shared``."""
+    path.write_text(yaml.safe_dump(shared | {"scenes": scenes}))
+    return checkout.jobs("--configfile", str(path))
 
 
 def of(jobs, scene):
@@ -86,7 +86,7 @@ def test_every_subset_of_what_is_watched(unbuilt, tmp_path):
         | {"radii": [small, 0.2 * unit], "watch": {name: WATCHED[name][0] for name in subset}}
         for i, (subset, effects, unit, small) in enumerate(cases)
     ]
-    found = jobs(unbuilt, tmp_path / "subsets.yaml", scenes)
+    found = jobs(unbuilt, tmp_path / "subsets.yaml", scenes, shared=[])
     for i, (subset, effects, _, _) in enumerate(cases):
         parts = [WATCHED[name][1:] for name in subset]
         rules, tables, figures = (set().union(*part) for part in zip(*parts, strict=True))
@@ -105,7 +105,7 @@ def test_scenes_with_effects_call_for_what_has_a_place(unbuilt, tmp_path):
     assert [scene["name"] for scene in scenes] == list(BLOCKS)
     assert all(block["results"] == f"results/scenes/{name}" for name, block in BLOCKS.items())
     assert {*CALLED} <= {*BLOCKS}
-    found = jobs(unbuilt, tmp_path / "all.yaml", scenes)
+    found = jobs(unbuilt, tmp_path / "all.yaml", scenes, shared=[])
     shared = {rule for rule, wildcards in found if "scene" not in repr(wildcards)}
     assert shared == ALWAYS
     for request in load({"scenes": scenes}).scenes:
@@ -134,12 +134,10 @@ def test_the_manuscript_is_no_target_without_a_plain_scene(unbuilt):
     ],
 )
 def test_what_is_built_once_is_what_is_asked_for(unbuilt, tmp_path, given, studies, more):
-    path = tmp_path / "shared.yaml"
     scene = {"name": "a", "box": {"width": 1.5, "height": 1}, "watch": {"volume": True}}
-    path.write_text(yaml.safe_dump(given | {"scenes": [scene]}))
-    jobs = unbuilt.jobs("--configfile", str(path))
-    assert not [words for _, words in jobs if {*words} & {"scene=full", "scene=walls"}]
-    found = [(rule, wildcards) for rule, wildcards in jobs if "scene" not in repr(wildcards)]
+    every = jobs(unbuilt, tmp_path / "shared.yaml", [scene], **given)
+    assert not [words for _, words in every if {*words} & {"scene=full", "scene=walls"}]
+    found = [(rule, wildcards) for rule, wildcards in every if "scene" not in repr(wildcards)]
     made = {w[0].removeprefix("table=") for rule, w in found if rule == "study_table"}
     assert made == ({*STUDY_TABLES} if studies is None else studies)
     once = {rule for rule, _ in found} - {"study_table", "study_part", "shared_figure"}

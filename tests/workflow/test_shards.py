@@ -37,12 +37,11 @@ def test_shards_are_jobs_of_a_dry_run_and_one_of_another_scene_is_refused(unbuil
     def planned():
         return {words for rule, words in place.jobs(TABLE) if rule == "shard"}
 
-    first, files = planned(), []
+    first = planned()
     name_of = "results/{scene}/shards/{stage}/{radius}/{component}-{first}-{stop}.json".format
-    for words in first:
-        name = name_of(**dict(word.split("=") for word in words))
+    files = [name_of(**dict(word.split("=") for word in words)) for words in first]
+    for name in files:
         place.edit(name, "{}")
-        files.append(name)
     assert len(files) > 3
     assert all(any(f"/{each}-" in name for name in files) for each in ("all", "horizontal_hop"))
     place.snakemake("--cores", "1", "results/code/physics.sha256")
