@@ -26,7 +26,6 @@ from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.dynamics.paths import check_start
 from twodiscs.figures import style
 from twodiscs.measure.measurements import Measurement, measurement
-from twodiscs.model.formats import texts_with_error
 from twodiscs.points.monte_carlo_point import InsertionPoint
 from twodiscs.sampling.initial_states import components
 from twodiscs_paper.configuration import yaml_files
@@ -128,27 +127,11 @@ def test_measurements_know_their_errors_and_print_themselves(simulated, sampled)
     assert "length⁴" in str(sampled["volume"])
 
 
-@pytest.mark.parametrize(
-    ("value", "error", "texts"),
-    [
-        (1.33704985, 0.0015016, ("1.3370", "0.0015")), (0.356541, 7.49e-5, ("0.356541", "7.5e-05")),
-        (0.3351, 0.0996, ("0.34", "0.10")), (9.9996, 0.0012, ("9.9996", "0.0012")),
-        (9.9999, 0.012, ("10.000", "0.012")), (1e-4, 0.053, ("0.000", "0.053")),
-        (-0.0018, 0.0037, ("-0.0018", "0.0037")), (1237.0, 120.0, ("1.24e+03", "1.2e+02")),
-        (0.4, 12.0, ("0", "12")), (123.4, 12.0, ("123", "12")), (0.5, None, ("0.5", "")),
-        (1 / 3, 0.0, ("0.33333333", "")), (None, None, ("–", "")), (0.0, 0.1, ("0.00", "0.10")),
-    ],
-)  # fmt: skip
-def test_a_value_has_the_digits_of_its_error(value, error, texts):
-    assert texts_with_error(value, error) == texts
-
-
 def test_a_measurement_without_an_honest_error_has_no_interval_and_no_score():
     blocked = td.simulate(td.Scene(1.5, 1.0, 0.3), 0.05, events=["horizontal_hop"], budget=1)
     tiny = td.sample(td.Scene(1.5, 1.0, 1e-9), 1e5, quantities=["any_wall_area"])
     for found in (blocked["horizontal_hop_time"], tiny["any_wall_area"]):
-        assert (found.value, found.z) == (None, None)
-        assert (found.interval(), found.relative_stderr) == (None, None)
+        assert {found.value, found.z, found.interval(), found.relative_stderr} == {None}
         assert "z = " not in str(found)
     assert "impossible" in str(blocked)
     assert "0.00" not in f"{blocked}{tiny}"
