@@ -28,5 +28,5 @@ def refused(monkeypatch, capsys, *words):
 
 def python(*words, **options):
     """Return the completed process of Python with some ``words``, and what it printed."""
-    words = [sys.executable, *map(str, words)]
-    return subprocess.run(words, **{"capture_output": True, "text": True} | options)
+    usual = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    return subprocess.run([sys.executable, *map(str, words)], **usual | options)

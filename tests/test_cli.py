@@ -13,7 +13,6 @@ import math
 import os
 import re
 import signal
-import subprocess
 import sys
 from contextlib import suppress
 from io import TextIOWrapper
@@ -153,8 +152,7 @@ def test_no_stream_loses_a_result(shell, monkeypatch, capsys):
         assert command(monkeypatch, *words) == status
         assert capsys.readouterr().out == result
     with open("/dev/full", "w") as full:
-        to = {"stdout": full, "stderr": subprocess.PIPE, "capture_output": False}
-        done = python("-X", "utf8", "-m", "twodiscs", *EXACT, **to)
+        done = python("-X", "utf8", "-m", "twodiscs", *EXACT, stdout=full)
     assert done.returncode == 2
     assert done.stderr == f"{expected}error: standard output: No space left on device\n"
 
@@ -169,8 +167,7 @@ def test_a_closed_output_is_refused_before_the_work(monkeypatch, capsys):
 def test_who_reads_may_stop_reading(words):
     reader, writer = os.pipe()
     os.close(reader)
-    to = {"stdout": writer, "stderr": subprocess.PIPE, "capture_output": False}
-    run = python("-m", "twodiscs", *words, **to)
+    run = python("-m", "twodiscs", *words, stdout=writer)
     os.close(writer)
     assert run.stderr == ""
 

@@ -329,8 +329,7 @@ def test_monte_carlo_samples_at_most_64_discs():
 
 
 def test_described_scenes_name_the_events_that_dynamics_detects():
-    box = {"width": 1.5, "height": 1.0}
-    some = {"name": "some", "box": box, "watch": {"mean_times": ["top_wall", "disc_collision"]}}
-    none = {"name": "none", "box": box, "watch": {"volume": True, "mean_times": False}}
+    some = PLAIN["scenes"][0] | {"watch": {"mean_times": ["top_wall", "disc_collision"]}}
+    none = some | {"name": "none", "watch": {"volume": True, "mean_times": False}}
     described = load({"scenes": [some, none]}).described()
     assert [scene["detected"] for scene in described] == [["disc_collision", "top_wall"], []]
