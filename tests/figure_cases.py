@@ -164,8 +164,7 @@ def bars(axes, colour, marker):
     for line, _, (bar, *_) in axes.containers:
         own = (line.get_color(), line.get_marker()) == (colour, marker)
         if own and bar.get_segments():
-            ends = np.array(bar.get_segments())[:, :, 1]
-            half = (ends[:, 1] - ends[:, 0]) / 2
+            half = np.ptp(np.array(bar.get_segments())[:, :, 1], axis=1) / 2
             found += zip(line.get_xdata(), line.get_ydata(), half, strict=True)
     return sorted(found)
 

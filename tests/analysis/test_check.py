@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from effect_scenes import SCENES
-from factory import LAWS, RADII, Laws, as_theory, counts_point, empty, exact_values
+from factory import LAWS, RADII, Laws, as_theory, counts_point, empty, exact_values, of
 
 from twodiscs.analysis import check, scores
 from twodiscs.analysis.tables import AreasTable, HopHistogramTable, MeanTimesTable, VolumeTable
@@ -57,8 +57,7 @@ def text_table(points, theory=None):
 
 
 def failed(rows):
-    names = "comparison", "quantity", "radius"
-    return {tuple(row[name] for name in names) for row in rows if row["passed"] is False}
+    return {(row["comparison"], row["quantity"], row["radius"]) for row in of(rows, passed=False)}
 
 
 # When all is right ----------------------------------------------------------------------------

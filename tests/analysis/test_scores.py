@@ -112,8 +112,7 @@ def test_a_sum_of_two_shells_is_as_normal_as_the_rarer_one(probabilities, due, o
 
 
 def test_union_never_rejects_more_often_than_it_says():
-    rng = np.random.default_rng(5)
-    first, noise = rng.standard_normal((2, 20_000))
+    first, noise = np.random.default_rng(5).standard_normal((2, 20_000))
     for correlation in (-1.0, 0.0, 0.7):
         second = correlation * first + math.sqrt(1 - correlation**2) * noise
         size = np.abs([scores.union_z(pair, 1) for pair in zip(first, second, strict=True)])
@@ -156,9 +155,8 @@ def test_bonferroni_bound():
 @pytest.mark.parametrize("n", [2, 52])
 @pytest.mark.parametrize("test", [scores.z_mean, scores.z_spread])
 def test_scores_of_scores_are_standard_normal(test, n):
-    rng = np.random.default_rng(8)
     trials = 10_000
-    found = np.array([test(row) for row in rng.standard_normal((trials, n))])
+    found = np.array([test(row) for row in np.random.default_rng(8).standard_normal((trials, n))])
     for c in (1.0, 2.0, 3.0):
         low, high = five_sigma(2 * ndtr(-c), trials)
         assert low <= (np.abs(found) >= c).sum() <= high

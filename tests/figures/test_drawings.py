@@ -87,8 +87,7 @@ def test_a_prism_hides_three_edges_and_a_cylinder_its_other_half(monkeypatch, az
     # An end of the cylinder lies in two faces each; three of the six faces are seen.
     ends = [patch for patch in axes.patches if len(patch.get_xy()) > 5]
     hidden = [line for line in axes.lines if len(line.get_xdata()) > 2]
-    assert len(ends) + len(hidden) == 4
-    assert len(ends) == 2
+    assert len(ends) == len(hidden) == 2
 
 
 def test_the_page_is_at_right_angles_to_the_view():

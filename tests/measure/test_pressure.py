@@ -101,8 +101,7 @@ def test_measured_pressures_are_the_exact_ones(name, recwarn):
     """20 scores at 5 sigma: one false alarm in 87,000."""
     scene = EXACT[name]
     # Crowds of collisions of rough discs take more replicas.
-    duration = 2e6 if name == "rough" else 1e5
-    times = td.simulate(scene, duration=duration, seed=4)
+    times = td.simulate(scene, duration=2e6 if name == "rough" else 1e5, seed=4)
     found = td.pressure(times)
     assert list(found) == list(td.pressure(scene))
     events = ("right_wall", "top_wall") if scene.walled else ("disc_collision",)
@@ -128,8 +127,7 @@ def test_a_pressure_has_an_error_if_none_of_its_times_is_too_rare_for_one(rare, 
     point = replace(point, counts=point.counts | {rare: number}, products=products)
     found = td.pressure(Measurements("simulate", PAPER, MeanTimesTable.rows([point]), {}, point))
     known = {name for name, one in found.items() if one.stderr}
-    other = {*WALLS} - {rare}
-    assert known == {"virial_pressure", *(f"{wall}_pressure" for wall in other)}
+    assert known == {"virial_pressure", *(f"{wall}_pressure" for wall in {*WALLS} - {rare})}
     assert {name for name, one in found.items() if one.z is not None} == known
     assert (found[f"{rare}_pressure"].value is None) == (number == 0)
 

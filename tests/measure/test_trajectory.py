@@ -57,9 +57,8 @@ def test_memory_holds_two_tables():
 
 def test_ase_reads_it(path, tmp_path):
     ase = pytest.importorskip("ase.io", reason="ASE comes with requirements.lock")
-    read = ase.read
     path.to_xyz(tmp_path / "a.xyz", [0.0, 2.5])
-    first, second = read(tmp_path / "a.xyz", ":", format="extxyz")
+    first, second = ase.read(tmp_path / "a.xyz", ":", format="extxyz")
     scene, axes = path.scene, len(path.scene.axes)
     corner = np.array([scene.side(axis) / 2 for axis in scene.axes])
     assert np.allclose(second.positions[:, :axes] - corner, path.positions([2.5])[0], atol=1e-15)
@@ -71,7 +70,7 @@ def test_ase_reads_it(path, tmp_path):
     for name in ("all.xyz.gz", "again.xyz.gz"):
         path.to_xyz(tmp_path / name)
     assert (tmp_path / "all.xyz.gz").read_bytes() == (tmp_path / "again.xyz.gz").read_bytes()
-    frames = read(tmp_path / "all.xyz.gz", ":", format="extxyz")
+    frames = ase.read(tmp_path / "all.xyz.gz", ":", format="extxyz")
     assert [frame.info["Time"] for frame in frames] == [*path["time"]]
     assert first.get_kinetic_energy() == pytest.approx(0.5) or scene.field
     assert second.info["Time"] == 2.5

@@ -19,9 +19,8 @@ BLOCK = {"name": "a", "box": {"width": 1.5, "height": 1.0}}
 
 def scene(**keys):
     """Return the request of a scene with these ``keys`` in its block, or in the configuration."""
-    block = BLOCK | {"radii": [0.24, 0.3]}
     top = {name: keys.pop(name) for name in ("shard_events",) if name in keys}
-    return load({"shared": [], **top, "scenes": [block | keys]}).scenes[0]
+    return load({"shared": [], **top, "scenes": [BLOCK | {"radii": [0.24, 0.3]} | keys]}).scenes[0]
 
 
 def test_a_limit_is_above_the_price():

@@ -62,7 +62,7 @@ def evaluated(expression, *scripts):
 # Formulas -----------------------------------------------------------------------------------------
 
 BOXES = [Box(*sides) for sides in ((1.5, 1), (3, 1), (1, 1), (2, 1), (0.7, 1.2), (0.5, 2), (40, 1))]
-MORE = [Box(*sides, **effects) for effects in EFFECTS[1:] for sides in ((1.5, 1), (0.5, 2))]
+BOXES += [Box(*sides, **effects) for effects in EFFECTS[1:] for sides in ((1.5, 1), (0.5, 2))]
 
 
 def radii(box):
@@ -79,9 +79,8 @@ def radii(box):
 
 
 def test_formulas_and_limits_in_javascript_are_those_of_the_package():
-    boxes = BOXES + MORE
-    given = [[box.width, box.height, radius, box.effects] for box in boxes for radius in radii(box)]
-    limits = [[box.width, box.height, box.effects] for box in boxes]
+    given = [[box.width, box.height, radius, box.effects] for box in BOXES for radius in radii(box)]
+    limits = [[box.width, box.height, box.effects] for box in BOXES]
     computed, found = evaluated(
         f"[{json.dumps(given)}.map((of) => exact(...of)),"
         f" {json.dumps(limits)}.map((box) => [largestRadius(...box), thresholds(...box)])]",
@@ -101,7 +100,7 @@ def test_formulas_and_limits_in_javascript_are_those_of_the_package():
                 good = known[event]
                 same = value is None if good is None else math.isclose(value, good, rel_tol=worst)
                 assert same, (box, radius, event, kind, value, good)
-    for box, (largest, named) in zip(boxes, found, strict=True):
+    for box, (largest, named) in zip(BOXES, found, strict=True):
         # The package finds limits with effects by bisection.
         worst = 1e-12 if box.effects else 1e-15
         assert largest == pytest.approx(box.last_radius, rel=worst)

@@ -6,7 +6,7 @@ Comparisons are held to five standard errors: a false alarm in 6e-7 of all seeds
 """
 
 import math
-from itertools import pairwise, product
+from itertools import count, pairwise, product
 from types import SimpleNamespace
 
 import numpy as np
@@ -122,8 +122,7 @@ def test_runs_of_two_four_and_more_blocks_are_means_of_their_own_blocks():
 
 def fitted(errors, floor=0.0):
     """Return the power and its error of blocks with a tenth of these ``errors``."""
-    found = dict(costs.doublings(made([0.0]), np.asarray(errors) / 10))
-    return costs.power(found, floor / 10)
+    return costs.power(dict(costs.doublings(made([0.0]), np.asarray(errors) / 10)), floor / 10)
 
 
 def test_the_power_of_independent_blocks_has_the_error_that_it_says():
@@ -174,8 +173,7 @@ def test_rows_of_a_method(monkeypatch):
 
 
 def test_a_measurement_ends_after_its_time_or_its_blocks(monkeypatch):
-    clock = iter(range(1000))
-    monkeypatch.setattr(costs.time, "process_time", lambda: float(next(clock)))
+    monkeypatch.setattr(costs.time, "process_time", count(0.0).__next__)
     sums, times = costs.measured(made([0.5]), 9.0, 100)
     assert len(sums) == 4
     assert [*times] == [1.0] * 4
