@@ -153,8 +153,7 @@ def trajectory(rng, box, events=600):
 
 def points(axes, colour, marker):
     """Return the set of all (x, y) of the symbols of one look."""
-    look = colour, marker
-    lines = [line for line in axes.lines if (line.get_color(), line.get_marker()) == look]
+    lines = [n for n in axes.lines if (n.get_color(), n.get_marker()) == (colour, marker)]
     return {(float(x), float(y)) for n in lines for x, y in zip(*n.get_data(), strict=True)}
 
 
@@ -162,8 +161,7 @@ def bars(axes, colour, marker):
     """Return (x, y, half of its bar) of all symbols of one look that have error bars, by x."""
     found = []
     for line, _, (bar, *_) in axes.containers:
-        own = (line.get_color(), line.get_marker()) == (colour, marker)
-        if own and bar.get_segments():
+        if (line.get_color(), line.get_marker()) == (colour, marker) and bar.get_segments():
             half = np.ptp(np.array(bar.get_segments())[:, :, 1], axis=1) / 2
             found += zip(line.get_xdata(), line.get_ydata(), half, strict=True)
     return sorted(found)

@@ -46,9 +46,8 @@ def page(name):
 @cache
 def blocks(name):
     """Return the (language, text) of every block of a page; indented ones are yaml or shell."""
-    text = page(name)
-    found = [(language, body) for language, body in FENCED.findall(text)]
-    for body in INDENTED.findall(FENCED.sub("", text)):
+    found = FENCED.findall(page(name))
+    for body in INDENTED.findall(FENCED.sub("", page(name))):
         body = re.sub(r"^ {4}", "", body, flags=re.MULTILINE)
         found.append(("yaml" if body.lstrip().startswith("- name:") else "shell", body))
     return found
@@ -63,10 +62,9 @@ def same(shown, found, digits=13):
 
     def same_word(shown, found):
         try:
-            close = math.isclose(float(shown), float(found), rel_tol=10**-digits)
+            return shown == found or math.isclose(float(shown), float(found), rel_tol=10**-digits)
         except ValueError:
-            close = False
-        return close or shown == found
+            return False
 
     shown, found = shown.split(), found.split()
     return len(shown) == len(found) and all(map(same_word, shown, found))

@@ -64,8 +64,7 @@ def test_a_name_and_a_box_are_enough(width, height):
 
 
 def test_the_check_and_the_cost_of_a_scene_read_the_points_of_all_stages():
-    configuration = load({"scenes": [PLAIN["scenes"][0]]})
-    (scene,) = configuration.scenes
+    configuration, scene = load(PLAIN), one()
     for table in ("check", "cost"):
         assert [*configuration.points(scene.name, table)] == [*scene.keys]
     assert [*scene.keys] == ["monte_carlo", "dynamics", "intervals"]
@@ -305,8 +304,7 @@ def test_more_discs_are_a_scene_of_their_own():
     assert ring.quantities.trajectory == 0.143  # half of the largest radius
     histogram = one(discs=3, radii=[0.1], watch={"hop_histogram": {"event": "horizontal_hop"}})
     assert histogram.quantities.hop_histogram == (0.025, 0.075, 0.125, 0.175)
-    configuration = load({"scenes": [PLAIN["scenes"][0] | {"discs": 3, "radii": [0.1]}]})
-    assert configuration.plain == ()
+    assert load({"scenes": [PLAIN["scenes"][0] | {"discs": 3, "radii": [0.1]}]}).plain == ()
 
 
 def test_results_are_a_folder_that_holds_no_sources(tmp_path, monkeypatch):

@@ -44,15 +44,14 @@ def test_all_events_of_a_scan_are_drawn_with_their_errors():
     figure = td.plot(found)
     main, lower = figure.axes
     assert [axes.get_label() for axes in figure.axes] == ["main", "residuals"]
+    both = td.plot([scan(HOPS), scan(COLLISIONS)]).axes[0]
     for event in (HOPS, COLLISIONS):
         look = style.EVENT_LOOKS[event]
         np.testing.assert_allclose(bars(main, *look), due_bars(found, event), rtol=1e-9)
         z = {(row["radius"], row["z"]) for one in found for row in of(one.rows, event=event)}
         assert z <= points(lower, *look)
         assert len(z) == len(RADII)
-    both = td.plot([scan(HOPS), scan(COLLISIONS)]).axes[0]
-    for event in (HOPS, COLLISIONS):
-        assert bars(both, *style.EVENT_LOOKS[event]) == bars(main, *style.EVENT_LOOKS[event])
+        assert bars(both, *look) == bars(main, *look)
     loaded = td.plot(td.load(EXPECTED / "paper")["mean_times"]).axes[0]
     assert all(points(loaded, *look) for look in style.EVENT_LOOKS.values())
 
