@@ -40,9 +40,8 @@ QUICK = ("three", "four", "four on a ring", "eight in a channel")
 def test_the_check_fails_if_a_rate_is_wrong_and_else_it_does_not(name):
     """With a tenth of the events missing, the virial theorem and the flux fail."""
     scene = SCENES[name]
-    target = dict.fromkeys(scene.events, 5e-3)
     quantities = ["volume", *(f"{event}_area" for event in scene.events)]
-    counted = runs.DynamicsRun(scene, target, 5 * 10**6, 3).run()
+    counted = runs.DynamicsRun(scene, dict.fromkeys(scene.events, 5e-3), 5 * 10**6, 3).run()
     inserted = montecarlo.MonteCarloRun(scene, quantities, 100_000, 0.02, 4).run()
     rows = CheckTable.rows([counted, inserted])
     assert [row for row in rows if row["passed"] is False] == []

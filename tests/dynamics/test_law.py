@@ -150,8 +150,7 @@ def test_a_disc_put_behind_its_wall_by_a_rounding_bounces_at_once(beyond):
 @settings(max_examples=200, deadline=None, derandomize=True)
 def test_grazing_contact_never_repeats_for_ever(seed, approach):
     """At contact, with a normal speed of about a rounding, discs come apart in a few events."""
-    rng = np.random.default_rng(seed)
-    angle = rng.uniform(0, 2 * math.pi)
+    angle = np.random.default_rng(seed).uniform(0, 2 * math.pi)
     c, s = math.cos(angle), math.sin(angle)
     state = (
         SIGMA * c / 2, SIGMA * s / 2, -SIGMA * c / 2, -SIGMA * s / 2,

@@ -175,9 +175,8 @@ def results(tmp_path_factory):
 @pytest.fixture(scope="module")
 def printed(results):
     """Return {name: {"value", "text"} or None} of all numbers and cells."""
-    constants = CONSTANTS | {"seed": 1908}
-    contents = {"results": str(results), "scenes": SCENES, "constants": constants}
-    return queried(PAPER / "numbers.typ", "numbers", **contents)
+    contents = {"results": str(results), "constants": CONSTANTS | {"seed": 1908}}
+    return queried(PAPER / "numbers.typ", "numbers", **contents, scenes=SCENES)
 
 
 def test_every_number_of_the_prose_is_declared_and_every_declared_one_is_used(printed):

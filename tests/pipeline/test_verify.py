@@ -203,10 +203,9 @@ def test_missing_files_and_another_configuration_are_named(results, expected):
 
 
 def test_nothing_expected_is_no_pass(results, tmp_path):
-    empty = tmp_path / "empty"
-    Checkout(empty).edit("configuration.json", "{}")
+    Checkout(tmp_path / "empty").edit("configuration.json", "{}")
     with pytest.raises(ValueError, match="holds no expected results"):
-        verify.differences(results, empty)
+        verify.differences(results, tmp_path / "empty")
 
 
 def test_the_expected_results_are_those_of_the_default_configuration():

@@ -146,8 +146,7 @@ def test_hops_in_a_file_are_those_of_monte_carlo(inertia, monkeypatch):
 
 def test_the_density_of_points_is_that_of_an_ideal_gas():
     """Discs of no size have S = 1; with two components of velocity c² = 2 kT/m at the length ℓ."""
-    found = file.exact_density(1e-3, 3e-4, 1e3)
-    assert found == pytest.approx((1, math.sqrt(2)), abs=1e-5)
+    assert file.exact_density(1e-3, 3e-4, 1e3) == pytest.approx((1, math.sqrt(2)), abs=1e-5)
 
 
 def test_damped_sound_has_its_limits():

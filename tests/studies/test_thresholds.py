@@ -73,8 +73,7 @@ def test_exact_times_have_the_exact_power():
 
 def test_fits_keep_to_one_regime_and_to_honest_errors():
     rows = times_of("disc_collision", (0.3, 0.36, 0.376, 0.379, 0.381, 0.383))
-    found = fitted(rows)["mean_time", "plain", "exponent"]
-    assert found["points"] == 4
+    assert fitted(rows)["mean_time", "plain", "exponent"]["points"] == 4
     rows[-1]["stderr"] = None
     assert fitted(rows)["mean_time", "plain", "exponent"]["points"] == 3
     rows[-2]["stderr"] = None

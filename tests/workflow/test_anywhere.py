@@ -75,8 +75,7 @@ def test_as_a_module_it_builds_in_a_folder_with_a_prefix(own, tmp_path):
     assert manifest(place, "below/results") == manifest(own)
     assert {*place.results("below/results")} == {*own.results()}
     assert (tmp_path / "mine.txt").read_text().startswith("tiny: ")
-    kept = json.loads((tmp_path / "below" / "results" / "configuration.json").read_text())
-    assert kept == TINY
+    assert json.loads((tmp_path / "below/results/configuration.json").read_text()) == TINY
     names = {"Snakefile", "mine.yaml", "mine.txt", "below", ".snakemake"}
     assert {path.name for path in tmp_path.iterdir()} == names
     # The configuration may come from the command, and a report needs no cores.
