@@ -18,12 +18,22 @@ import twodiscs as td
 from twodiscs.dynamics import ensemble, runs
 from twodiscs.dynamics.many import all_pairs, many_intervals, many_paths
 from twodiscs.dynamics.two import hop_clusters, returns, strip
-from twodiscs.measure.intervals import make_intervals
+from twodiscs.measure.intervals import make_intervals, resolving_edges
 from twodiscs.points.intervals_point import BIN_GROWTH, N_BINS, wide_edges
 from twodiscs.sampling.initial_states import STATE_ROWS, draw_states, start_sampler
 from twodiscs.sampling.many import many_initial_states
 from twodiscs.sampling.streams import open_stream
+from twodiscs.theory.exact import event_rate
 from twodiscs.theory.laws import density_at_zero
+
+
+@pytest.mark.parametrize("hop", ["vertical_hop", "horizontal_hop"])
+@pytest.mark.parametrize("radius", [0.05, 0.245])
+def test_usual_bins_begin_with_less_than_an_event_of_a_pair_and_a_part_of_the_mean(hop, radius):
+    """The widest power of two with at most 0.4 events and 1/16 of the mean interval."""
+    scene = PAPER.with_radius(radius)
+    most = min(0.4 / event_rate(scene), td.mean_times(scene)[f"{hop}_time"] / 16)
+    assert most / 2 < resolving_edges(scene, hop)[1] <= most
 
 
 @pytest.mark.parametrize(("event", "side"), [("vertical_hop", 1.0), ("horizontal_hop", 1.5)])
