@@ -54,6 +54,12 @@ def test_days_are_those_of_the_jobs_of_all_radii_or_of_some_times_their_number(m
     assert job_cost.days([scene()]) < 0.1
 
 
+def test_without_a_budget_the_events_of_a_radius_may_take_a_day():
+    request = scene()
+    most = job_cost._most(request, "dynamics") / job_cost.DEAREST_EVENT
+    assert job_cost._seconds(request, most) == 86400
+
+
 @pytest.mark.parametrize("stage", ["monte_carlo", "dynamics", "intervals"])
 def test_shards_cover_all_blocks_once(stage):
     request = scene(
