@@ -238,6 +238,9 @@ def test_crowded_discs_have_replicas_of_one_length():
     ):
         mean = many_intervals.mean_interval(scene, hop)
         assert many_intervals.per_chain(scene, hop) == max(256, int(window / mean / 2))
+    # An event of few discs is compared with all pairs.
+    three, six = (many_rates.cost_ratio(td.Scene(1.5, 1.0, 0.1, discs=n)) - 1 for n in (3, 6))
+    assert six == pytest.approx(5 * three)
     # A kick has its work.
     few, hop = td.Scene(1.5, 1.0, 0.1, discs=4), "vertical_hop"
     both = [many_intervals.events_per_interval(replace(few, friction=f), hop) for f in (0.0, 3.0)]

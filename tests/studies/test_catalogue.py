@@ -9,9 +9,10 @@ import json
 
 import pytest
 from checkout import REPOSITORY, one_scene
+from factory import EXPECTED, of
 
 from twodiscs.model.effects import EFFECTS
-from twodiscs_paper.catalogue import STUDIES, is_reproducible
+from twodiscs_paper.catalogue import STUDIES, TABLES, is_reproducible
 from twodiscs_paper.configuration.yaml_files import load, read
 from twodiscs_paper.draw import DRAW
 
@@ -74,6 +75,15 @@ def test_budgets_follow_the_main_scene_within_limits():
         assert [parameters(study, 10**power)[name] for power in (4, 8, 12)] == numbers
     for name in ("tails", "distributions", "passages", "stability", "more_discs"):
         assert parameters(name, None) == parameters(name, 2 * 10**9)
+
+
+def test_the_rough_discs_of_a_hop_are_those_of_its_expected_rows(default):
+    rows = of(TABLES["passages"].read(EXPECTED / "passages.csv"), friction=None, periodic=None)
+    parts = of(STUDIES["passages"].parts(default).values(), part="near_threshold")
+    assert len(parts) == 3
+    for one in parts:
+        own = of(rows, scene=one["name"], event=one["hop"])
+        assert {row["moment_of_inertia"] for row in own} == {None, *one["inertias"]}
 
 
 def test_a_configuration_without_plain_scenes_has_studies():
