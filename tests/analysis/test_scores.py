@@ -107,8 +107,7 @@ def test_two_shells_that_overlap_have_a_normal_sum():
 )  # fmt: skip
 def test_a_sum_of_two_shells_is_as_normal_as_the_rarer_one(probabilities, due, order):
     hits = [round(10**6 * p) for p in probabilities]
-    given = hits[::order], 0, 10**6, (3.0, 5.0), probabilities[::order]
-    assert scores.shells_z(*given)[1] == due
+    assert scores.shells_z(hits[::order], 0, 10**6, (3.0, 5.0), probabilities[::order])[1] == due
 
 
 def test_union_never_rejects_more_often_than_it_says():

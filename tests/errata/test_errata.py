@@ -72,8 +72,7 @@ def test_every_statement_says_where_and_whatever_is_not_right_says_what_is():
 
 
 def test_the_table_is_the_expected_one(tmp_path, monkeypatch):
-    rows = [*verdicts().values()]
-    monkeypatch.setattr(errata, "rows", lambda: rows)
+    monkeypatch.setattr(errata, "rows", lambda: [*verdicts().values()])
     found, due = written(tmp_path, ErrataTable), ErrataTable.read(EXPECTED / "errata.csv")
     pd.testing.assert_frame_equal(pd.DataFrame(found), pd.DataFrame(due), rtol=1e-12, atol=0)
 
@@ -102,8 +101,7 @@ def test_a_time_with_a_root_on_one_side_of_h_4_is_not_smooth(roots, monkeypatch)
         return d**2 + roots[d > 0] * abs(d) ** 1.5
 
     monkeypatch.setattr(statements, "mean_time", time)
-    smooth = statements.collision_time_is_smooth(reference.MpScene.of(3, 1, 0))
-    assert smooth == (roots == (0, 0))
+    assert statements.collision_time_is_smooth(reference.MpScene.of(3, 1, 0)) == (roots == (0, 0))
 
 
 # Corrections --------------------------------------------------------------------------------------

@@ -95,8 +95,7 @@ def test_hops_of_three_discs_end_where_two_of_them_cannot_be_level(width, axis):
 
 def channel(discs, height, length):
     """Return a channel with the ranges A = ``length`` and B = ``height`` in units of σ."""
-    radius = 0.1
-    return Scene(0.2 * (length + 1), 0.2 * (height + 1), radius, discs=discs)
+    return Scene(0.2 * (length + 1), 0.2 * (height + 1), 0.1, discs=discs)
 
 
 def total_of(heights, axis=0):

@@ -66,8 +66,7 @@ def test_the_grid_has_sixteen_steps_while_a_number_doubles(blocks):
     assert blocks <= found <= max(math.ceil(blocks), blocks * (1 + 1 / rounds.PLAN_STEPS) + 1)
     assert rounds.round_up_blocks(found) == found
     assert rounds.round_up_blocks(2 * found) in (2 * found, max(2 * found, 2))
-    grid = {rounds.round_up_blocks(number) for number in range(65, 129)}
-    assert len(grid) == rounds.PLAN_STEPS
+    assert len({rounds.round_up_blocks(number) for number in range(65, 129)}) == rounds.PLAN_STEPS
 
 
 @pytest.mark.parametrize(

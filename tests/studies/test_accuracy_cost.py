@@ -283,3 +283,5 @@ def test_c_by_distance_is_drawn_for_each_method_and_quantity(rows, panels):
             due = {(row["distance"], row["c"]) for row in of(own, quantity=quantity)}
             assert points(panels[panel], *looks[quantity]) == due
     assert looks["top_wall_area"] == looks["top_wall_time"] == style.EVENT_LOOKS["top_wall"]
+    left = {name for name, axes in panels.items() if axes.get_ylabel().startswith("time $")}
+    assert {"dynamics", "rejection"} <= left

@@ -119,8 +119,7 @@ def test_what_is_measured_meets_what_is_exact(box, radius, hop):
     square, mean = by_name["squared_cv", True], by_name["mean", True]["reference"]
     assert square["estimate"] == pytest.approx(2 * passage["reference"] / mean - 1)
     assert square["stderr"] == pytest.approx(2 * passage["reference_stderr"] / mean)
-    cubic = tail_constant(scene, hop) > 0
-    assert (passage["z"] is None) == cubic
+    assert (passage["z"] is None) == (tail_constant(scene, hop) > 0)
 
 
 def test_radii_near_the_threshold():

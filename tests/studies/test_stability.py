@@ -248,8 +248,7 @@ def test_the_audit_sees_what_is_wrong():
 def test_a_gap_has_the_unit_of_the_longer_side(monkeypatch):
     nearest, nothing = np.array([0.401**2]), np.zeros(1)
     monkeypatch.setattr(stability, "audit", lambda *given: (nearest, *[nothing] * 4))
-    found = stability.run(td.Scene(3.0, 1.0, 0.2), 1, 1)["smallest_gap"]
-    assert found == pytest.approx(0.001 / 2)
+    assert stability.run(td.Scene(3.0, 1.0, 0.2), 1, 1)["smallest_gap"] == pytest.approx(0.001 / 2)
 
 
 def test_events_retraced_are_those_the_exponent_allows(monkeypatch):

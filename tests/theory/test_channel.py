@@ -185,6 +185,5 @@ def test_exact_says_before_it_begins_that_it_takes_minutes(scene, is_slow, monke
     monkeypatch.setattr(exact, "exact", None)
     with pytest.raises(TypeError, match="'NoneType' object is not callable"):
         td.exact(scene)
-    said = ["may take some minutes" in str(one.message) for one in recwarn]
-    assert said == [True] * is_slow
+    assert ["may take some minutes" in str(one.message) for one in recwarn] == [True] * is_slow
     assert {one.filename for one in recwarn} <= {__file__}

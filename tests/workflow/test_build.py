@@ -50,8 +50,7 @@ def test_the_scheduler_looks_for_jobs_when_a_job_ends_and_at_no_other_time(compl
 
 def test_every_file_is_made_by_a_rule(complete):
     """Each may be asked for by its path."""
-    names = [f"results/{name}" for name in complete.results()]
-    assert complete.jobs("--", *names) == []
+    assert complete.jobs("--", *[f"results/{name}" for name in complete.results()]) == []
 
 
 def test_the_manifest_is_one_of_sha256sum(complete):

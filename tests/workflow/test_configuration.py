@@ -53,8 +53,7 @@ LONG = {"watch": {"mean_times": ["any_wall"]}, "accuracy": 1e-7, "event_budget":
 
 def test_a_dry_run_names_the_closest_target_the_days_and_accuracies_not_reached(unbuilt, tmp_path):
     place = folder(tmp_path, unbuilt, one_scene("a", radii=[0.2], **LONG))
-    words = "--dry-run", "mean_wall_times", "--report", "report.zip"
-    run = place.snakemake(*words, passes=False)
+    run = place.snakemake("--dry-run", "mean_wall_times", "--report", "report.zip", passes=False)
     assert "'mean_wall_times' is no target; did you mean 'mean_wall_time'?" in run.stdout
     assert run.stdout.count("is no target") == 1
     assert "This configuration takes about 1.2 days of processor time." in run.stdout

@@ -106,8 +106,7 @@ def test_scenes_with_effects_call_for_what_has_a_place(unbuilt, tmp_path):
     assert all(block["results"] == f"results/scenes/{name}" for name, block in BLOCKS.items())
     assert {*CALLED} <= {*BLOCKS}
     found = jobs(unbuilt, tmp_path / "all.yaml", scenes, shared=[])
-    shared = {rule for rule, wildcards in found if "scene" not in repr(wildcards)}
-    assert shared == ALWAYS
+    assert {rule for rule, wildcards in found if "scene" not in repr(wildcards)} == ALWAYS
     for request in load({"scenes": scenes}).scenes:
         rules, tables, figures = of(found, request.name)
         assert figures == CALLED.get(request.name, ALL)
