@@ -72,7 +72,8 @@ def test_every_statement_says_where_and_whatever_is_not_right_says_what_is():
 
 
 def test_the_table_is_the_expected_one(tmp_path, monkeypatch):
-    monkeypatch.setattr(errata, "rows", lambda: [*verdicts().values()])
+    rows = [*verdicts().values()]
+    monkeypatch.setattr(errata, "rows", lambda: rows)
     found, due = written(tmp_path, ErrataTable), ErrataTable.read(EXPECTED / "errata.csv")
     pd.testing.assert_frame_equal(pd.DataFrame(found), pd.DataFrame(due), rtol=1e-12, atol=0)
 
