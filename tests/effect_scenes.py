@@ -52,7 +52,7 @@ def distance_square(scene, places):
 
 
 def in_unit(scene, unit):
-    """Return the same scene in another unit of length; the speed is 1 in it."""
+    """Return the scene whose lengths and times are ``unit`` times as large."""
     scaled = {name: unit * getattr(scene, name) for name in scene.LENGTHS}
     scaled |= {"depth": scene.depth and unit * scene.depth}
     return replace(scene, **scaled, field=scene.field / unit, friction=scene.friction / unit)

@@ -80,21 +80,23 @@ def read(path, table):
     """Return the file of a ``Table`` as a ``DataFrame`` with units and meanings in ``attrs``."""
     frame, configuration = table.frame(path), _configuration(path)
     columns = table.present_columns(frame)
+    units = {name: column.unit for name, column in columns.items()}
+    if (box := read_box(configuration)) is not None:
+        # A table names the units of two discs.
+        of_two = {"length⁴": box.unit("volume"), "length³": box.unit("area")}
+        for name, unit in units.items():
+            units[name] = re.sub("length[⁴³]", lambda found: of_two[found[0]], unit)
     frame.attrs = {
         "table": table.name(),
         "meaning": table.meaning(),
         "meanings": {name: column.meaning for name, column in columns.items()},
-        "units": (units := {name: column.unit for name, column in columns.items()}),
+        "units": units,
         "path": str(path),
         "sha256": digest(path),
         "configuration": configuration,
     }
-    if (box := read_box(configuration)) is not None:
+    if box is not None:
         frame.attrs["box"] = box.parameters()
-        # The table has those of two discs.
-        of_two = {"length⁴": box.unit("volume"), "length³": box.unit("area")}
-        for name, unit in units.items():
-            units[name] = re.sub("length[⁴³]", lambda found: of_two[found[0]], unit)
     return frame
 
 
