@@ -36,7 +36,7 @@ FRAME_WIDTH, LEFT_MARGIN, BOX_SIZE = 3.8, 0.5, (3.8 - 0.5 - 0.12, 2.6)
 FRAMES_BEFORE, FRAMES_AFTER, TRACE_FRAMES, MARKED_FRAMES = 110, 60, 20, 20
 
 
-def frame_times(rows, step, discs=2):
+def frame_times(rows, step, discs):
     """Return (times of the frames, name of the hop or None, its time) for rows of trajectory.csv.
 
     The hop is of the rarest kind that occurs. It is the first one with no other of its kind in the

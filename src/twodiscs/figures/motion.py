@@ -139,7 +139,7 @@ def disc_colours(box, first):
     return [to_rgb(colormaps["turbo"](shade)) for shade in shades]
 
 
-def draw_world_lines(box, rows, radius=None):
+def draw_world_lines(box, rows, radius):
     """Draw the positions of the discs of a ``Box`` along its longer side, against time.
 
     ``rows`` are the rows of trajectory.csv; the first ones are shown, and discs move freely between

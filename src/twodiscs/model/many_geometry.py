@@ -185,7 +185,7 @@ def _patterns(n, along, across, ring, torus):
                 yield min(in_row, math.hypot(shift * s, v), two_on), rows, count, shift, fewer, s
 
 
-def _rows(n, along, across, ring, torus=False):
+def _rows(n, along, across, ring, torus):
     """Return (least distance, centres) of the best of ``_patterns``."""
     best = max(_patterns(n, along, across, ring, torus))
     least, rows, count, shift, fewer, s = best
@@ -205,7 +205,7 @@ def _largest_triangle(a, b):
     return corners, 2 * math.sqrt(a * a + b * b - math.sqrt(3) * a * b)
 
 
-def arranged(discs, a, b, periodic=""):
+def arranged(discs, a, b, periodic):
     """Return (centres in [0, ``a``] × [0, ``b``], their least distance), the best known here.
 
     Candidates are rows in line and staggered rows along either axis, on a ring along the periodic

@@ -233,7 +233,7 @@ def fraction_if_accepted(state, prism, y1, dx, dy, dz, power):
 
 
 @compiled
-def draw_in_prism(state, prism, axis=-1):
+def draw_in_prism(state, prism, axis):
     """Return (x1, y1, z1, dx, dy, dz, kinetic fraction) from the invariant measure.
 
     With an ``axis`` (0 for x, 1 for y) they are on the surface of a hop along it. The density there

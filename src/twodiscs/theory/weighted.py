@@ -186,7 +186,7 @@ def _walled(first, second, power, farthest=None):
     return Counter(branch for branch in branches if branch)
 
 
-def _periodic(side, farthest=None):
+def _periodic(side, farthest):
     """Return {``Branch``: multiplicity} of a periodic axis, on which the nearest image counts."""
     side = Fraction(side)
     reach = side / 2 if farthest is None else min(side / 2, farthest)

@@ -331,7 +331,7 @@ def closing(results, dag, configured, scenes=()):
     return "".join(f"{line}\n" for line in lines)
 
 
-def draw_study(frame, figure=None):
+def draw_study(frame, figure):
     """Return a ``figure`` of a study that shows a loaded table, the first one without a name.
 
     The other tables of the figure lie beside it, as a build writes them.

@@ -301,7 +301,7 @@ def soonest(limit, code, ring):
 
 
 @compiled
-def find_events(all_lanes, law, kicks=None):
+def find_events(all_lanes, law, kicks):
     """Fill ``times`` and ``codes`` with the first event of each lane within its time.
 
     A flight that a kick ends has the code of the end of time, and ``kick_lanes`` has to follow.

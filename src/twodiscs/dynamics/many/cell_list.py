@@ -122,7 +122,7 @@ class Log(NamedTuple):
     pending: np.ndarray
 
 
-def new_log(entries, rough=None):
+def new_log(entries, rough):
     """Return an empty ``Log`` for a number of ``entries`` of discs, smooth or ``rough``."""
     components = 4 if rough is None else 5
     return Log(
@@ -187,7 +187,7 @@ def go_on(time, log):
 
 
 @compiled
-def new_motion(discs, grid, rough=None):
+def new_motion(discs, grid, rough):
     """Return an empty ``Motion`` for a number of ``discs``, smooth or ``rough``."""
     days = 2
     while days < 2 * discs:

@@ -179,7 +179,7 @@ def movie(folder, path, scenes):
     return figure(folder, path, scenes) | {"still": _encoded(longest, 64)}
 
 
-def key_figures(paths, of_scene=True):
+def key_figures(paths, of_scene):
     """Return the paths of the key figures among ``paths``, for one scene or for all scenes."""
     here = {path.stem: path for path in paths}
     if not of_scene:

@@ -130,7 +130,7 @@ def crossing_rate(step, room):
     return step / math.sqrt(math.pi) * room**2 / side_volume(room)
 
 
-def diffusive(step, room, program="reflected"):
+def diffusive(step, room, program):
     """Return κ of a separation that diffuses, by the moves of a ``program`` that are accepted."""
     passed = step**2 / (side_volume(room) * resistance(room, program, step))
     return passed / crossing_rate(step, room)

@@ -186,7 +186,7 @@ def law(scene, friction, time, variance=None):
     return moved and moved / per_disc**2
 
 
-def recorded(scene, step, number, replicas, seed, friction=None):
+def recorded(scene, step, number, replicas, seed, friction):
     """Return the places of discs along a ring at ``number`` + 1 times, ``step`` apart, and hops.
 
     Places have the shape (times, N, replicas), and go on beyond the ends of the ring. Hops are how
@@ -209,7 +209,7 @@ def recorded(scene, step, number, replicas, seed, friction=None):
     return places, 2 * hops / scene.discs
 
 
-def logged(scene, step, number, replicas, seed, friction=None):
+def logged(scene, step, number, replicas, seed, friction):
     """Yield (places, times, pairs) of each replica: ``recorded``, with the time of each hop.
 
     Places have the shape (times, N, 1). A pair is a number of two discs.
