@@ -13,6 +13,7 @@ from marks import slow
 from twodiscs import Box, InputError, Scene
 from twodiscs.analysis.tables import TrajectoryTable
 from twodiscs.dynamics import paths, rows
+from twodiscs.dynamics.many.many_rates import expected_event_rate
 from twodiscs.sampling.initial_states import components
 from twodiscs.theory.exact import event_rate, mean_times
 
@@ -38,6 +39,11 @@ def test_a_trajectory_shows_some_hops_and_is_not_too_long(radius):
 MANY = Scene(1.5, 1.0, 0.15, periodic="x", discs=3)
 #: With another kernel each.
 GIVEN = [*map(SCENES.get, ("torus", "combination", "rough")), MANY]
+
+
+def test_a_trajectory_of_more_discs_has_some_1500_events():
+    ratio = follow(MANY, seed=3)[-1][0] * expected_event_rate(MANY) / 1500
+    assert 1 / math.sqrt(2) <= ratio <= math.sqrt(2)
 
 
 @pytest.mark.parametrize("scene", [*GIVEN, slow(ALL)], ids=repr)

@@ -90,6 +90,24 @@ def test_a_prism_hides_three_edges_and_a_cylinder_its_other_half(monkeypatch, az
     assert len(ends) == len(hidden) == 2
 
 
+def test_the_bands_exclude_less_than_the_marked_point_has():
+    """x is beyond √(2r² − y²) and y beyond √(2r² − x²); the arrows are along the diagonals."""
+    depths, bands = [], []
+    for axes in draw("configuration_space", PAPER, {}).axes[1:]:
+        arrows = [text for text in axes.texts if not text.get_text()]
+        along, across, depth = (np.subtract(arrow.xy, arrow.xyann) for arrow in arrows)
+        assert along[0] == along[1] == across[0] == -across[1] < axes.get_xlim()[1] < 1.1 * along[0]
+        assert depth[0] == pytest.approx(-depth[1])
+        assert np.ptp(arrows[2].xyann) == 0
+        depths.append(math.hypot(*depth))
+        halves = [abs(patch.get_xy() @ (1, -1)).max() / math.sqrt(2) for patch in axes.patches[1:4]]
+        assert halves[0] == halves[1]
+        bands.append(halves[1:])
+    for (band, widest), other, own in zip(bands, depths[::-1], depths, strict=True):
+        assert band < own < widest
+        assert math.hypot(band, other) == pytest.approx(widest)
+
+
 def test_the_page_is_at_right_angles_to_the_view():
     """Points along the line of sight coincide, and those on the page keep their distance."""
     sight = np.array([configuration_space._towards(axis) for axis in np.eye(3)])
