@@ -30,6 +30,7 @@ BORDER = [
     td.Scene(8.0, 0.9, 0.2, discs=CELL_DISCS),
     td.Scene(4.0, 2.0, 0.15, discs=CELL_DISCS, periodic="x"),
     td.Scene(4.0, 2.0, 0.15, discs=CELL_DISCS, periodic="x", moment_of_inertia=0.4),
+    td.Scene(4.0, 2.0, 0.15, discs=CELL_DISCS, moment_of_inertia=0.4),
 ]
 
 
@@ -61,7 +62,9 @@ THREE = td.Scene(1.5, 1.0, 0.26, discs=3)
 
 
 @pytest.mark.parametrize(
-    "scene", [THREE, *BORDER[:3], TORI[0], *map(slow, [*BORDER[3:], *SHORT, TORI[1]])], ids=repr
+    "scene",
+    [THREE, *BORDER[:3], BORDER[5], TORI[0], *map(slow, [*BORDER[3:5], *SHORT, TORI[1]])],
+    ids=repr,
 )
 def test_a_few_events_are_the_same_ones(scene):
     """From the same states, before roundings have grown: the same counts, every one of them."""
