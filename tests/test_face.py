@@ -75,8 +75,10 @@ def test_every_name_is_defined_where_an_editor_looks_for_it():
     for name, module in homes.items():
         if callable(home := getattr(td, name)):
             assert (home.__module__, home.__name__) == (f"twodiscs.{module}", name)
-            for one in {"seed", "cores"} & inspect.signature(home).parameters.keys():
-                assert inspect.signature(home).parameters[one].default == 1
+            defaults = {k: one.default for k, one in inspect.signature(home).parameters.items()}
+            assert {defaults[one] for one in {"seed", "cores"} & defaults.keys()} <= {1}
+            told = re.findall(r"^ +(\w+) : .*, default (\S+)$", home.__doc__ or "", re.MULTILINE)
+            assert all(defaults[one] in (None, eval(number)) for one, number in told)
 
 
 # The numbers of the pipeline ----------------------------------------------------------------------

@@ -381,7 +381,7 @@ def diffusion(
         The box, which is periodic along ``axis``, the discs and their effects.
     times : float or iterable of float
         Ascending, above 0, in time.
-    replicas : float, default 2¹⁶
+    replicas : float, default 2**16
         Trajectories, an integer from 1 to 1e9, rounded up to whole blocks as in ``observe``.
     axis : str, optional
         "x", "y" or "z"; the first periodic one if left out.

@@ -166,7 +166,7 @@ def transmission(
     hop : str
         "vertical_hop" or "horizontal_hop", along an axis with walls; of more than two discs also
         along a ring.
-    hops : float, default 2¹⁷
+    hops : float, default 2**17
         Hops to follow, forwards and backwards in time for κ, forwards for the curve: an integer
         from 1 on. It is rounded up to whole blocks.
     seed, name, cores, progress : optional
