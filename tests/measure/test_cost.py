@@ -120,6 +120,7 @@ def test_a_budget_ends_a_run_at_the_error_that_the_forecast_says(blocks):
 
 def test_ten_times_the_accuracy_takes_a_hundred_times_as_long(blocks):
     found = td.cost(NEAR)
+    assert found.errors == [1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
     assert found.seconds(1e-6) == pytest.approx(100 * found.seconds(1e-5))
     # All times take what the worst of those that share a run takes, and the strips beside it.
     costs = [p.c for p in found.prices if p.method == "dynamics" and "horizontal" not in p.quantity]
