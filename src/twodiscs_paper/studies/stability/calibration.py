@@ -60,9 +60,10 @@ SCENES = {
         }.items()
         for value in values
     },
-    "rough, r = 0.1": {**PAPER, "radius": 0.1, "moment_of_inertia": 1.0},
-    "rough, r = 0.3": {**PAPER, "radius": 0.3, "moment_of_inertia": 0.1},
-    "rough, r = 0.245": {**PAPER, "radius": 0.245, "moment_of_inertia": 0.05},
+    **{
+        f"rough, r = {radius}": {**PAPER, "radius": radius, "moment_of_inertia": inertia}
+        for radius, inertia in ((0.1, 1.0), (0.3, 0.1), (0.245, 0.05))
+    },
     "rough ring": {
         "width": 1.0, "height": 2.0, "radius": 0.248, "moment_of_inertia": 0.3, "periodic": "x",
     },
