@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from figure_cases import BOXES, PAPER, draw, shown_texts
-from matplotlib.patches import Arc, Circle, Wedge
+from matplotlib.patches import Arc, Circle, Rectangle, Wedge
 
 from twodiscs.figures import configuration_space, style
 from twodiscs.model.scene import Box
@@ -135,3 +135,23 @@ def test_a_drawing_names_its_lengths(name):
     formulas = {t for t in texts if t.startswith("$") and not t.startswith(r"$\mathdefault")}
     letters = {t[:3] for t in texts if t.startswith("(")}
     assert formulas | letters == {n if n[0] == "(" else f"${n}$" for n in NAMED[name].split()}
+
+
+#: {drawing: the number of its panels that a rectangle fills}.
+FILLED = {
+    "model": 1, "configuration_space": 2, "largest_radius": 1, "integration_regimes": 3,
+    "surface_shell": 2,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FILLED)
+def test_a_rectangle_fills_its_panel(name):
+    """In the model there is one for the centres in it."""
+    filled = 0
+    for axes in draw(name, PAPER, {}).axes:
+        boxes = [patch.get_bbox() for patch in axes.patches if isinstance(patch, Rectangle)]
+        filled += any(box.extents == pytest.approx(axes.viewLim.extents) for box in boxes)
+        if name == "model":
+            radius = next(patch.radius for patch in axes.patches if isinstance(patch, Circle))
+            assert boxes[1].extents == pytest.approx(boxes[0].padded(-radius).extents)
+    assert filled == FILLED[name]

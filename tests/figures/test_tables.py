@@ -371,6 +371,23 @@ def test_a_line_across_a_panel_is_at_the_value_that_is_due(name, panel):
     assert heights == ACROSS[name, panel]
 
 
+#: The same of upright lines.
+UPRIGHT = {
+    ("effects", "d"): [1],
+    ("calibration", "calibration"): [1],
+    ("stability_of_runs", "b"): [8],
+    ("stability_of_runs", "d"): [-5, 5, 0],
+}
+
+
+@pytest.mark.parametrize(("name", "panel"), UPRIGHT)
+def test_an_upright_line_is_at_the_value_that_is_due(name, panel):
+    axes = drawn(name)[panel]
+    upright = axes.get_xaxis_transform("grid")
+    places = [line.get_xdata()[0] for line in axes.lines if line.get_transform() == upright]
+    assert places == UPRIGHT[name, panel]
+
+
 hop_time = np.vectorize(lambda d: td.mean_times(PAPER.scene(0.25 - d / 4))["horizontal_hop_time"])
 
 

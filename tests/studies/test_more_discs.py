@@ -4,10 +4,11 @@ Without these tests methods for more discs could disagree, or have the errors of
 """
 
 import math
+import re
 
 import pytest
 
-from twodiscs_paper.studies.more_discs import measure
+from twodiscs_paper.studies.more_discs import measure, tori
 from twodiscs_paper.studies.more_discs.study import MoreDiscsTable
 
 
@@ -17,6 +18,15 @@ def rows(tmp_path_factory):
     scenes = {"discs": (2, 3, 4), "radii": (0.1, 0.28), "on_tori": ((3, 0.3),)}
     MoreDiscsTable.write(path, measure.rows(events=300_000, samples=60_000, seed=1, **scenes))
     return MoreDiscsTable.read(path)
+
+
+@pytest.mark.parametrize("aspect", tori.ASPECTS)
+def test_a_torus_has_the_aspect_that_its_name_says(aspect):
+    """Its discs have the diameter 1 and fill a fraction of the area."""
+    box = tori.torus(12, 0.5, aspect)
+    width, height = re.sub(r"(\d)sqrt", r"\1*sqrt", aspect).split(":")
+    assert box.width / box.height == pytest.approx(eval(width) / eval(height, vars(math)))
+    assert box.width * box.height == pytest.approx(12 * math.pi * box.radius**2 / 0.5)
 
 
 def test_scores_are_deviations_over_the_errors_of_both(rows):
