@@ -137,15 +137,8 @@ def test_a_drawing_names_its_lengths(name):
     assert formulas | letters == {n if n[0] == "(" else f"${n}$" for n in NAMED[name].split()}
 
 
-#: {drawing: the number of its panels that a rectangle fills}.
-FILLED = {
-    "model": 1, "configuration_space": 2, "largest_radius": 1, "integration_regimes": 3,
-    "surface_shell": 2,
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("name", FILLED)
-def test_a_rectangle_fills_its_panel(name):
+@pytest.mark.parametrize(("name", "panels"), [*zip(NAMED, (1, 2, 1, 3, 2), strict=True)])
+def test_a_rectangle_fills_panels(name, panels):
     """In the model there is one for the centres in it."""
     filled = 0
     for axes in draw(name, PAPER, {}).axes:
@@ -154,4 +147,4 @@ def test_a_rectangle_fills_its_panel(name):
         if name == "model":
             radius = next(patch.radius for patch in axes.patches if isinstance(patch, Circle))
             assert boxes[1].extents == pytest.approx(boxes[0].padded(-radius).extents)
-    assert filled == FILLED[name]
+    assert filled == panels

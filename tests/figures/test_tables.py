@@ -349,43 +349,30 @@ def test_texts_of_studies_stand_clear_and_symbols_are_named(name, faults):
     assert faults(axes.get_figure(root=True)) == []
 
 
-#: The values that panels are compared with, as lines across them.
-ACROSS = {
-    ("tails", "ratio"): [1],
-    ("distributions", "rates"): [1],
-    ("distributions", "passages"): [1],
-    ("friction", "exponent"): [-1.5, -2],
-    ("brownian", "exponent"): [-1.5, -2, -2.5, -3.5, 0],
-    ("diffusion", "ring"): [1],
-    ("thresholds", "ratios"): [1],
-    ("effects", "a"): [1],
-    ("tori", "residuals"): [0, -2, 2, -5, 5],
+#: The values that panels are compared with: lines at one value of x or y.
+RULES = {
+    ("tails", "ratio", "y"): [1],
+    ("distributions", "rates", "y"): [1],
+    ("distributions", "passages", "y"): [1],
+    ("friction", "exponent", "y"): [-1.5, -2],
+    ("brownian", "exponent", "y"): [-1.5, -2, -2.5, -3.5, 0],
+    ("diffusion", "ring", "y"): [1],
+    ("thresholds", "ratios", "y"): [1],
+    ("effects", "a", "y"): [1],
+    ("effects", "d", "x"): [1],
+    ("tori", "residuals", "y"): [0, -2, 2, -5, 5],
+    ("calibration", "calibration", "x"): [1],
+    ("stability_of_runs", "b", "x"): [8],
+    ("stability_of_runs", "d", "x"): [-5, 5, 0],
 }
 
 
-@pytest.mark.parametrize(("name", "panel"), ACROSS)
-def test_a_line_across_a_panel_is_at_the_value_that_is_due(name, panel):
+@pytest.mark.parametrize(("name", "panel", "axis"), RULES)
+def test_a_line_through_a_panel_is_at_the_value_that_is_due(name, panel, axis):
     axes = drawn(name)[panel]
-    across = axes.get_yaxis_transform("grid")
-    heights = [line.get_ydata()[0] for line in axes.lines if line.get_transform() == across]
-    assert heights == ACROSS[name, panel]
-
-
-#: The same of upright lines.
-UPRIGHT = {
-    ("effects", "d"): [1],
-    ("calibration", "calibration"): [1],
-    ("stability_of_runs", "b"): [8],
-    ("stability_of_runs", "d"): [-5, 5, 0],
-}
-
-
-@pytest.mark.parametrize(("name", "panel"), UPRIGHT)
-def test_an_upright_line_is_at_the_value_that_is_due(name, panel):
-    axes = drawn(name)[panel]
-    upright = axes.get_xaxis_transform("grid")
-    places = [line.get_xdata()[0] for line in axes.lines if line.get_transform() == upright]
-    assert places == UPRIGHT[name, panel]
+    own = getattr(axes, f"get_{axis}axis_transform")("grid")
+    lines = [line for line in axes.lines if line.get_transform() == own]
+    assert [getattr(n, f"get_{axis}data")()[0] for n in lines] == RULES[name, panel, axis]
 
 
 hop_time = np.vectorize(lambda d: td.mean_times(PAPER.scene(0.25 - d / 4))["horizontal_hop_time"])
