@@ -51,8 +51,7 @@ def cells(rows, *names):
 
 def deviation(one, other):
     """Return by how many standard errors two rows differ."""
-    error = math.hypot(one["stderr"], other["stderr"])
-    return abs(one["estimate"] - other["estimate"]) / error
+    return abs(one["estimate"] - other["estimate"]) / math.hypot(one["stderr"], other["stderr"])
 
 
 def sample_point(scene, quantities, samples, shell, seed):

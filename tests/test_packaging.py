@@ -191,8 +191,7 @@ def test_the_recipe_for_conda_has_the_version_and_the_packages_of_the_project():
 def test_the_lock_has_everything():
     lock = (REPOSITORY / "requirements.lock").read_text(encoding="utf-8")
     locked = set(re.findall(r"^([\w-]+)==", lock, re.MULTILINE))
-    asked = {re.match(r"[\w-]+", one)[0] for one in PROJECT["dependencies"]}
-    assert asked | {*EXTRAS} <= locked
+    assert {re.match(r"[\w-]+", one)[0] for one in PROJECT["dependencies"]} | {*EXTRAS} <= locked
     assert "://" not in lock
 
 

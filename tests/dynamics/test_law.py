@@ -66,8 +66,7 @@ def check_contact(x, v, sigma):
             half_chord = math.sqrt(4 * doubt * exact_impact) / speed**2
             assert abs(found - approach / speed**2) <= half_chord + 8 * EPS * found
     elif found is None or time is None:
-        slow = abs(approach) <= 8 * EPS * sigma * max(speed, 1.0)
-        assert found is time or slow
+        assert found is time or abs(approach) <= 8 * EPS * sigma * max(speed, 1.0)
     else:
         assert found >= 0
         assert abs(mp(found) - time) <= 8 * EPS * conditioning + 4 * EPS * abs(time)

@@ -99,8 +99,7 @@ def test_the_law_of_a_test_does_not_depend_on_what_was_counted():
     """At the border runs with more events than expected, and with fewer, have the same test."""
     for replicas, due in ((2000, "cluster-bound"), (2200, "normal")):
         for count in (1800, 2100, 2400):  # of 1 expected in a replica
-            sums = count, 2 * count, replicas
-            assert scores.mean_time_z(*sums, 1.0, 1.0)[1] == due
+            assert scores.mean_time_z(count, 2 * count, replicas, 1.0, 1.0)[1] == due
     # As precise as exactly 100 events, and as 99.
     assert estimates.is_enough(100, 199, 100) > estimates.is_enough(100, 200, 100)
     assert estimates.is_enough(80, 90, 1000, expected=1.0)

@@ -21,8 +21,7 @@ def test_streams_differ_by_seed_and_by_block():
     states = [tuple(streams.open_stream(np.uint64(s), b)) for s in range(40) for b in range(40)]
     assert len(set(states)) == len(states)
     bits = np.array(states, dtype=np.uint64).view(np.uint8)
-    ones = np.unpackbits(bits).mean()
-    assert abs(ones - 0.5) <= 5 / (2 * np.sqrt(bits.size * 8))
+    assert abs(np.unpackbits(bits).mean() - 0.5) <= 5 / (2 * np.sqrt(bits.size * 8))
 
 
 def test_the_generators_are_those_of_their_authors():

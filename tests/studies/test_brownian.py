@@ -82,8 +82,7 @@ def test_positions_stay_uniform(program):
     states = np.zeros((4 * number, 7))
     states[:, 0] = study.HALF * (2 * stream.random(4 * number) - 1)
     states[:, 1:3] = (1 + room) * stream.random((4 * number, 2))
-    allowed = states[:, 0] ** 2 + (states[:, 1] - states[:, 2]) ** 2 >= 1
-    states = states[allowed][:number]
+    states = states[states[:, 0] ** 2 + (states[:, 1] - states[:, 2]) ** 2 >= 1][:number]
     before = states.copy()
     bits = brownian_steps.open_stream(np.uint64(7), 0)
     for state in states:

@@ -36,8 +36,7 @@ def complete(tmp_path_factory):
         fcntl.flock(lock, fcntl.LOCK_EX)  # the worker that comes second waits
         if not done.exists():
             shutil.rmtree(path, ignore_errors=True)  # of a build that failed
-            checkout = fresh(path, QUICKER | ONE_SCENE)
-            run = checkout.snakemake("--cores", "2", "--verbose")
+            run = fresh(path, QUICKER | ONE_SCENE).snakemake("--cores", "2", "--verbose")
             done.write_text(run.stdout + run.stderr)
     return Checkout(path)
 
