@@ -384,6 +384,7 @@ def test_averages_over_states_have_honest_errors():
     assert np.allclose(found.mean[:, 0], 1, rtol=0, atol=1e-12)
     assert abs(found.mean[0, 1] - 0.25) < 5 * found.stderr[0, 1]
     assert np.all(np.abs(found.mean[:, 2]) <= 5 * found.stderr[:, 2])
+    assert found.stderr[0, 2] == 0.0  # nothing has moved
     # ⟨u⁴⟩ = 1/8 on the sphere in four dimensions.
     assert math.isclose(found.stderr[0, 1], math.sqrt((1 / 8 - 1 / 16) / 20480), rel_tol=0.05)
     assert found == td.observe(PAPER, seen, [0, 1, 7.5], 20000, seed=3, cores=2)

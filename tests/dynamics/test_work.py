@@ -72,7 +72,8 @@ def test_the_work_of_a_replica_is_bounded(width, height, effects, share):
     assert exact.event_rate(scene) <= most
     leaves = sum(math.sqrt(1 + 1 / scene.mass_ratio) / scene.side(a) for a in scene.periodic)
     assert leaves <= most * CROSSINGS_PER_EVENT
-    assert exact.work_per_event(scene) >= 1.0
+    crossings = leaves / CROSSINGS_PER_EVENT / exact.event_rate(scene)
+    assert exact.work_per_event(scene) == pytest.approx(max(1.0, crossings))
 
 
 def test_kicks_between_two_hops_are_work():
