@@ -156,6 +156,8 @@ def test_the_work_of_runs_one_after_the_other_ends_at_their_total():
     done = rounds.run_all_in_rounds(components, lambda *given: seen.append(given))
     work = [reached(ranges)[1] * components[name].block_work for name, ranges in done.items()]
     assert seen[-1] == (sum(work), sum(work))
+    # The plan of the second one counts before it has begun.
+    assert seen[0][1] == sum(run.planned * run.block_work for run in components.values())
     # Sums of floats, whose order counts, are told block by block.
     run = rounds.fixed(lambda first, stop, *_: [[1.0]] * (stop - first), 3, 10.0, join=added)
     rounds.run_in_rounds(run, lambda *given: seen.append(given))
