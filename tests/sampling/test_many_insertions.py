@@ -75,3 +75,11 @@ def test_the_overlap_of_a_pair_is_that_of_two_discs_alone(radius, periodic):
     two = Scene(2.0, 1.0, radius, periodic=periodic)
     overlap = pair_overlap(replace(two, discs=3))
     assert overlap == pytest.approx(1 - exact.free_fraction(two), rel=1e-12)
+
+
+@pytest.mark.parametrize(("periodic", "walls"), [("", ["right", "top"]), ("x", ["top"])])
+def test_the_area_of_all_walls_comes_with_those_of_each_side(periodic, walls):
+    scene = replace(GASES[1], periodic=periodic)
+    for wanted, more in (("any_wall_area", walls), ("disc_collision_area", [])):
+        made = insertions.insertion_sampler(scene, [wanted], 0.02, 1).constants["quantities"]
+        assert {*made} - {wanted} == {"volume", *(f"{wall}_wall_area" for wall in more)}
