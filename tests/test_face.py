@@ -78,7 +78,7 @@ def test_every_name_is_defined_where_an_editor_looks_for_it():
             defaults = {k: one.default for k, one in inspect.signature(home).parameters.items()}
             assert {defaults[one] for one in {"seed", "cores"} & defaults.keys()} <= {1}
             told = re.findall(r"^ +(\w+) : .*, default (\S+)$", home.__doc__ or "", re.MULTILINE)
-            assert all(defaults[one] in (None, eval(number)) for one, number in told)
+            assert all(defaults[one] == eval(number) for one, number in told)
 
 
 # The numbers of the pipeline ----------------------------------------------------------------------

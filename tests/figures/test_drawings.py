@@ -90,8 +90,8 @@ def test_a_prism_hides_three_edges_and_a_cylinder_its_other_half(monkeypatch, az
     assert len(ends) == len(hidden) == 2
 
 
-def test_the_bands_exclude_less_than_the_marked_point_has():
-    """x is beyond √(2r² − y²) and y beyond √(2r² − x²); the arrows are along the diagonals."""
+def test_the_marked_point_lies_outside_the_bands_that_its_coordinates_give():
+    """x is beyond √(2r² − y²) and y beyond √(2r² − x²); arrows end near the corners."""
     depths, bands = [], []
     for axes in draw("configuration_space", PAPER, {}).axes[1:]:
         arrows = [text for text in axes.texts if not text.get_text()]
@@ -139,7 +139,7 @@ def test_a_drawing_names_its_lengths(name):
 
 @pytest.mark.parametrize(("name", "panels"), [*zip(NAMED, (1, 2, 1, 3, 2), strict=True)])
 def test_a_rectangle_fills_panels(name, panels):
-    """In the model there is one for the centres in it."""
+    """In the model another rectangle, for the centres, is a radius inside."""
     filled = 0
     for axes in draw(name, PAPER, {}).axes:
         boxes = [patch.get_bbox() for patch in axes.patches if isinstance(patch, Rectangle)]

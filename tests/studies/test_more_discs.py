@@ -23,10 +23,11 @@ def rows(tmp_path_factory):
 @pytest.mark.parametrize("aspect", tori.ASPECTS)
 def test_a_torus_has_the_aspect_that_its_name_says(aspect):
     """Its discs have the diameter 1 and fill a fraction of the area."""
-    box = tori.torus(12, 0.5, aspect)
+    scene = tori.torus(12, 0.5, aspect)
     width, height = re.sub(r"(\d)sqrt", r"\1*sqrt", aspect).split(":")
-    assert box.width / box.height == pytest.approx(eval(width) / eval(height, vars(math)))
-    assert box.width * box.height == pytest.approx(12 * math.pi * box.radius**2 / 0.5)
+    assert scene.width / scene.height == pytest.approx(eval(width) / eval(height, vars(math)))
+    assert scene.radius == 0.5
+    assert scene.width * scene.height == pytest.approx(12 * math.pi / 4 / 0.5)
 
 
 def test_scores_are_deviations_over_the_errors_of_both(rows):

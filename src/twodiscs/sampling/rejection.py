@@ -236,8 +236,8 @@ def fraction_if_accepted(state, prism, y1, dx, dy, dz, power):
 def draw_in_prism(state, prism, axis):
     """Return (x1, y1, z1, dx, dy, dz, kinetic fraction) from the invariant measure.
 
-    With an ``axis`` (0 for x, 1 for y) they are on the surface of a hop along it. The density there
-    is ∝ (E − U)^((D − 1)/2), like the flux through the surface.
+    With an ``axis`` (0 for x, 1 for y, −1 for none) they are on the surface of a hop along it. The
+    density there is ∝ (E − U)^((D − 1)/2), like the flux through the surface.
     """
     power = prism.components - (2 if axis < 0 else 1)
     while True:
