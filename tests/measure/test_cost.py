@@ -14,6 +14,7 @@ import twodiscs as td
 from twodiscs.analysis.tables import shortfall
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
+from twodiscs.dynamics.many import many_rates
 from twodiscs.dynamics.runs import DAY_OF_EVENTS, DynamicsRun
 from twodiscs.dynamics.two import two_rates
 from twodiscs.measure import cost
@@ -137,6 +138,8 @@ def test_without_a_budget_a_run_has_a_day():
     work = sum(component.budget * component.cost_ratio for component in hard.components.values())
     assert work == pytest.approx(DAY_OF_EVENTS)
     assert hard.most_events == DAY_OF_EVENTS
+    many = new_run(td.Scene(2, 1.5, 0.1, discs=12), 1e-9)
+    assert many.most_events * many_rates.cost_ratio(many.scene) == pytest.approx(DAY_OF_EVENTS)
     for component in hard.components.values():  # as many blocks, on the grid of planned ones
         events = component.planned * component.block_events
         assert 0.999 < events / component.budget < 1 + 1 / PLAN_STEPS
