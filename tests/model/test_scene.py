@@ -10,6 +10,8 @@ see it.
 
 import math
 import pickle
+import re
+from ast import literal_eval
 from dataclasses import FrozenInstanceError, replace
 from fractions import Fraction
 
@@ -22,6 +24,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from twodiscs.model.checks import InputError
+from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENT_AXES, EVENTS, WALLS
 from twodiscs.model.scene import REGIMES, Box, Scene
 from twodiscs.model.two_geometry import ENERGY
@@ -54,6 +57,17 @@ def test_a_copy_is_the_same_whatever_was_asked_before():
     assert pickle.loads(new) == scene
     with pytest.raises(FrozenInstanceError):
         scene.width = 2.0
+
+
+def test_the_documented_ranges_of_a_scene_are_those_that_it_takes():
+    told = re.findall(r"^    (\w+) : [^:]*? from (\S+) to (\w+)", Scene.__doc__, re.MULTILINE)
+    numbers = [name for name, one in EFFECTS.items() if one.is_number and not one.of_box]
+    assert [name for name, *_ in told] == [*numbers, "discs"]
+    for name, low, high in told:
+        for end, way in ((low, -math.inf), (high, math.inf)):
+            Scene(1.5, 1.0, 1e-5, **{name: literal_eval(end)})
+            with pytest.raises(InputError, match=f"^{name} must"):
+                Scene(1.5, 1.0, 1e-5, **{name: math.nextafter(float(end), way)})
 
 
 SCENES = [

@@ -484,14 +484,15 @@ class Scene(Box):
     periodic : str or sequence of str, default ""
         The axes without walls: "x", "y", "z", a list of them or text such as "xy".
     field : float, default 0
-        The acceleration g along −y, in speed²/length. The height of a disc is 0 on the bottom, so
-        the potential energy is never negative.
+        The acceleration g along −y, in speed²/length, 0 or from 1e-60 to 1e60. The height of a disc
+        is 0 on the bottom, so the potential energy is never negative.
     moment_of_inertia : float, optional
-        I/(m r²) of rough discs, in (0, 1]. Collisions of rough discs, with each other and with
+        I/(m r²) of rough discs, from 1e-3 to 1. Collisions of rough discs, with each other and with
         walls, also reverse the tangential velocity of the surfaces. Without it discs are smooth.
     friction : float, default 0
-        The rate γ of a Poisson process, in 1/time. At its times all velocities and spins are drawn
-        anew, uniformly on the sphere of the same kinetic energy and the same conserved momenta.
+        The rate γ of a Poisson process, in 1/time, 0 or from 1e-60 to 1e6 over the shortest side.
+        At its times all velocities and spins are drawn anew, uniformly on the sphere of the same
+        kinetic energy and the same conserved momenta.
     discs : int, default 2
         The number of discs, from 2 to 16384.
 
