@@ -223,17 +223,6 @@ def test_a_file_of_another_content_is_one_sentence_and_no_work(name, monkeypatch
             bits(found)
 
 
-def test_what_was_measured_cannot_be_set():
-    for found, name in (
-        (td.simulate(PAPER, duration=1)["any_wall_time"], "stderr"),
-        (td.cost(PAPER, 0.1).prices[0], "seconds"),
-        (td.observe(PAPER, seen, [0], 1), "mean"),
-        (td.transmission(NARROW, "horizontal_hop", 1), "coefficient"),
-    ):
-        with pytest.raises(AttributeError, match="cannot assign to field"):
-            setattr(found, name, 0.0)
-
-
 def test_files_of_something_else_are_refused(tmp_path):
     path = tmp_path / "result.json"
     kind = json.dumps({"twodiscs": td.__version__, "kind": "x"})
