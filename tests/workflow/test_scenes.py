@@ -141,9 +141,3 @@ def test_what_is_built_once_is_what_is_asked_for(unbuilt, tmp_path, given, studi
     assert made == ({*STUDY_TABLES} if studies is None else studies)
     once = {rule for rule, _ in found} - {"study_table", "study_part", "shared_figure"}
     assert once == ALWAYS | more
-
-
-def test_a_file_without_scenes_is_laid_over_the_default_configuration(unbuilt, tmp_path):
-    (tmp_path / "seed.yaml").write_text("seed: 5\n")
-    jobs = unbuilt.jobs("--configfile", str(tmp_path / "seed.yaml"))
-    assert "study_table" in {rule for rule, _ in jobs}
