@@ -4,9 +4,9 @@ Without these tests the tutorial could show what its blocks of Python do not pri
 """
 
 import pytest
-import test_examples
 import tutorial
 from checkout import REPOSITORY
+from test_examples import same
 
 nbformat = pytest.importorskip("nbformat", reason="nbformat reads and writes notebooks")
 
@@ -20,11 +20,6 @@ def made(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(tmp_path_factory.mktemp("tutorial"))
         return tutorial.tutorial(PAGE.read_text(encoding="utf-8"))
-
-
-def same(shown, found):
-    """Return whether texts agree, except the last digits of exact and of rounded numbers."""
-    return test_examples.same(shown, found, digits=9)
 
 
 def test_the_page_shows_what_its_blocks_print(made):
