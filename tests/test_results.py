@@ -382,6 +382,7 @@ def test_averages_over_states_have_honest_errors():
     found = td.observe(PAPER, lambda start, now: now["x1"], [0], starts=given)
     error = given["x1"].std(ddof=1) / math.sqrt(5000)
     assert (found.replicas, found.mean[0]) == (5000, pytest.approx(given["x1"].mean()))
+    assert list(found.frame().columns) == ["mean", "stderr"]
     assert found.stderr[0] == pytest.approx(error, rel=1e-12)
 
 

@@ -5,6 +5,7 @@ Without it a forecast could promise an error or a time that no run has.
 
 import math
 from dataclasses import replace
+from itertools import count
 from unittest.mock import Mock, call
 
 import pytest
@@ -69,6 +70,14 @@ def test_a_rare_hop_has_a_price_from_ordinary_states_too(blocks):
     error = cost.pilots(new_run(some, 1.0))["all"].errors["horizontal_hop"]
     block = td.rate(some, "horizontal_hop") * two_rates.replica_duration(some) * REPLICAS
     assert error == pytest.approx(math.sqrt(cost.CLUSTER_VARIANCE / block))
+
+
+def test_a_time_is_that_between_two_readings_of_a_clock(monkeypatch):
+    for clock in ("thread_time", "perf_counter"):
+        monkeypatch.setattr(cost.time, clock, count(1000.0).__next__)
+    assert cost.timed(range, 5.5) == (range(5), 5, 1 / 5)
+    assert cost.timed(range, 5.5, 7) == (range(7), 7, 1 / 7)
+    assert td.cost(SCENE)["all exact values", "exact"].least_seconds == 1.0
 
 
 def test_a_trajectory_has_a_price_for_its_rows(blocks):

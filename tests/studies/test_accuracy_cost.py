@@ -179,6 +179,7 @@ def test_a_measurement_ends_after_its_time_or_its_blocks(monkeypatch):
     assert [*times] == [1.0] * 4
     assert len(costs.measured(made([0.5]), math.inf, 7)[0]) == 7
     assert len(costs.measured(made([0.5]), 0.0, 7)[0]) == 2
+    assert {row["seconds"] for row in costs.exact_rows()} == {1 / costs.CALLS}
 
 
 def test_rows_are_those_of_all_methods_and_of_all_distances(monkeypatch):

@@ -5,6 +5,7 @@ Without these tests shares of unmet starts, plain times or costs of effects coul
 
 import json
 from functools import cache
+from itertools import count
 from subprocess import CalledProcessError
 
 import numpy as np
@@ -206,6 +207,8 @@ def test_costs_are_of_every_scene_and_of_what_is_watched(monkeypatch):
     }  # fmt: skip
     assert {(True, ("disc_collision",)), (False, (*WALLS, "any_wall"))} <= watched.keys()
     assert [row["variant"] for row in of(rows, instructions=10)] == ["without_effects"]
+    monkeypatch.setattr(price.time, "process_time", count(1000.0).__next__)
+    assert price.timed(dict) == ({}, 1.0)
 
 
 @pytest.mark.slow
