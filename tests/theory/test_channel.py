@@ -9,6 +9,7 @@ import math
 import numpy as np
 import pytest
 from marks import slow
+from scipy.integrate import quad_vec
 
 import twodiscs as td
 from twodiscs.theory import channel, exact, n_discs, three
@@ -34,6 +35,19 @@ def test_two_and_three_discs_have_their_other_theory(theory, discs, width, heigh
     found, expected = channel.derivatives(scene), theory(scene)
     assert found.log_volume == pytest.approx(expected.log_volume, abs=BOUND)
     assert found[1:] == pytest.approx(expected[1:], rel=BOUND)
+
+
+@pytest.mark.parametrize("ratio", [2, 50, 800])
+def test_nodes_resolve_the_phase_of_a_transform_up_to_their_reach(ratio):
+    force, scene = 3.0, td.Scene(1.0, 0.6, 0.18)
+    made = channel.make_channel(scene, force, ratio * force)
+    p = force * complex(1, math.sqrt(ratio**2 - 1))
+    found = 2 * np.einsum("i,j,kij->", made.weights, made.weights, np.exp(-p * made.apart))
+    b, sigma, least = made.height, made.sigma, made.least
+    expected, _ = quad_vec(
+        lambda y: 2 * (b - y) * np.exp(-p * (np.sqrt(sigma**2 - y**2) - least)), 0, b, epsrel=1e-13
+    )
+    assert found == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize("radius", [0.1, 0.3])
