@@ -7,6 +7,7 @@ drift.
 import itertools
 import math
 from dataclasses import replace
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -265,6 +266,17 @@ def test_errors_have_the_correlation_of_successive_replicas():
     for counts, ratio in ((alone, 1), (together, 19 / 6)):
         spread = np.diag(class_counts.spread_of_batches(counts, 6)) / 8000 - counts.mean(0) ** 2
         assert spread / counts.var(0) == pytest.approx(ratio, rel=0.15)
+
+
+def test_only_successive_states_of_a_chain_are_in_batches(monkeypatch):
+    """Crowded discs have a new chain for each state, and these are independent."""
+    spread = Mock(wraps=class_counts.spread_of_batches)
+    monkeypatch.setattr(class_counts, "spread_of_batches", spread)
+    for packing, calls in ((0.7, 0), (0.5, 1)):
+        side = math.sqrt(CELL_DISCS * math.pi * 0.01 / packing)
+        scene = td.Scene(side, side, 0.1, discs=CELL_DISCS, periodic="xy")
+        class_counts.run_classes(scene, 1, 0, 1, 0.01, replicas=20)
+        assert spread.call_count == calls
 
 
 def check_state(scene, state):
