@@ -38,6 +38,13 @@ def test_discs_that_jam_do_not_fit():
     assert box.fits(math.nextafter(0.3125, 0.0))
 
 
+def test_discs_that_all_their_energy_can_just_lift_do_not_fit():
+    """One is 1/2 above the other in a channel of width 1, where they are at most 3/8 apart."""
+    assert Scene(1, 3, 0.3125, field=math.nextafter(1, 0))
+    with pytest.raises(InputError, match=r"^field 1\.0 is too strong"):
+        Scene(1, 3, 0.3125, field=1)
+
+
 def test_regimes():
     """They are in the order of their hops; zero room is blocked."""
     lengths = (1.5, 1, 0.2), (1.5, 1, 0.25), (1, 1.5, 0.3), (1, 1, 0.25)
