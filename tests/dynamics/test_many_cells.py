@@ -84,17 +84,18 @@ def test_a_few_events_are_the_same_ones(scene):
         assert np.array_equal(some, same)
 
 
-@pytest.mark.slow
-def test_a_log_has_room_for_pairs_of_a_row_or_a_column():
+@pytest.mark.parametrize(("discs", "stretches"), [(CELL_DISCS, 0), slow(1024, 4)])
+def test_a_log_has_room_for_pairs_of_a_row_or_a_column(discs, stretches):
     """Not for all pairs; their number is kept where discs go on to the next row."""
-    side = math.sqrt(1024 * math.pi / 0.3) / 10
-    scene = td.Scene(side, side, 0.1, discs=1024)
+    side = math.sqrt(discs * math.pi / 0.3) / 10
+    scene = td.Scene(side, side, 0.1, discs=discs)
     path = many_paths.Followed(scene, scene.events)
     path.start(many_initial_states.states(scene, 1, 1), 1)
-    for log, _ in path.go_on(4 * many_rates.usual_epoch(scene) / 64):
-        sizes = np.array([np.diff(bands.first) for bands in path.bands])
-        assert log.pending[0] == (sizes * (sizes - 1) // 2).sum() < 64 * scene.discs
-        assert log.times.size < 200 * scene.discs
+    later = (log for log, _ in path.go_on(stretches * many_rates.usual_epoch(scene) / 64))
+    for log in itertools.chain([path.log], later):
+        sizes = [size for bands in path.bands for size in np.diff(bands.first)]
+        assert log.pending[0] == sum(map(math.comb, sizes, itertools.repeat(2))) < 64 * discs
+        assert log.times.size < max(200 * discs, many_paths.LOG_ENTRIES + 1)
 
 
 def test_which_kernel_runs():

@@ -6,6 +6,7 @@ Without these tests an input that is accepted could never end, because its work 
 import inspect
 import math
 import re
+from dataclasses import replace
 
 import pytest
 from hypothesis import example, given, settings
@@ -14,7 +15,7 @@ from hypothesis import strategies as st
 from twodiscs.dynamics import paths, runs
 from twodiscs.dynamics.engine import Engine, find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.two import strip, two_rates
+from twodiscs.dynamics.two import path, strip, two_rates
 from twodiscs.model.checks import LONGEST_LENGTH, SHORTEST_LENGTH, InputError
 from twodiscs.model.scene import Box
 from twodiscs.model.two_geometry import LEAST_DISTANCE
@@ -61,6 +62,7 @@ def test_too_close_to_the_largest_radius_dynamics_is_refused(width):
 
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(LENGTHS, LENGTHS, EFFECTS, SHARES)
+@example(1.5, 1.0, {"periodic": "xy"}, 1e-5)  # crossings take longer than all else
 def test_the_work_of_a_replica_is_bounded(width, height, effects, share):
     try:
         scene = scene_of(width, height, effects, share)
@@ -74,6 +76,9 @@ def test_the_work_of_a_replica_is_bounded(width, height, effects, share):
     assert leaves <= most * CROSSINGS_PER_EVENT
     crossings = leaves / CROSSINGS_PER_EVENT / exact.event_rate(scene)
     assert exact.work_per_event(scene) == pytest.approx(max(1.0, crossings))
+    rows = exact.event_rate(scene) * max(1.0, crossings)
+    assert path.trajectory_rate(scene) == pytest.approx(rows)
+    assert path.trajectory_rate(replace(scene, friction=rows)) == pytest.approx(2 * rows)
 
 
 def test_kicks_between_two_hops_are_work():

@@ -168,6 +168,12 @@ def test_parts_of_a_long_channel_are_those_of_its_corners(discs, height):
         (Scene(0.6, 3.0, 0.2, discs=4, periodic="y"), 6),
         (Scene(1.7, 1.0, 0.2, discs=4, periodic="xy"), 1),
         (Scene(1.0, 1.0, 0.2, discs=4, periodic="xy"), None),
+        # They just cannot pass, or just do not fit in a row.
+        (Scene(1.5, 0.5, 0.125, discs=4), 24),
+        (Scene(0.5, 1.5, 0.125, discs=4), 24),
+        (Scene(1.5, 0.5, 0.125, discs=4, periodic="x"), 6),
+        (Scene(1.0, 0.625, 0.125, discs=4), None),
+        (Scene(1.0, 1.0, 0.125, discs=4, periodic="xy"), None),
     ],
     ids=repr,
 )

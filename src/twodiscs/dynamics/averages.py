@@ -234,7 +234,7 @@ class ObserveRun(Run):
         start = next(every)
         yield from zip(repeat(start), every)
 
-    def frames(self, progress=None, cores=1):
+    def frames(self, progress, cores=1):
         """Return the states of all replicas at all times, see ``observe.frames``."""
         names, each = components(self.scene), self._each
         shape = self.replicas, self.times.size, self.scene.discs

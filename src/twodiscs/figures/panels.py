@@ -103,7 +103,7 @@ def stacked(width=COLUMN_WIDTH, **heights):
     return figure, [*axes.values()]
 
 
-def title(axes, letter="", box=None, more="", up=3):
+def title(axes, letter, box=None, more="", up=3):
     """Write the ``letter`` of a panel, the sides of its box, ``more`` and its effects above it.
 
     ``up`` is the distance from the panel, in points.

@@ -101,7 +101,7 @@ class Figure:
             return False
         return not self.needs or not self.needs.isdisjoint(quantities)
 
-    def captions(self, box=None):
+    def captions(self, box):
         """Return (own caption, note or "") for the scenes in a ``Box``, for plain ones if None."""
         own = Caption(self.own) if isinstance(self.own, str) else self.own
         return own.full_text(box), self.note.full_text(box) if self.note else ""

@@ -350,7 +350,7 @@ class _Space:
         """Return the measure of separations up to a ``distance`` along ``axis``."""
         return self.beyond(**{axis: self.axis(axis, farthest=distance)})
 
-    def contact(self, thickness=0):
+    def contact(self, thickness):
         """Return the measure of distances from σ to σ + ``thickness``, per length."""
         return _sum_of_orders(self.axes(), _near_contact, self.sigma, Fraction(thickness))
 
