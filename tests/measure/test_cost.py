@@ -8,11 +8,13 @@ from dataclasses import replace
 from itertools import count
 from unittest.mock import Mock, call
 
+import numpy as np
 import pytest
 from effect_scenes import SCENES
 
 import twodiscs as td
 from twodiscs.analysis.tables import shortfall
+from twodiscs.dynamics import paths
 from twodiscs.dynamics.engine import find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import many_rates
@@ -72,6 +74,15 @@ def test_a_rare_hop_has_a_price_from_ordinary_states_too(blocks):
     assert error == pytest.approx(math.sqrt(cost.CLUSTER_VARIANCE / block))
 
 
+def test_a_strip_without_a_hop_in_its_pilot_has_the_error_that_was_planned(blocks):
+    """The planned blocks reach the error that is asked for; one block has √planned times it."""
+    run, hop = new_run(NEAR, 0.01), "horizontal_hop"
+    none = replace(run.components[hop], error_over_target=lambda *_: np.array([math.inf]))
+    run.components[hop] = none
+    due = 0.01 * math.sqrt(none.planned)
+    assert cost.pilots(run)[hop].errors == {hop: pytest.approx(due)}
+
+
 def test_a_time_is_that_between_two_readings_of_a_clock(monkeypatch):
     for clock in ("thread_time", "perf_counter"):
         monkeypatch.setattr(cost.time, clock, count(1000.0).__next__)
@@ -80,10 +91,16 @@ def test_a_time_is_that_between_two_readings_of_a_clock(monkeypatch):
     assert td.cost(SCENE)["all exact values", "exact"].least_seconds == 1.0
 
 
-def test_a_trajectory_has_a_price_for_its_rows(blocks):
-    price = td.cost(NEAR)["trajectory", "1e6 rows"]
+@pytest.mark.parametrize(("most", "rows"), [(1e7, 1e6), (1e5, 1e5)])
+def test_a_trajectory_has_a_price_for_its_rows_or_for_the_most_that_fit(
+    blocks, most, rows, monkeypatch
+):
+    monkeypatch.setattr(paths, "MOST_PATH_EVENTS", most)
+    price = cost._price_of_trajectory(NEAR)
+    assert price.method == f"1e{round(math.log10(rows))} rows"
     # The 32 blocks of the pilot have about a thousand rows each.
-    assert price.seconds(0.1) == price.seconds(1e-9) == pytest.approx(1.0, rel=0.7)
+    due = pytest.approx(rows / 1e6, rel=0.7)
+    assert price.seconds(0.1) == price.seconds(1e-9) == due
 
 
 def test_a_time_is_c_over_the_square_of_the_error_between_the_smallest_run_and_the_floor():
@@ -129,6 +146,7 @@ def test_a_budget_ends_a_run_at_the_error_that_the_forecast_says(blocks):
 
 
 def test_ten_times_the_accuracy_takes_a_hundred_times_as_long(blocks):
+    assert td.cost(NEAR, "draft").errors == [1e-2]
     found = td.cost(NEAR)
     assert found.errors == [1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
     assert found.seconds(1e-6) == pytest.approx(100 * found.seconds(1e-5))
