@@ -256,6 +256,7 @@ def test_notebooks_show_tables_and_complete_keys():
     assert found._ipython_key_completions_() == [*found]
     assert html.count("<tr>") == len(found) == len(td.EVENTS)
     assert "<td>vertical_hop_time</td>" in html
+    assert html.endswith(f"</table><p>{found.note}</p>")
     assert "<table " in td.intervals(PAPER, "vertical_hop", 1)._repr_html_()
 
 
@@ -274,10 +275,15 @@ def test_a_scan_is_a_sequence_a_table_and_a_figure(tmp_path):
         assert (row["estimate"], row["exact"]) == (one.rows[0]["estimate"], one.rows[0]["exact"])
         refused = frame.loc[(0.7, *place, "does not fit")]
         assert refused["status"].startswith("radius 0.7 does not fit")
-    assert "radius 0.7 does not fit" in str(scan)
-    times = td.scan(1.5, 1, 0.2, measure=lambda s: td.transmission(s, "vertical_hop", 1), discs=[2])
+    for shown in (str(scan), scan._repr_html_()):
+        assert shown.count("radius 0.7 does not fit") == 4
+    curve = lambda scene: td.transmission(scene, "vertical_hop", 1)  # noqa: E731
+    times = td.scan(1.5, 1, [0.2, 0.7], measure=curve, discs=[2])
     assert times.frame().index.names == ["radius", "discs", "time"]
-    assert times[0].frame().equals(times.frame().loc[(0.2, 2)])
+    assert times[0].frame().equals(times.frame().loc[(0.2, 2), ["kappa", "stderr"]])
+    refused = times.frame().loc[(0.7, 2)]  # a row without a time and numbers
+    assert np.isnan([*refused.index, *refused[["kappa", "stderr"]].iloc[0]]).all()
+    assert [why[:10] for why in refused["status"]] == ["radius 0.7"]
     td.plot(td.scan(1.5, 1.0, [0.2, 0.1], field=0.3, **asked), tmp_path / "scan.png")
     assert (tmp_path / "scan.png").stat().st_size > 5000
 

@@ -63,6 +63,8 @@ def test_ase_reads_it(path, tmp_path):
     corner = np.array([scene.side(axis) / 2 for axis in scene.axes])
     assert np.allclose(second.positions[:, :axes] - corner, path.positions([2.5])[0], atol=1e-15)
     assert np.allclose(first.get_velocities()[:, :axes], path.velocities([0.0])[0], atol=1e-15)
+    assert (second.positions[:, axes:] == max(scene.radii)).all()  # in the middle of the lattice
+    assert [*first.arrays["id"]] == [*range(1, scene.discs + 1)]
     sides = [scene.side(axis) for axis in scene.axes]
     assert [*first.cell.lengths()] == [*sides, 2 * max(scene.radii)][:3]
     assert [*first.pbc] == [axis in scene.periodic for axis in "xyz"]
@@ -80,7 +82,21 @@ def test_ase_reads_it(path, tmp_path):
     del second.arrays["id"]
     ase.write(tmp_path / "b.xyz.gz", second, format="extxyz")  # to eight digits
     rounded = (tmp_path / "b.xyz.gz").rename(tmp_path / "B.XYZ.GZ")
-    for start in (tmp_path / "a.xyz", arrays, *[rounded] * (not scene.field)):
+    # Nor does the order of the lines matter: the discs have numbers.
+    number, about, one, *others = (
+        (tmp_path / "a.xyz").read_text().split("\n")[-scene.discs - 3 : -1]
+    )
+    plain = about.replace(":masses:R:1:", ":other:R:1:")
+    for name, lines in (
+        ("c.xyz", [number, about, *others, one]),
+        ("d.xyz", [number, plain, *others, one]),
+    ):
+        (tmp_path / name).write_text("\n".join(lines))
+    for start in (
+        *(tmp_path / f"{name}.xyz" for name in "acd"),
+        arrays,
+        *[rounded] * (not scene.field),
+    ):
         (state,) = td.trajectory(scene, 1, start=start).states_at(0.0)
         assert np.allclose([*state], [*path.states_at(2.5)[0]], atol=1e-15)
 

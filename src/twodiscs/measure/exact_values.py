@@ -146,7 +146,7 @@ def exact_table(
     width, height : float
         Sides of the box, in length, from 1e-60 to 1e60.
     radii : float or iterable of float
-        Radii of disc 1, in length, each of which must fit.
+        Radii of disc 1, in length, at least one of which must fit.
     **effects
         The effects and ``discs`` of ``Scene``.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from html import escape
 from itertools import product
 from typing import TYPE_CHECKING, Any, Unpack
 
@@ -129,7 +130,8 @@ class Scan(Result, Sequence[Result]):
         return "\n\n".join([*map(str, self), *self.refused.values()])
 
     def _repr_html_(self) -> str:
-        return "".join(result._repr_html_() for result in self)
+        refused = (f"<p>{escape(why)}</p>" for why in self.refused.values())
+        return "".join([*(result._repr_html_() for result in self), *refused])
 
 
 @checked_call

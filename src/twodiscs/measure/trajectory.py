@@ -423,6 +423,9 @@ def _frame_of(scene, about, columns):
     """Return centres, velocities and maybe spins of a frame, if its box and its discs are right."""
     sides = [scene.side(axis) for axis in scene.axes]
     lattice = np.array(about["Lattice"].split(), float)[::4][: len(sides)]
+    if "id" in columns:
+        order = np.argsort(columns["id"].ravel())
+        columns = {name: column[order] for name, column in columns.items()}
     radii = columns.get("radius", np.array(scene.radii))
     is_right = len(columns["pos"]) == scene.discs and np.allclose(lattice, sides, 1e-9, 0.0)
     if not is_right or not np.allclose(radii.ravel(), scene.radii, 1e-9, 0.0):
@@ -433,9 +436,8 @@ def _frame_of(scene, about, columns):
     if "momenta" in columns:
         masses = columns.get("masses", np.array(scene.masses)[:, None])
         columns["velo"] = columns["momenta"] / masses
-    order = np.argsort(columns["id"].ravel()) if "id" in columns else slice(None)
     names = ["pos", "velo", "spin"] if scene.moment_of_inertia is not None else ["pos", "velo"]
-    centres, velocities, *spins = (columns[name][order] for name in names)
+    centres, velocities, *spins = (columns[name] for name in names)
     return centres, velocities, *(spin[:, 0] for spin in spins)
 
 

@@ -168,7 +168,7 @@ def transmission(
         along a ring.
     hops : float, default 2**17
         Hops to follow, forwards and backwards in time for κ, forwards for the curve: an integer
-        from 1 on. It is rounded up to whole blocks.
+        from 1 to 1e9. It is rounded up to whole blocks.
     seed, name, cores, progress : optional
         See ``help(twodiscs)``.
 
