@@ -82,21 +82,12 @@ def test_ase_reads_it(path, tmp_path):
     del second.arrays["id"]
     ase.write(tmp_path / "b.xyz.gz", second, format="extxyz")  # to eight digits
     rounded = (tmp_path / "b.xyz.gz").rename(tmp_path / "B.XYZ.GZ")
-    # Nor does the order of the lines matter: the discs have numbers.
-    number, about, one, *others = (
-        (tmp_path / "a.xyz").read_text().split("\n")[-scene.discs - 3 : -1]
-    )
-    plain = about.replace(":masses:R:1:", ":other:R:1:")
-    for name, lines in (
-        ("c.xyz", [number, about, *others, one]),
-        ("d.xyz", [number, plain, *others, one]),
-    ):
-        (tmp_path / name).write_text("\n".join(lines))
-    for start in (
-        *(tmp_path / f"{name}.xyz" for name in "acd"),
-        arrays,
-        *[rounded] * (not scene.field),
-    ):
+    # Nor does the order of the lines matter: the discs have numbers, here without their masses.
+    lines = (tmp_path / "a.xyz").read_text().replace(":masses:", ":other:").splitlines()
+    discs = [*lines[1 - scene.discs :], lines[-scene.discs]]
+    (tmp_path / "c.xyz").write_text("\n".join([*lines[: -scene.discs], *discs]))
+    files = tmp_path / "a.xyz", tmp_path / "c.xyz"
+    for start in (*files, arrays, *[rounded] * (not scene.field)):
         (state,) = td.trajectory(scene, 1, start=start).states_at(0.0)
         assert np.allclose([*state], [*path.states_at(2.5)[0]], atol=1e-15)
 
