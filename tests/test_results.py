@@ -263,7 +263,8 @@ def test_notebooks_show_tables_and_complete_keys():
 def test_a_scan_is_a_sequence_a_table_and_a_figure(tmp_path):
     """Over any numbers of a scene: all combinations; what does not fit has a row."""
     asked = {"error": 0.3, "events": "any_wall", "budget": 1}
-    scan = td.scan([1.5, 2.0], 1.0, [0.7, 0.2], mass_ratio=(m for m in (2, 1)), **asked)
+    iterators = {"mass_ratio": iter([2, 1]), "events": iter(["any_wall"])}
+    scan = td.scan([1.5, 2.0], 1.0, [0.7, 0.2], **asked | iterators)
     assert (scan.parameters, scan.radii) == (("radius", "width", "mass_ratio"), [0.2] * 4)
     frame = scan.frame()
     assert frame.index.names == [*scan.parameters, "quantity"]
@@ -489,6 +490,7 @@ def test_times_are_any_iterable():
     path = td.trajectory(PAPER, duration=3)
     for times in ((0, 1), range(2), map(float, range(2)), (t for t in (0, 1)), {0: 1, 1: 0}.keys()):
         assert td.observe(PAPER, lambda start, now: now["x1"], times, 1) == averages
+    assert td.diffusion(RING, iter([1, 3]), 1) == td.diffusion(RING, [1, 3], 1)
     for times in (iter([0.5, 2]), {0.5: 0, 2: 0}.keys(), np.array([0.5, 2])):
         assert np.array_equal(path.states_at(times), path.states_at([0.5, 2]))
     assert path.states_at(np.array(2.0)) == path.states_at(2)

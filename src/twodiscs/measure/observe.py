@@ -429,7 +429,8 @@ def make_diffusion(scene, times, replicas, axis, seed, name, **how):
             "have a bound"
         )
     axis = axis or periodic[0]
-    if check_times(times)[0] == 0:
+    times = check_times(times)
+    if times[0] == 0:
         raise InputError("times must be above 0 for diffusion, not 0")
     discs = range(1, scene.discs + 1 if scene.identical else 2)
 

@@ -213,7 +213,8 @@ def scan(
             f"one radius, has the same random numbers each time, not {' and '.join(values)}; to "
             "repeat one, give another seed"
         )
-    asked = {"error": error, "duration": duration, "budget": budget, "events": events}
+    names = events if (listed := as_list(events)) is None else listed
+    asked = {"error": error, "duration": duration, "budget": budget, "events": names}
     asked |= {"seed": seed, "name": name, "cores": cores, "progress": progress}
     if measure is None:
         asked["error"] = 1e-2 if error is None and duration is None else error
