@@ -242,6 +242,7 @@ def test_errors_that_are_not_given_and_presets_are_those_of_the_pages():
     assert td.simulate(PAPER, budget=1).settings["error"] == 1e-3
     assert td.intervals(PAPER, "vertical_hop").settings["number"] == 10**6
     assert td.sample(PAPER).settings["samples"] == 10**7
+    assert td.observe(PAPER, seen, [0]).settings["replicas"] == 2**16
     found = td.simulate(PAPER, "draft", events=["any_wall"])
     assert found.settings["error"] == NAMED_ERRORS["draft"]
     assert td.simulate(PAPER, 1, budget=1)["any_wall_time"].status == "reached"

@@ -64,6 +64,7 @@ def test_a_rare_hop_has_a_price_from_ordinary_states_too(blocks):
     found = td.cost(NEAR)
     strips, ordinary = (found["horizontal_hop_time", m] for m in ("strips", "dynamics"))
     assert ordinary.c > 1e4 * strips.c
+    assert ordinary.least_seconds == 32e-3  # the 32 blocks of the smallest run
     # Few counts do not tell their variance; it then follows from the exact rate.
     block = td.rate(NEAR, "horizontal_hop") * two_rates.replica_duration(NEAR) * REPLICAS
     assert ordinary.c == pytest.approx(cost.CLUSTER_VARIANCE / block * 1e-3)

@@ -192,3 +192,16 @@ def test_displacements_are_of_disc_1_unless_all_are_equal(ring, discs, monkeypat
     monkeypatch.setattr("twodiscs.dynamics.averages.MOST_STATE_NUMBERS", 1)
     again = td.diffusion(ring, found.times, 8193, seed=2, cores=2)
     assert np.allclose(found.mean, again.mean, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("periodic", "axis", "square"), [("xy", None, 1), ("yz", None, 4), ("xyz", "z", 9)]
+)
+def test_diffusion_is_along_the_first_periodic_axis_or_a_given_one(
+    periodic, axis, square, monkeypatch
+):
+    scene = td.Scene(1.5, 1.0, 0.1, depth=1.0, periodic=periodic)
+    now = {"x1": 1, "x2": 1, "y1": 2, "y2": 2, "z1": 3, "z2": 3}
+    called = lambda *given, **_: given[4](dict.fromkeys(now, 0), now)  # noqa: E731
+    monkeypatch.setattr("twodiscs.measure.observe._averages", called)
+    assert td.diffusion(scene, [1.0], axis=axis) == square

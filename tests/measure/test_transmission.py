@@ -108,15 +108,20 @@ def test_the_face_has_the_coefficient_and_the_curve():
 
 
 def test_a_pause_is_long_against_diffusion():
-    """Discs diffuse with ⟨u²⟩/γ, and ⟨u²⟩ is 1/4, of rough discs 1/6.
+    """Discs diffuse with ⟨u²⟩/γ, and 1/⟨u²⟩ is the number of components of all velocities.
 
-    The mode cos(πx₁/A) cos(πx₂/A) of their separation lasts γA²/(2π²⟨u²⟩).
+    The mode cos(πx₁/A) cos(πx₂/A) of their separation lasts γA²/(2π²⟨u²⟩). Two of three discs have
+    two thirds of the box, or of the whole ring, whose total momentum is 0.
     """
     smooth = td.Scene(1.5, 1.0, 0.249, friction=640.0)
     rough = replace(smooth, moment_of_inertia=0.5)
-    for scene, mode in ((smooth, 2 / math.pi**2), (rough, 3 / math.pi**2)):
+    three = replace(smooth, width=2.25, discs=3)
+    ring = replace(three, periodic="x")
+    for scene, squares, room in (
+        (smooth, 4, 1.002), (rough, 6, 1.002), (three, 6, 1.168), (ring, 5, 1.5),
+    ):  # fmt: skip
         gap = transmission.quiet_time(scene, "horizontal_hop")
-        assert 1 < gap / (mode * scene.friction * scene.range_x**2) < 1.3
+        assert 1 < gap / (scene.friction * room**2 * squares / (2 * math.pi**2)) < 1.3
     slow = replace(smooth, friction=40.0)
     assert transmission.quiet_time(slow, "horizontal_hop") == 48 * slow.range_x
 
