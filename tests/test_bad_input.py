@@ -170,7 +170,7 @@ td.observe(PAPER, x1, [1], 3, starts=td.starts(PAPER, 3)) → replicas must be l
 td.observe(PAPER, x1, [1], starts=td.starts(FOUR, 3)) → an array of shape (number, 2, 4) of x, y, u
 td.observe(PAPER, x1, [1], starts=np.ones((2, 2, 4))) → must have disc 1 inside the box, with x1
 td.observe(PAPER, x1, [1], starts=[MOVING, np.add(MOVING, [9, 0, 0, 0])]) → disc 1 inside the box
-td.observe(PAPER, x1, [1], starts=[MOVING, np.add(MOVING, [0, 0, 0.5, 0])]) → of 0.5, not 1.25
+td.observe(PAPER, x1, [1], starts=[MOVING, np.add(MOVING, [0, 0, 1e-8, 0])]) → of 0.5, not 0.50
 td.observe(PAPER, x1, [1], starts=np.zeros((2, 3, 4))) → must be states as starts or frames returns
 td.observe(PAPER, x1, [1], starts=[MOVING, MOVING * np.array([1, NAN, 1, 1])]) → as starts or frames
 td.trajectory(PAPER, start=map(float, '12')) → start must be the numbers x1, …, not <map object at
@@ -200,7 +200,7 @@ td.free_energy('a') → of must be a Scene or a result of sample, not 'a'
 td.diffusion(PAPER, [1]) → axis must be periodic in the scene for diffusion
 td.diffusion(RING, [1], axis='y') → axis must be one of x for
 td.diffusion(RING, [0, 1]) → times must be above 0 for diffusion
-start(x1=0.2) → have the discs apart, with 0.4 or more between their centres, not 0.3
+start(x1=0.1 + 1e-8) → have the discs apart, with 0.4 or more between their centres, not 0.3999999
 td.trajectory(td.Scene(1.5e-15, 1e-15, 2e-16), start=[-6e-16, 0, 5e-16, 0, 1, 0, 0, 0]) → inside
 start(x1=-0.6) → disc 1 inside the box, with x1 between -0.55 and 0.55, not -0.6
 td.trajectory(RING, start=[-0.8, 0, 0, 0.31, 1, 0, 0, 0]) → disc 2 inside the box, with y2

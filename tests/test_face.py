@@ -144,6 +144,7 @@ def test_a_measurement_without_an_honest_error_has_no_interval_and_no_score():
 
 def test_a_bound_that_says_nothing_is_no_perfect_match():
     row = {"quantity": "any_wall_time", "estimate": 1.0, "stderr": None, "exact": 2.0, "count": 3}
+    row |= {"expectation": 1.5, "bound": 0.5}
     for z, test, known, text in (
         (0.0, "cluster-bound", None, "–"),
         (0.0, "exact-tail", None, "–"),
@@ -151,7 +152,7 @@ def test_a_bound_that_says_nothing_is_no_perfect_match():
         (-1.5, "cluster-bound", -1.5, "-1.50"),
     ):
         found = measurement(PAPER, row | {"z": z, "test": test, "status": "too-few"})
-        assert found.z == known
+        assert (found.z, found.expectation, found.bound) == (known, 1.5, 0.5)
         assert found.cells()[5] == text
         assert ("z = " in str(found)) == (known is not None)
 
@@ -275,14 +276,16 @@ def test_what_changes_with_time_is_drawn_with_its_errors(tmp_path):
 
 
 def test_tables_come_back_with_units_and_provenance(simulated, sampled, tmp_path):
-    scene = {"name": "one", "box": {"width": 1.5, "height": 1.0}, "discs": 3}
+    box = {"width": 1.5, "height": 1.0}
+    scene = {"name": "one", "box": box, "discs": 3, "effects": {"periodic": "x"}}
     folder, provenance = tmp_path / "one", {"seed": 7, "scenes": [scene]}
     folder.mkdir()
     SCENE_TABLES["theory"].write(folder / "theory.csv", [])
     SCENE_TABLES["mean_times"].write(folder / "mean_times.csv", simulated.rows)
     SCENE_TABLES["volume"].write(folder / "volume.csv", sampled.rows[:1])
     (folder / "mine.csv").write_text("a,b\n1,2\n")
-    (tmp_path / "configuration.json").write_text(json.dumps(provenance))
+    several = provenance | {"scenes": [scene | {"name": "two"}, scene]}
+    (tmp_path / "configuration.json").write_text(json.dumps(several))
     found = td.load(folder)
     assert [*found] == ["mean_times", "theory", "volume"]
     times = found["mean_times"]
@@ -293,6 +296,7 @@ def test_tables_come_back_with_units_and_provenance(simulated, sampled, tmp_path
     assert found["theory"].attrs["units"]["exact"] == "length⁶, length⁵ or time"
     assert times.attrs["meaning"].startswith("One row per radius and event: ")
     assert times.attrs["configuration"] == provenance
+    assert times.attrs["box"] == td.Box(**box, discs=3, periodic="x").parameters()
     (folder / "volume.csv").write_text("radius,quantity\nx,y\n")
     with pytest.raises(td.InputError, match=r"volume\.csv "):
         td.load(folder)
@@ -349,18 +353,20 @@ def test_a_method_whose_price_was_printed_can_be_taken():
         assert {*td.sample(near, 1, method=method).frame()["method"]} == {made}
 
 
+#: Where a block has 2¹⁶ conditioned samples, each for 64 of the prism.
+CLOSE = PAPER.with_radius(0.38)
 NOTES = """
 td.sample(PAPER, 10) → You asked for 10 samples and got 1048576, because work is done in
-td.sample(td.Scene(1.5, 1, 0.38), 1e7) → You asked for 10000000 samples and got 196608
+td.sample(CLOSE, 1e7) → You asked for 10000000 samples and got 196608
 td.sample(PAPER, error=0.5) → You asked for an error of 0.5 and got 0.01, because the
 td.sample(PAPER, error=0.01, budget=1e6, shell=2e-5, quantities="top_wall_area") → You asked
-td.sample(PAPER, error=0.5, budget=10) → You asked for a budget of 10, but the smallest
+td.sample(CLOSE, error=1, budget=1) → You asked for a budget of 1, but the smallest run has 4.2e6
 td.sample(PAPER, error=0.5, budget=4e5) → You asked for a budget of 400000, but the smallest
 td.sample(PAPER, error=0.5, budget=6e5) → You asked for an error of 0.5 and got 0.058
 td.intervals(PAPER, "vertical_hop", 10) → You asked for 10 intervals and got 65536
 td.observe(PAPER, lambda a, b: b["x1"], [1], 10) → You asked for 10 replicas and
 td.observe(PAPER, lambda a, b: b["x1"], [1], 8192) →
-td.simulate(PAPER, 0.5) → You asked for an error of 0.5 and got 0.0028, because the smallest run
+td.simulate(PAPER, dict.fromkeys(td.EVENTS, 1) | {"top_wall": 0.5}) → You asked for an error of 0.5
 td.simulate(PAPER, {"any_wall": 0.5, "horizontal_hop": 0.004}) →
 td.simulate(PAPER, 0.5, budget=1) → You asked for a budget of 1, but the smallest run has 250000
 td.simulate(PAPER, duration=100) → You asked for a duration of 100 and got 65536: 1024

@@ -14,6 +14,7 @@ import sys
 from collections import namedtuple
 from copy import copy, deepcopy
 from dataclasses import replace
+from functools import partial
 from types import SimpleNamespace
 from unittest.mock import Mock, call, create_autospec
 
@@ -285,7 +286,6 @@ def test_a_scan_is_a_sequence_a_table_and_a_figure(tmp_path):
     assert times[0].frame().equals(times.frame().loc[(0.2, 2), ["kappa", "stderr"]])
     refused = times.frame().loc[(0.7, 2)]  # a row without a time and numbers
     assert np.isnan([*refused.index, *refused[["kappa", "stderr"]].iloc[0]]).all()
-    assert [why[:10] for why in refused["status"]] == ["radius 0.7"]
     td.plot(td.scan(1.5, 1.0, [0.2, 0.1], field=0.3, **asked), tmp_path / "scan.png")
     assert (tmp_path / "scan.png").stat().st_size > 5000
 
@@ -421,7 +421,8 @@ def test_what_is_observed_has_names():
     texts = [text for pair in pairs for text in texts_with_error(*pair)]
     assert str(named).splitlines()[3].split() == ["0", *texts]
     assert "± error" in named._repr_html_()
-    small = td.observe(PAPER, lambda start, now: now["x1"] * 1e-203, [0, 1], 1)
+    # A partial function has no name.
+    small = td.observe(PAPER, partial(lambda by, start, now: now["x1"] * by, 1e-203), [0, 1], 1)
     assert np.all(small.stderr > np.abs(small.mean))
 
 

@@ -147,8 +147,9 @@ def test_a_pressure_has_the_unit_of_a_force_on_a_side_of_the_box(name, unit):
 def test_the_free_energy_is_measured_by_the_volume():
     """Five standard errors: one false alarm in two million."""
     found = td.free_energy(td.sample(PAPER, 1e6, seed=2))
-    assert found.exact == td.free_energy(PAPER)
+    assert (found.exact, found.unit) == (td.free_energy(PAPER), "kT")
     assert abs(found.z) < 5
+    assert found.z == pytest.approx((found.value - found.exact) / found.stderr)
     volume = td.sample(PAPER, 1e6, seed=2, quantities="volume")["volume"]
     assert found.stderr == pytest.approx(volume.stderr / volume.value)
     four = td.Scene(1.5, 1.0, 0.12, discs=4)  # whose volume is not known exactly
@@ -194,14 +195,10 @@ def test_displacements_are_of_disc_1_unless_all_are_equal(ring, discs, monkeypat
     assert np.allclose(found.mean, again.mean, rtol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("periodic", "axis", "square"), [("xy", None, 1), ("yz", None, 4), ("xyz", "z", 9)]
-)
-def test_diffusion_is_along_the_first_periodic_axis_or_a_given_one(
-    periodic, axis, square, monkeypatch
-):
-    scene = td.Scene(1.5, 1.0, 0.1, depth=1.0, periodic=periodic)
+def test_diffusion_is_along_the_first_periodic_axis_or_a_given_one(monkeypatch):
     now = {"x1": 1, "x2": 1, "y1": 2, "y2": 2, "z1": 3, "z2": 3}
     called = lambda *given, **_: given[4](dict.fromkeys(now, 0), now)  # noqa: E731
     monkeypatch.setattr("twodiscs.measure.observe._averages", called)
-    assert td.diffusion(scene, [1.0], axis=axis) == square
+    for periodic, axis, square in (("xy", None, 1), ("yz", None, 4), ("xyz", "z", 9)):
+        scene = td.Scene(1.5, 1.0, 0.1, depth=1.0, periodic=periodic)
+        assert td.diffusion(scene, [1.0], axis=axis) == square

@@ -59,12 +59,12 @@ def test_ase_reads_it(path, tmp_path):
     ase = pytest.importorskip("ase.io", reason="ASE comes with requirements.lock")
     path.to_xyz(tmp_path / "a.xyz", [0.0, 2.5])
     first, second = ase.read(tmp_path / "a.xyz", ":", format="extxyz")
-    scene, axes = path.scene, len(path.scene.axes)
+    scene, axes, n = path.scene, len(path.scene.axes), path.scene.discs
     corner = np.array([scene.side(axis) / 2 for axis in scene.axes])
     assert np.allclose(second.positions[:, :axes] - corner, path.positions([2.5])[0], atol=1e-15)
     assert np.allclose(first.get_velocities()[:, :axes], path.velocities([0.0])[0], atol=1e-15)
     assert (second.positions[:, axes:] == max(scene.radii)).all()  # in the middle of the lattice
-    assert [*first.arrays["id"]] == [*range(1, scene.discs + 1)]
+    assert [*first.arrays["id"]] == [*range(1, n + 1)]
     sides = [scene.side(axis) for axis in scene.axes]
     assert [*first.cell.lengths()] == [*sides, 2 * max(scene.radii)][:3]
     assert [*first.pbc] == [axis in scene.periodic for axis in "xyz"]
@@ -84,10 +84,8 @@ def test_ase_reads_it(path, tmp_path):
     rounded = (tmp_path / "b.xyz.gz").rename(tmp_path / "B.XYZ.GZ")
     # Nor does the order of the lines matter: the discs have numbers, here without their masses.
     lines = (tmp_path / "a.xyz").read_text().replace(":masses:", ":other:").splitlines()
-    discs = [*lines[1 - scene.discs :], lines[-scene.discs]]
-    (tmp_path / "c.xyz").write_text("\n".join([*lines[: -scene.discs], *discs]))
-    files = tmp_path / "a.xyz", tmp_path / "c.xyz"
-    for start in (*files, arrays, *[rounded] * (not scene.field)):
+    (tmp_path / "c.xyz").write_text("\n".join([*lines[:-n], *lines[1 - n :], lines[-n]]))
+    for start in (tmp_path / "a.xyz", tmp_path / "c.xyz", arrays, *[rounded] * (not scene.field)):
         (state,) = td.trajectory(scene, 1, start=start).states_at(0.0)
         assert np.allclose([*state], [*path.states_at(2.5)[0]], atol=1e-15)
 
