@@ -337,6 +337,7 @@ def test_insertions_that_all_fit_or_hardly_ever_have_no_error(scene, samples, se
 def test_insertions_have_a_score_from_1000_on():
     rows = td.sample(td.Scene(1.5, 1, 0.2, discs=3), 1, seed=1).rows
     assert {(r["z"] is None, r["hits"] < 1000) for r in rows} == {(True, True), (False, False)}
+    assert all(r["z"] * (r["estimate"] - r["exact"]) > 0 for r in rows if r["z"])
 
 
 DENSE = [

@@ -8,7 +8,6 @@ from dataclasses import replace
 from itertools import count
 from unittest.mock import Mock, call
 
-import numpy as np
 import pytest
 from effect_scenes import SCENES
 
@@ -78,8 +77,7 @@ def test_a_rare_hop_has_a_price_from_ordinary_states_too(blocks):
 def test_a_strip_without_a_hop_in_its_pilot_has_the_error_that_was_planned(blocks):
     """The planned blocks reach the error that is asked for; one block has √planned times it."""
     run, hop = new_run(NEAR, 0.01), "horizontal_hop"
-    none = lambda *_: np.array([math.inf])  # noqa: E731
-    run.components[hop] = replace(run.components[hop], error_over_target=none)
+    run.components[hop] = replace(run.components[hop], error_over_target=lambda *_: [math.inf])
     due = 0.01 * math.sqrt(run.components[hop].planned)
     assert cost.pilots(run)[hop].errors == {hop: pytest.approx(due)}
 
