@@ -155,12 +155,13 @@ def exact_table(
     DataFrame, shape (radii, 2 + 1 + 12)
         Its index is the radius. Columns are regime, ergodic_components, volume, and <event>_area
         and <event>_time of every event. A time is NaN if the event is impossible or no exact value
-        is known. Units are those of ``volume``, ``areas`` and ``mean_times``.
+        is known. Units are those of ``volume``, ``areas`` and ``mean_times``. Last are the radii
+        that do not fit, whose regime says why.
 
     Raises
     ------
     InputError
-        For a radius that does not fit, for an empty list, and for an unknown effect.
+        If no radius fits, for an empty list, and for an unknown effect.
 
     Examples
     --------
