@@ -163,8 +163,8 @@ td.starts(PAPER, 1e8) → number must be an integer from 1 to 15000000, not 1000
 td.frames(PAPER, [0, 1], 1e8) → number must be an integer from 1 to 7500000, not 100000000
 td.observe(PAPER, x1, [1], 1e9 + 1) → replicas must be an integer from 1 to 1000000000, not
 td.observe(PAPER, x1, [1e3], 1e9) → at most 270… for times up to 1000, with 1e11
-td.observe(Scene(1.5, 1, 0.2, friction=2), x1, [2e6], 1) → times must be below 1.76e6, where 1e7
-td.transmission(PAPER, 'vertical_hop', 1e9 + 1) → hops must be an integer from 1 to 1000000000, not
+td.observe(Scene(1.5, 1, 0.2, friction=2), x1, [1e9], 1) → times must be below 1.76e6, where 1e7
+td.transmission(PAPER, 'vertical_hop', 1e19) → hops must be an integer from 1 to 1000000000, not
 td.observe(PAPER, x1, [1], starts=td.starts(PAPER, 1)) → starts must be two states or more
 td.observe(PAPER, x1, [1], 3, starts=td.starts(PAPER, 3)) → replicas must be left out with starts
 td.observe(PAPER, x1, [1], starts=td.starts(FOUR, 3)) → an array of shape (number, 2, 4) of x, y, u
