@@ -134,6 +134,7 @@ def test_a_measurement_without_an_honest_error_has_no_interval_and_no_score():
         assert {found.value, found.z, found.interval(), found.relative_stderr} == {None}
         assert "z = " not in str(found)
     assert "impossible" in str(blocked)
+    assert blocked["horizontal_hop_time"].cells()[3:6] == ("–", "time", "–")
     assert "0.00" not in f"{blocked}{tiny}"
     unseen = Measurement("any_wall_time", None, None, 1.0, None, 0, "none-seen", "time", None, 0.5)
     assert "> 0.5" in unseen.cells()[1]
