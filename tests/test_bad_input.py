@@ -419,7 +419,7 @@ RIGHT = [
     *((f, {"scene": PAPER}) for f in (td.volume, td.areas, td.mean_times, td.exact)),
     (td.rate, {"scene": PAPER, "event": "any_wall"}),
     (estimates.normal_quantile, {"confidence": 0.95}),
-    (td.exact_table, {"width": 1.5, "height": 1.0, "radii": np.array(0.2)}),
+    (td.exact_table, {"width": 1.5, "height": 1.0, "radii": [0.2]}),
     (td.scan, {"width": 1.5, "height": 1.0, "radii": [0.2], "error": 0.5, **COUNTED}),
     (td.simulate, {"scene": PAPER, "error": 0.5, **COUNTED, **NAMED}),
     (td.sample, POINT | NAMED | {"method": "rejection"}),
