@@ -370,6 +370,7 @@ td.simulate(PAPER, 0.5) → You asked for an error of 0.5 and got 0.0028, becaus
 td.simulate(PAPER, dict.fromkeys(td.EVENTS, 1) | {"top_wall": 0.5}) → You asked for an error of 0.5
 td.simulate(PAPER, {"any_wall": 0.5, "horizontal_hop": 0.004}) →
 td.simulate(PAPER, 0.5, budget=1) → You asked for a budget of 1, but the smallest run has 250000
+td.simulate(PAPER, duration=65536) →
 td.simulate(PAPER, duration=100) → You asked for a duration of 100 and got 65536: 1024
 td.transmission(td.Scene(1.5, 1, 0.249), "horizontal_hop", 10) → You asked for 10
 """

@@ -82,9 +82,10 @@ def test_ase_reads_it(path, tmp_path):
     del second.arrays["id"]
     ase.write(tmp_path / "b.xyz.gz", second, format="extxyz")  # to eight digits
     rounded = (tmp_path / "b.xyz.gz").rename(tmp_path / "B.XYZ.GZ")
-    # Nor does the order of the lines matter: the discs have numbers, here without their masses.
+    # Nor do the order of the lines, of numbered discs, and empty lines matter; without masses here.
     lines = (tmp_path / "a.xyz").read_text().replace(":masses:", ":other:").splitlines()
-    (tmp_path / "c.xyz").write_text("\n".join([*lines[:-n], *lines[1 - n :], lines[-n]]))
+    frame = ["", *lines[-n - 2 : -n], *lines[1 - n :], lines[-n]]
+    (tmp_path / "c.xyz").write_text("\n".join([*lines[: -n - 2], *frame]))
     for start in (tmp_path / "a.xyz", tmp_path / "c.xyz", arrays, *[rounded] * (not scene.field)):
         (state,) = td.trajectory(scene, 1, start=start).states_at(0.0)
         assert np.allclose([*state], [*path.states_at(2.5)[0]], atol=1e-15)

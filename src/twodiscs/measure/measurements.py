@@ -477,10 +477,12 @@ def make_simulation(
     point = work("simulate", DynamicsRun.of(scene, settings), **how)
     rows = MeanTimesTable.rows([point])
     if timed:
-        note = (
-            f"You asked for a duration of {duration:g} and got {point.replicas * point.duration:g}:"
-            f" {point.replicas} trajectories of {point.duration:g} each."
-        )
+        done, note = point.replicas * point.duration, None
+        if done != duration:
+            note = (
+                f"You asked for a duration of {duration:g} and got {done:g}: {point.replicas} "
+                f"trajectories of {point.duration:g} each."
+            )
     else:
         named = "wall hits and collisions"
         note = _note_of_error(rows, rows, budget, point.events, "events", named)

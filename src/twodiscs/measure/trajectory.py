@@ -393,7 +393,7 @@ def read_xyz(scene, path):
     frames, opened = [], gzip.open if str(path).lower().endswith(".gz") else open
     try:
         with opened(path, "rt", encoding="utf-8") as file:
-            while line := file.readline().strip():
+            for line in filter(str.strip, file):
                 about = dict(part.split("=", 1) for part in shlex.split(file.readline()))
                 kinds, columns, at = about["Properties"].split(":"), {}, 0
                 lines = [file.readline().split() for _ in range(int(line))]
