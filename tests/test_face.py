@@ -417,7 +417,7 @@ def test_a_time_is_simulated_whatever_the_errors_are():
     assert {*frame["status"]} == {"counted"}
     assert frame["target"].isna().all()
     assert all(abs(m.z) < 5 for m in found.values())
-    assert found.more(duration=4e5).rows == td.simulate(PAPER, duration=4e5, seed=3).rows
+    assert found.more(4e5).rows == td.simulate(PAPER, duration=4e5, seed=3).rows
     # Without strips the rare hop is counted as everything else.
     rare = td.simulate(td.Scene(1.5, 1.0, 0.24), duration=1e5, seed=3)
     assert {*rare.frame()["starts"]} == {"invariant"}

@@ -100,16 +100,16 @@ class Result(Printed):
         Parameters
         ----------
         amount : optional
-            The argument that says how much work there is: a smaller error, more samples, intervals
-            (``number``), hops or replicas.
+            The argument that says how much work there is: a smaller error, a longer duration, more
+            samples, intervals (``number``), hops or replicas.
         cores : int, default 1
             Cores to work on.
         progress : bool, optional
             Whether to show a progress bar; if left out, only in a terminal or a notebook.
         **larger
-            The same by name, or a larger ``budget`` or ``duration``. A smaller one gives less. A
-            result of ``observe`` from a file also takes its ``function`` again: the same one, which
-            no file holds.
+            The same by name, or a larger ``budget``. A smaller one gives less. A result of
+            ``observe`` from a file also takes its ``function`` again: the same one, which no file
+            holds.
 
         Returns
         -------
@@ -127,11 +127,12 @@ class Result(Printed):
         >>> some.more(duration=1e4) == td.simulate(scene, duration=1e4, seed=1, events="any_wall")
         True
         """
-        # Settings that can grow; the first one of a kind of result is its amount.
+        # Settings that can grow; the first one that is set is the amount.
         names = "error", "samples", "number", "hops", "replicas", "duration", "budget", "function"
         names = [name for name in names if name in self.settings]
         if amount is not None:
-            larger = {names[0]: amount} | larger
+            first = next((name for name in names if self.settings[name] is not None), names[0])
+            larger = {first: amount} | larger
         larger = {name: value for name, value in larger.items() if value is not None}
         if unknown := [name for name in larger if name not in names]:
             raise InputError(
