@@ -294,6 +294,9 @@ def test_tables_come_back_with_units_and_provenance(simulated, sampled, tmp_path
     assert times.attrs["units"]["estimate"] == "time"
     assert found["theory"].attrs["units"]["exact"] == "length⁶, length⁵ or time"
     assert times.attrs["meaning"].startswith("One row per radius and event: ")
+    column = SCENE_TABLES["mean_times"].columns["estimate"]
+    assert times.attrs["meanings"]["estimate"] == column.meaning
+    assert times.attrs["path"] == str(folder / "mean_times.csv")
     assert times.attrs["configuration"] == provenance
     assert times.attrs["box"] == td.Box(1.5, 1.0, discs=3, periodic="x").parameters()
     (folder / "volume.csv").write_text("radius,quantity\nx,y\n")

@@ -4,6 +4,7 @@ Without it a forecast could promise an error or a time that no run has.
 """
 
 import math
+import platform
 from dataclasses import replace
 from itertools import count
 from unittest.mock import Mock, call
@@ -80,6 +81,13 @@ def test_a_strip_without_a_hop_in_its_pilot_has_the_error_that_was_planned(block
     run.components[hop] = replace(run.components[hop], error_over_target=lambda *_: [math.inf])
     due = 0.01 * math.sqrt(run.components[hop].planned)
     assert cost.pilots(run)[hop].errors == {hop: pytest.approx(due)}
+
+
+def test_a_processor_has_the_name_that_the_system_tells(monkeypatch):
+    told = Mock(side_effect=["vendor_id\t: A\nmodel name\t: B: C 1\nmodel name\t: D", OSError])
+    monkeypatch.setattr(cost.Path, "read_text", told)
+    assert cost.machine() == "B: C 1"
+    assert cost.machine() == (platform.processor() or platform.machine())
 
 
 def test_a_time_is_that_between_two_readings_of_a_clock(monkeypatch):
