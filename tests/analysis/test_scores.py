@@ -165,7 +165,12 @@ def test_scores_of_scores_say_on_which_side_they_are():
     z = np.random.default_rng(9).standard_normal(52)
     assert scores.z_mean(z + 1) > 5 > -5 > scores.z_mean(z - 1)
     assert scores.z_spread([0.0] * 52) == -math.inf
-    assert 100 < scores.z_spread(z * 1e3) < math.inf
+    # Far out the probability is Chernoff's bound, whose logarithm is right to half a per cent.
+    for scale, sign in ((1e3, 1), (1e-30, -1)):
+        found, half_chi2 = scores.z_spread(z * scale), scale**2 * (z @ z) / 2
+        ends = (0, half_chi2), (half_chi2, mpmath.inf)
+        tail = min(mpmath.gammainc(26, *both, regularized=True) for both in ends)
+        assert log_ndtr(-sign * found) == pytest.approx(float(mpmath.log(tail)), rel=5e-3)
 
 
 @pytest.mark.parametrize("size", [5, 40, 300])

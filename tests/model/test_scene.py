@@ -36,6 +36,8 @@ def test_discs_that_jam_do_not_fit():
     assert box.largest_radius == 0.3125
     assert not box.fits(0.3125)
     assert box.fits(math.nextafter(0.3125, 0.0))
+    assert not Box(0.5, 3.0, mass_ratio=2.0).fits(0.25)
+    assert Box(0.5, 3.0, mass_ratio=2.0).fits(math.nextafter(0.25, 0.0))
 
 
 def test_discs_that_all_their_energy_can_just_lift_do_not_fit():

@@ -204,3 +204,4 @@ def test_strata_of_few_starts_are_taken_together_and_one_start_has_no_error():
     one = np.zeros((2, 3), int)
     one[1, 1] = 1
     assert estimates.stratified_mean(shares, one, 3 * one, 9 * one) == (3.0, math.inf)
+    assert estimates.stratified_mean(shares, 2 * one, 6 * one, 20 * one) == (3.0, 1.0)

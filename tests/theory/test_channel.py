@@ -50,6 +50,14 @@ def test_nodes_resolve_the_phase_of_a_transform_up_to_their_reach(ratio):
     assert found == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.parametrize(("rank", "size"), [(9, 16), (24, 32), (90, 200)])
+def test_a_kernel_is_the_product_of_few_vectors_if_its_range_has_few(rank, size):
+    left, right = np.random.default_rng(3).standard_normal((2, 200, rank))
+    columns, rows = channel._factors(left @ right.T)
+    assert columns.shape == (200, size)
+    assert columns @ rows == pytest.approx(left @ right.T, abs=1e-11)
+
+
 @pytest.mark.parametrize("radius", [0.1, 0.3])
 def test_two_discs_have_the_rates_of_their_areas(radius):
     scene = td.Scene(1.5, 1.0, radius)
