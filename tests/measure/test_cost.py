@@ -158,6 +158,14 @@ def test_ten_times_the_accuracy_takes_a_hundred_times_as_long(blocks):
     costs = [p.c for p in found.prices if p.method == "dynamics" and "horizontal" not in p.quantity]
     strips = found["horizontal_hop_time", "strips"].c
     assert found.seconds(1e-5) == pytest.approx(ROUND_MARGIN * 1e10 * (max(costs) + strips))
+    lines = [line.split() for line in str(found).splitlines()]
+    for price in found.prices:
+        names = f"{price.quantity} {price.method}".split()
+        (line,) = (line for line in lines if line[: len(names)] == names)
+        least = [price.least_error if 0 < price.least_error < 1 else "–"]
+        errors = [*least, *[price.floor] * (price.floor > 0)]
+        shown = [cell if cell == "–" else float(cell) for cell in line[-len(errors) :]]
+        assert shown == [e if e == "–" else pytest.approx(e, rel=0.05) for e in errors]
 
 
 def test_without_a_budget_a_run_has_a_day():
