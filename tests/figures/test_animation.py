@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from effect_scenes import SCENES
 from figure_cases import EFFECTS, unclear
+from matplotlib.figure import Figure
 from PIL import Image, ImageSequence
 
 import twodiscs as td
@@ -173,6 +174,13 @@ def test_headings_numbers_and_the_sign_of_a_hop_stand_clear(box, radius):
         faults = unclear(others["sign"][0].figure)
         faults = [one for one in faults if one[0] not in ("line", "unnamed")]
         assert [pair for _, *pair in faults if {*pair} != {"1", "2"}] == []
+
+
+def test_the_ends_of_a_periodic_axis_are_dotted():
+    axes = Figure().add_axes((0, 0, 1, 1))
+    animation.draw_walls(axes, td.Scene(1.5, 1.0, 0.2, periodic="x"))
+    upright = {line.is_dashed(): np.ptp(line.get_xdata()) == 0 for line in axes.lines}
+    assert upright == {True: True, False: False}
 
 
 def test_what_leaves_a_ring_comes_in_at_the_other_end():

@@ -489,6 +489,12 @@ def test_the_panels_of_stability_are_those_of_the_table():
 
 def test_the_panels_of_stability_of_runs_are_those_of_the_table():
     rows, axes = table("stability"), drawn("stability_of_runs")
+    contacts = select(rows, part="times", quantity="contact_time")
+    seen = {row["case"]: row["count"] for row in select(contacts, method="stable")}
+    textbook = select(contacts, method="textbook")
+    missed = [f"{lost} missed" for row in textbook if (lost := seen[row["case"]] - row["count"])]
+    texts = [text.get_text() for text in axes["b"].texts]
+    assert missed == [text for text in texts if "missed" in text] != []
     cells = {text.xy: text.get_text() for text in axes["a"].texts}
     signs = {"energy_error": 1, "smallest_gap": -1, "excess": 1}
     for column, (quantity, sign) in enumerate(signs.items()):

@@ -144,7 +144,8 @@ def test_predicted_times_are_right_to_a_few_roundings(box):
 )
 def test_misses_and_false_hits_are_infinite_errors(apart, formula, error):
     others = [] if formula is None else [lambda *inputs: formula]
-    assert stability.contact_error(-1.0, apart, 1.0, 0.0, 0.4, *others) == error
+    dx, dy = -0.6 - 0.8 * apart, -0.8 + 0.6 * apart
+    assert stability.contact_error(dx, dy, 1.2, 1.6, 0.4, *others) == error
 
 
 # Extreme scenes -----------------------------------------------------------------------------------
