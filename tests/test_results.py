@@ -7,6 +7,7 @@ wrong.
 import itertools
 import json
 import math
+import os
 import re
 import resource
 import stat
@@ -154,29 +155,34 @@ def test_a_point_of_the_pipeline_goes_on(stage, tmp_path):
     assert bits(read.more(**larger)) == bits(function(NARROW, **settings | larger))
 
 
-@pytest.mark.parametrize("name", ["json", "xyz", "png", "pdf", "svg", "gif", "html"])
+@pytest.mark.parametrize("name", ["json", "xyz", "xyz.gz", "png", "pdf", "svg", "gif", "html"])
 def test_a_file_is_replaced_whole_or_not_at_all(name, tmp_path):
-    """A limit on the size of files stands for a full disk."""
+    """A limit on the size of files stands for a full disk, and an entry of a folder for a path."""
     path, link = tmp_path / f"old.{name}", tmp_path / f"link.{name}"
-    trajectory = td.trajectory(PAPER, duration=0.3)
+    trajectory = td.trajectory(PAPER, duration=9 if name == "xyz.gz" else 0.3)
     path.write_text("old")
     path.chmod(0o640)
     link.symlink_to(path)
+    (entry,) = (entry for entry in os.scandir(tmp_path) if entry.is_symlink())
     write = {
         "json": td.sample(PAPER, 1).save,
-        "xyz": trajectory.to_xyz,
+        **dict.fromkeys(("xyz", "xyz.gz"), trajectory.to_xyz),
         **dict.fromkeys(("gif", "html"), lambda path: td.animate(trajectory, path)),
     }.get(name, lambda path: td.plot(PAPER, path))
     usual = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (100, usual[1]))
     try:
         with pytest.raises(td.InputError, match=r"path must be a file to write, .*File too large"):
-            write(link)
+            write(entry)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, usual)
     assert path.read_text() == "old"
-    write(link)
+    write(entry)
     assert path.stat().st_size > 1000
+    assert (path.read_bytes()[:2] == b"\x1f\x8b") == (name == "xyz.gz")
+    read = {"json": td.load_result, "xyz.gz": lambda path: td.trajectory(PAPER, 1, start=path)}
+    read = read.get(name, os.stat)
+    assert str(read(entry)) == str(read(path))
     assert stat.filemode(path.stat().st_mode) == "-rw-r-----"
     assert link.is_symlink()
     assert {*tmp_path.iterdir()} == {path, link}

@@ -26,7 +26,7 @@ from PIL import Image
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.motion import disc_colours, longer_axis
 from twodiscs.figures.style import BLACK, BLUE, GREY, ORANGE, VERMILLION, new_figure
-from twodiscs.model.checks import InputError, check_length, writing_to
+from twodiscs.model.checks import InputError, check_length, path_text, writing_to
 from twodiscs.model.events import HOPS
 
 #: Inches: width of the whole, its margin on the left, and the largest width and height of the box.
@@ -368,9 +368,9 @@ def animate(box, radius, rows, paths):
     ``InputError`` for anything else.
     """
     for path in paths:
-        kind = Path(str(path)).suffix.lower()
+        kind = Path(text := path_text(path)).suffix.lower()
         if kind not in (".gif", ".png", ".html", ".mp4"):
-            raise InputError(f"path must be a .gif, .png, .html or .mp4 file, not {str(path)!r}")
+            raise InputError(f"path must be a .gif, .png, .html or .mp4 file, not {text!r}")
         if kind == ".mp4":
             ffmpeg()
         if not Path(path).parent.is_dir():
@@ -403,7 +403,7 @@ def animate(box, radius, rows, paths):
     durations = [1500 if motion.hop and time == motion.centre else 50 for time in motion.frames]
     durations[-1] = 1000
     for path in paths:
-        kind = Path(str(path)).suffix.lower()
+        kind = Path(path_text(path)).suffix.lower()
         if kind == ".html":
             write_page(path, images, durations, str(motion.scene))
         elif kind == ".mp4":
@@ -482,5 +482,5 @@ def write_mp4(path, images, durations):
         done = subprocess.run([*command, new], input=frames, capture_output=True, check=False)
         if done.returncode:
             message = done.stderr.decode(errors="replace").strip().split("\n")[-1]
-            refused = f"path must be a file that ffmpeg can write, not {str(path)!r}"
+            refused = f"path must be a file that ffmpeg can write, not {path_text(path)!r}"
             raise InputError(f"{refused}: {message}")

@@ -18,7 +18,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.font_manager import findfont, fontManager
 
-from twodiscs.model.checks import InputError, writing_to
+from twodiscs.model.checks import InputError, path_text, writing_to
 from twodiscs.model.events import EVENTS
 
 #: Width of one column of a two-column journal, in inches.
@@ -112,14 +112,14 @@ def save(figure, path, origin=None):
 
     Raises ``InputError`` for a file name with another ending, and if it cannot be written.
     """
-    kind = str(path).rpartition(".")[2].lower()
+    kind = path_text(path).rpartition(".")[2].lower()
     metadata = {
         "pdf": {"Creator": None, "Producer": None, "CreationDate": None, "Subject": origin},
         "png": {"Software": None, "Description": origin},
         "svg": {"Creator": None, "Date": None, "Description": origin},
     }
     if kind not in metadata:
-        raise InputError(f"path must be a .pdf, .png or .svg file, not {str(path)!r}")
+        raise InputError(f"path must be a .pdf, .png or .svg file, not {path_text(path)!r}")
     if isinstance(figure, StyledFigure):
         figure.settle()
     stream = BytesIO()  # a full disk ends savefig() of a PDF by an error of zlib

@@ -15,7 +15,7 @@ import numpy as np
 import twodiscs
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.model.calls import checked_call
-from twodiscs.model.checks import InputError
+from twodiscs.model.checks import InputError, path_text
 from twodiscs.model.formats import quote
 from twodiscs.model.scene import Box, Scene
 from twodiscs.points.base import MALFORMED_ERRORS, digest, read_json, restore_arrays
@@ -64,7 +64,7 @@ def load(folder: str | PathLike[str]) -> dict[str, pd.DataFrame]:
     >>> tables = td.load("results/paper")  # doctest: +SKIP
     >>> figure = td.plot(tables["mean_times"])  # doctest: +SKIP
     """
-    if not isinstance(folder, str | Path):
+    if not isinstance(folder, str | PathLike):
         raise InputError(f"folder must be the path of a folder, not {folder!r}")
     folder, known = Path(folder), plugin("tables") or SCENE_TABLES
     paths = [path for path in sorted(folder.glob("*.csv")) if path.stem in known]
@@ -193,9 +193,9 @@ def load_result(path: str | PathLike[str]) -> Measurements | Any:
     >>> more["any_wall_time"].relative_stderr < 5e-4
     True
     """
-    if not isinstance(path, str | PathLike) or "\0" in str(path):
+    if not isinstance(path, str | PathLike) or "\0" in path_text(path):
         raise InputError(f"path must be the path of a file, not {quote(path)}")
-    path, saved = str(path), "path must be a file that save() wrote, or a point of a build"
+    path, saved = path_text(path), "path must be a file that save() wrote, or a point of a build"
     try:
         content = read_json(path)
     except OSError as error:

@@ -17,7 +17,7 @@ from twodiscs.dynamics.paths import follow_trajectory
 from twodiscs.dynamics.rows import CHUNK_NUMBERS, event_names
 from twodiscs.measure.result import progress_bar
 from twodiscs.model.calls import checked_call
-from twodiscs.model.checks import InputError, check_numbers, make_list, writing_to
+from twodiscs.model.checks import InputError, check_numbers, make_list, path_text, writing_to
 from twodiscs.model.formats import quote
 from twodiscs.model.scene import Scene
 from twodiscs.model.seeds import job_seed
@@ -216,7 +216,8 @@ class Trajectory(pd.DataFrame):
         properties += f"{':spin:R:1' if rough else ''}:id:I:1"
         with ExitStack() as opened:
             raw = opened.enter_context(open(opened.enter_context(writing_to(path)), "wb"))
-            if str(path).lower().endswith(".gz"):  # without a name and a time: always equal bytes
+            if path_text(path).lower().endswith(".gz"):
+                # Without a name and a time: always equal bytes.
                 raw = gzip.GzipFile("", "wb", fileobj=raw, mtime=0)
             file = opened.enter_context(io.TextIOWrapper(raw, encoding="utf-8", newline="\n"))
             for time, places, speeds, turns in zip(at, centres, velocities, spins, strict=True):
@@ -390,7 +391,8 @@ def read_xyz(scene, path):
 
     ASE reads these files, too, but takes a second to import, and only the columns that it knows.
     """
-    frames, opened = [], gzip.open if str(path).lower().endswith(".gz") else open
+    path, frames = path_text(path), []
+    opened = gzip.open if path.lower().endswith(".gz") else open
     try:
         with opened(path, "rt", encoding="utf-8") as file:
             for line in filter(str.strip, file):
@@ -406,7 +408,7 @@ def read_xyz(scene, path):
                 frames.append(_frame_of(scene, about, columns))
     except OSError as error:
         why = error.strerror or error
-        raise InputError(f"start must be a file to read, not {str(path)!r}: {why}") from None
+        raise InputError(f"start must be a file to read, not {path!r}: {why}") from None
     except (IndexError, KeyError, EOFError, ValueError) as error:
         if isinstance(error, InputError):
             raise
@@ -414,7 +416,7 @@ def read_xyz(scene, path):
     if not frames:
         raise InputError(
             "start must be an extended XYZ file with the columns pos and momenta (or velo), not "
-            f"{str(path)!r}"
+            f"{path!r}"
         )
     return [np.array(part) for part in zip(*frames, strict=True)]
 

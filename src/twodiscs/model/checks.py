@@ -84,14 +84,19 @@ class InputError(ValueError):
         super().__init__("\n".join(first))
 
 
+def path_text(path):
+    """Return the text of a path-like object: ``str`` of an entry of ``os.scandir`` is no path."""
+    return os.fsdecode(path) if isinstance(path, os.PathLike) else str(path)
+
+
 @contextmanager
 def writing_to(path):
     """Give a path beside the file ``path``, which replaces that file when the block has ended.
 
     If the block fails, an old file stays as it was. Raises ``InputError`` if it cannot be written.
     """
-    refused = f"path must be a file to write, not {str(path)!r}"
-    if "\0" in str(path):
+    refused = f"path must be a file to write, not {path_text(path)!r}"
+    if "\0" in path_text(path):
         raise InputError(f"{refused}: it has a null character")
     try:
         if (old := os.path.isfile(path)) or not os.path.exists(path):
