@@ -54,8 +54,10 @@ class Parser(argparse.ArgumentParser):
 
 def unrecognized(words, names):
     """Return the message about unknown ``words``, with the nearest option of ``names``."""
-    hint = did_you_mean(words[0].strip("-").partition("=")[0], names)
-    hint = hint.replace("mean ", "mean --").replace("_", "-")
+    word = words[0].partition("=")[0]
+    hint = did_you_mean(word.strip("-"), names).replace("mean ", "mean --").replace("_", "-")
+    if hint.endswith(f" {word}?"):
+        hint = "; options follow the command"
     return f"unrecognized arguments: {' '.join(words)}{hint}"
 
 
@@ -185,7 +187,8 @@ def _main():
     if options.command == "run" and not any(word.startswith("-") for word in rest):
         options.targets += rest  # argparse does not find targets behind an option
     elif rest:
-        parser.error(unrecognized(rest, vars(options)))
+        places = "command", "work", "configuration", "targets"  # which are no options
+        parser.error(unrecognized(rest, [name for name in vars(options) if name not in places]))
     if options.command is None:
         parser.print_help()
         return

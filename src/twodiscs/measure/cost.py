@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from twodiscs.measure.exact_values import as_list
 from twodiscs.measure.result import Printed
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import THINNEST_SHELL, check_error, check_fraction
@@ -472,9 +473,9 @@ def cost(
     """
     from twodiscs.dynamics.runs import DynamicsRun
 
-    if isinstance(errors, str) or not isinstance(errors, Iterable):
-        errors = PRICED_ERRORS if errors is None else [errors]
-    errors = [check_error("errors", error) for error in errors]
+    if (found := PRICED_ERRORS if errors is None else as_list(errors)) is None:
+        found = [errors]
+    errors = [check_error("errors", error) for error in found]
     check_fraction("shell", shell, THINNEST_SHELL)
     run = DynamicsRun(check_scene(scene), dict.fromkeys(scene.events, 1.0), 10**15, 0)
     measured = pilots(run)

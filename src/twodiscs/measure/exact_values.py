@@ -208,7 +208,7 @@ def fitting_scenes(boxes, radii):
     """
     if isinstance(radii, str | bytes | Mapping):
         raise InputError(f"radii must be a list of numbers, not {quote(radii)}")
-    radii = as_list(radii) or ([] if isinstance(radii, Iterable) else [radii])
+    radii = [radii] if (found := as_list(radii)) is None else found
     scenes, refused = [], []
     for box, radius in product(boxes, [check_length("radius", radius) for radius in radii]):
         try:
