@@ -206,8 +206,10 @@ def test_a_new_configuration_is_one_and_is_not_written_over(tmp_path, monkeypatc
     said = "my.yaml exists already and is not overwritten"
     assert refused(monkeypatch, capsys, "new", "my.yaml") == said
     assert Path("my.yaml").read_text() == text
-    assert not command(monkeypatch, "new", "b c.yaml")
-    assert load(read("b c.yaml")).results == "results-b-c"
+    for name, run in {"b c": "'b c.yaml'", "FOLDER": "FOLDER.yaml", "RUN": "RUN.yaml"}.items():
+        assert not command(monkeypatch, "new", f"{name}.yaml")
+        assert load(read(f"{name}.yaml")).results == f"results-{name.replace(' ', '-')}"
+        assert Path(f"{name}.yaml").read_text().startswith(f"# twodiscs run {run}\n")
 
 
 @pytest.mark.parametrize(
