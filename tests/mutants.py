@@ -60,7 +60,7 @@ MUTANTS = [
     ("off by one return", "wanted + (1.0 if rising < 0.0 else 0.0)", "wanted"),
     ("age after a hop", "age[i] = time - until if hop", "age[i] = time if hop"),
     ("squares of two classes counted twice", "products + np.triu(products, 1).T", "products + products.T"),
-    ("a larger work is lost", "result._again(**result.settings | new)", "result._again(**result.settings)"),
+    ("a larger work is lost", "result._again(larger, **how)", "result._again({}, **how)"),
     ("radii that do not fit are lost", "return Scan(results, self.refused, self.parameters)", "return Scan(results, {}, self.parameters)"),
     ("numbers with errors that are not known", "n in self and self[n].stderr is not None]", "n in self and self[n].value is not None]"),
     ("finished work counts twice", "bar.update(done - bar.n)", "bar.update(done)"),

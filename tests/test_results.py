@@ -292,6 +292,11 @@ def test_a_scan_is_a_sequence_a_table_and_a_figure(tmp_path):
     assert times[0].frame().equals(times.frame().loc[(0.2, 2), ["kappa", "stderr"]])
     refused = times.frame().loc[(0.7, 2)]  # a row without a time and numbers
     assert np.isnan([*refused.index, *refused[["kappa", "stderr"]].iloc[0]]).all()
+    sampled, same = (
+        td.scan(1.5, 1, [0.1, 0.2], measure=lambda s, of=of: td.sample(s, of(s.radius)))
+        for of in ({0.1: 1e6, 0.2: 2e6}.get, lambda radius: 1e6)
+    )
+    assert sampled.more(1e6) == same
     td.plot(td.scan(1.5, 1.0, [0.2, 0.1], field=0.3, **asked), tmp_path / "scan.png")
     assert (tmp_path / "scan.png").stat().st_size > 5000
 

@@ -190,10 +190,10 @@ class Observed(Result):
 
     sums = float
 
-    def _again(self, **asked):
-        if "function" in asked and asked["function"] == self.settings["function"]:
-            asked["function"] = self.function
-        return super()._again(**asked)
+    def _again(self, larger, **how):
+        if "function" in self.settings:
+            larger = {"function": self.function} | larger
+        return super()._again(larger, **how)
 
     @property
     def rows(self) -> list[dict[str, object]]:

@@ -79,9 +79,10 @@ class Result(Printed):
     #: The difference between the work that was asked for and the work that was done, None if none.
     note: str | None = None
 
-    def _again(self, **asked):
-        """Return the result of the arguments that are ``asked``, which goes on from this one."""
-        return self.makers[self.kind](self.scene, **asked, resume_from=self.components)
+    def _again(self, larger, **how):
+        """Return the result of the settings with ``larger`` ones, which goes on from this one."""
+        asked = self.settings | larger
+        return self.makers[self.kind](self.scene, **asked, **how, resume_from=self.components)
 
     def __eq__(self, other):
         """Return whether the other result has the same kind, scene, settings and rows."""
@@ -139,7 +140,7 @@ class Result(Printed):
                 f"{unknown[0]} must be left out for a result of {self.kind}: to go on, give "
                 f"{' or '.join(f'{name}=' for name in names)}"
             )
-        return self._again(**self.settings | larger, cores=cores, progress=progress)
+        return self._again(larger, cores=cores, progress=progress)
 
     def to_dict(self) -> dict[str, object]:
         """Return the result as ``save`` writes it.

@@ -70,10 +70,8 @@ class Scan(Result, Sequence[Result]):
     def __eq__(self, other):
         return self.results == other.results if isinstance(other, Scan) else NotImplemented
 
-    def _again(self, **asked):
-        known = self.settings
-        new = {name: value for name, value in asked.items() if value != known.get(name, asked)}
-        results = [result._again(**result.settings | new) for result in self]
+    def _again(self, larger, **how):
+        results = [result._again(larger, **how) for result in self]
         return Scan(results, self.refused, self.parameters)
 
     def to_dict(self) -> dict[str, object]:
