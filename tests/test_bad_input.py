@@ -246,6 +246,7 @@ td.plot(td.sample(PAPER, 1), ax=Figure().subplots(2)) → ax must be one plane A
 td.plot([td.sample(s, 1) for s in (PAPER, RING)]) → for several boxes call plot with the same ax for
 td.plot(td.trajectory(PAPER, 1), ax=Figure().add_subplot()) → must be over the radius to be drawn in
 td.plot([td.intervals(PAPER, hop, 1) for hop in td.EVENTS[:2]]) → not horizontal_hop and verti…
+td.plot([td.intervals(PAPER, 'vertical_hop', n) for n in (1, 2)]) → each radius, not 2 at 0.2
 td.plot([]) → result must be a scene, a trajectory, results of simulate, …, not []
 td.plot(FIELD) → scene must be two plain discs for a drawing, but it has field
 td.animate(PAPER, 'a.gif') → trajectory must be a result of trajectory()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections import Counter
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
@@ -216,6 +217,11 @@ def _read_results(results):
     if len(hops) > 1:
         raise InputError(f"result must be of one kind of hop, not {' and '.join(hops)}")
     rows = [row for item in sorted(results, key=attrgetter("scene.radius")) for row in item.rows]
+    ((radius, number),) = Counter(item.scene.radius for item in results).most_common(1)
+    if hops and number > 1:
+        raise InputError(
+            f"result must have one result of intervals at each radius, not {number} at {radius!r}"
+        )
     (box,) = boxes
     return box, rows, _fitting_figures(rows, box)
 
