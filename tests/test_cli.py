@@ -62,6 +62,18 @@ def test_every_form_of_exact_numbers_holds_every_digit(shell):
         assert table[f"{event}_time"]["exact"] == ("" if time is None else text)
 
 
+def test_every_form_of_a_trajectory_has_its_rows(shell):
+    words, path = (*EXACT[1:], "--duration", "3"), twodiscs.trajectory(Scene(1.5, 1, 0.2), 3)
+    table = [*csv.DictReader(io.StringIO(shell("trajectory", *words, "--csv")))]
+    for rows in (table, json.loads(shell("trajectory", *words, "--json"))):
+        assert [[*row] for row in rows] == [[*path]] * len(path)
+        assert [float(row["x2"]) for row in rows] == path["x2"].tolist()
+        assert rows[0]["second"] in ("", None)
+    printed = [line.split() for line in shell("trajectory", *words).splitlines()[2:]]
+    assert printed[0] == [*path]
+    assert [row[5] for row in printed[1:]] == path["event"].tolist()
+
+
 #: Arguments of functions that are options of their commands, and a value of each.
 OPTIONS = {
     "error": 0.1, "duration": 5.0, "samples": 10**6, "budget": 10**7, "events": ["any_wall"],
@@ -106,12 +118,14 @@ def test_cost_prints_times_of_errors_as_a_table_and_for_scripts(shell, monkeypat
     assert {*rows[0]} >= {"c", "least_error", "least_seconds", "seconds_0.01", "seconds_0.0003"}
 
 
-def test_a_result_for_scripts_has_its_note_beside_it(monkeypatch, capsys):
+def test_a_result_for_scripts_has_its_note_beside_it(monkeypatch, capsys, recwarn):
     words = "simulate", *BOX, "--radius", "0.2", "--events", "any_wall", "--error", "1e-4"
-    assert command(monkeypatch, *words, "--budget", "1e6", "--csv") == 0
-    shown = capsys.readouterr()
-    assert shown.err.startswith("You asked for an error of 0.0001, but the budget of 1e6 events")
-    assert shown.out.startswith("radius,")
+    for form, begin in (("--csv", "radius,"), ("--json", "{")):
+        assert command(monkeypatch, *words, "--budget", "1e6", form) == 0
+        shown = capsys.readouterr()
+        assert shown.err.startswith("You asked for an error of 0.0001, but the budget of 1e6 ev")
+        assert shown.out.startswith(begin)
+        assert not recwarn  # it is not said twice
 
 
 def test_effects_are_options_with_their_meanings(shell):
