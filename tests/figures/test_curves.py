@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from figure_cases import BOXES, PAPER
 
-from twodiscs.figures import curves
+from twodiscs.figures import curves, radius
 from twodiscs.figures.scene_figures import FIGURES, Caption
 from twodiscs.model.scene import Box
 
@@ -34,6 +34,16 @@ def test_curves_break_where_times_jump():
     impossible = radii > PAPER.height / 4
     assert np.isnan(exact["horizontal_hop_time"][impossible]).all()
     assert (exact["horizontal_hop_area"][impossible] == 0).all()
+
+
+def test_a_root_is_zero_without_a_hit_of_a_blocked_hop_and_shows_hits_that_are_wrong():
+    row = {"quantity": "horizontal_hop_area", "exact": 0.0, "z": None}
+    rows = [row | {"radius": 0.30, "hits": 0, "estimate": None, "stderr": None}]
+    rows += [row | {"radius": 0.31, "hits": 9, "estimate": 0.04, "stderr": 0.01}]
+    (symbols,) = radius.draw("horizontal_hop_area", PAPER, rows).axes[0].containers[:1]
+    points, _, (bars,) = symbols
+    assert points.get_xydata().tolist() == [[0.3, 0.0], [0.31, 0.2]]
+    assert np.ptp(bars.get_segments(), axis=1)[:, 1] == pytest.approx([0.0, 2 * 0.01 / 0.4])
 
 
 # Limits -------------------------------------------------------------------------------------------
