@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from figure_cases import BOXES, PAPER, draw, shown_texts
 from matplotlib.patches import Arc, Circle, Rectangle, Wedge
+from scipy.spatial.distance import cdist
 
 from twodiscs.figures import configuration_space, style
 from twodiscs.model.scene import Box
@@ -88,6 +89,11 @@ def test_a_prism_hides_three_edges_and_a_cylinder_its_other_half(monkeypatch, az
     ends = [patch for patch in axes.patches if len(patch.get_xy()) > 5]
     hidden = [line for line in axes.lines if len(line.get_xdata()) > 2]
     assert len(ends) == len(hidden) == 2
+    # What is hidden lies opposite what is seen, through the centre.
+    seen = np.vstack([patch.get_xy() for patch in ends])
+    opposite = -np.vstack([line.get_xydata() for line in hidden])
+    for axis in (0, 1):
+        assert cdist(seen, opposite).min(axis).max() < 1e-12
 
 
 def test_the_marked_point_lies_outside_the_bands_that_its_coordinates_give():
