@@ -230,8 +230,8 @@ def test_python_has_the_types_that_are_declared(tmp_path):
 
 
 @pytest.mark.parametrize("example", commands("twodiscs"))
-def test_twodiscs_knows_what_to_do(example, monkeypatch):
-    """What it prints is compared with the page among what pages repeat."""
+def test_every_command_of_a_page_succeeds(example, monkeypatch):
+    """``test_what_pages_repeat_of_declarations_is_up_to_date`` compares what it prints."""
     assert command(monkeypatch, *shlex.split(example)[1:]) == 0
 
 

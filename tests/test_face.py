@@ -356,7 +356,7 @@ def test_a_method_whose_price_was_printed_can_be_taken():
         assert {*td.sample(PAPER.with_radius(0.352), 1, method=method).frame()["method"]} == {made}
 
 
-#: Where a block has 2¹⁶ conditioned samples, each for 64 of the prism.
+#: Discs that hardly fit: a block has 2¹⁶ conditioned samples, each of which stands for 64 others.
 CLOSE = PAPER.with_radius(0.38)
 NOTES = """
 td.sample(PAPER, 10) → You asked for 10 samples and got 1048576, because work is done in

@@ -55,9 +55,11 @@ class Parser(argparse.ArgumentParser):
 def unrecognized(words, names):
     """Return the message about unknown ``words``, with the nearest option of ``names``."""
     word = words[0].partition("=")[0]
-    hint = did_you_mean(word.strip("-"), names).replace("mean ", "mean --").replace("_", "-")
-    if hint.endswith(f" {word}?"):
+    name = word.strip("-")
+    if word.startswith("--") and name.replace("-", "_") in names:
         hint = "; options follow the command"
+    else:
+        hint = did_you_mean(name, names).replace("mean ", "mean --").replace("_", "-")
     return f"unrecognized arguments: {' '.join(words)}{hint}"
 
 

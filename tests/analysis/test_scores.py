@@ -165,12 +165,14 @@ def test_scores_of_scores_say_on_which_side_they_are():
     z = np.random.default_rng(9).standard_normal(52)
     assert scores.z_mean(z + 1) > 5 > -5 > scores.z_mean(z - 1)
     assert scores.z_spread([0.0] * 52) == -math.inf
-    # Far out the probability is Chernoff's bound, whose logarithm is right to half a per cent.
+    # Far out Chernoff's bound e^(a − y) (y/a)^a takes the place of the tails of the law Γ(a), which
+    # are y^a e^(−y)/Γ(a + 1) and, above, a/y times that. Stirling's 1/(12 a) is what is left.
     for scale, sign in ((1e3, 1), (1e-30, -1)):
         found, half_chi2 = scores.z_spread(z * scale), scale**2 * (z @ z) / 2
-        ends = (0, half_chi2), (half_chi2, mpmath.inf)
-        tail = min(mpmath.gammainc(26, *both, regularized=True) for both in ends)
-        assert log_ndtr(-sign * found) == pytest.approx(float(mpmath.log(tail)), rel=5e-3)
+        ends = (0, half_chi2) if sign < 0 else (half_chi2, mpmath.inf)
+        due = mpmath.log(mpmath.gammainc(26, *ends, regularized=True))
+        due += mpmath.log(2 * mpmath.pi * 26) / 2 + (mpmath.log(half_chi2 / 26) if sign > 0 else 0)
+        assert log_ndtr(-sign * found) == pytest.approx(float(due), abs=1.1 / (12 * 26), rel=0)
 
 
 @pytest.mark.parametrize("size", [5, 40, 300])

@@ -66,7 +66,7 @@ def test_a_kick_keeps_places_and_draws_velocities_on_the_sphere(name):
 
 @pytest.mark.parametrize("effect", [{}, {"moment_of_inertia": 0.4}, {"periodic": "x"}], ids=str)
 def test_a_kick_of_three_discs_keeps_energy_and_momentum(effect):
-    """The momentum along a ring; between walls velocities and spins are those of no drift."""
+    """The energy is 1/2; discs on a ring keep their momentum, and others have none to keep."""
     scene = td.Scene(1.5, 1.0, 0.1, discs=3, friction=1.0, **effect)
     start = states(scene, 1, 5)[6:].reshape(-1, 3, 1)
     start[0] += 0.1

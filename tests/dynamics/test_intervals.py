@@ -30,9 +30,9 @@ from twodiscs.theory.laws import density_at_zero
 @pytest.mark.parametrize("hop", ["vertical_hop", "horizontal_hop"])
 @pytest.mark.parametrize("radius", [0.05, 0.245])
 def test_usual_bins_begin_with_less_than_an_event_of_a_pair_and_a_part_of_the_mean(hop, radius):
-    """The widest power of two with at most 0.4 events and 1/16 of the mean, to 32 of which they go.
+    """The first bin is the widest power of two with at most 0.4 events and 1/16 of the mean.
 
-    One more bin, of 8 % of its time, would be beyond.
+    The last one ends before 32 means, and one more bin, of 8 % of its time, would end after them.
     """
     scene = PAPER.with_radius(radius)
     mean, (_, first, *_, last) = td.mean_times(scene)[f"{hop}_time"], resolving_edges(scene, hop)

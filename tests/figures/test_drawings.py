@@ -89,7 +89,7 @@ def test_a_prism_hides_three_edges_and_a_cylinder_its_other_half(monkeypatch, az
     ends = [patch for patch in axes.patches if len(patch.get_xy()) > 5]
     hidden = [line for line in axes.lines if len(line.get_xdata()) > 2]
     assert len(ends) == len(hidden) == 2
-    # What is hidden lies opposite what is seen, through the centre.
+    # The hidden halves are the images of the visible ones by reflection at the centre.
     seen = np.vstack([patch.get_xy() for patch in ends])
     opposite = -np.vstack([line.get_xydata() for line in hidden])
     for axis in (0, 1):

@@ -89,7 +89,7 @@ def test_two_boxes_are_drawn_in_axes_of_the_user(tmp_path):
 def test_what_a_transmission_leaves_falls_at_twice_its_rate():
     """The points with their errors, and the curve κ exp(−2κt/τ) of the coefficient."""
     found = td.transmission(td.Scene(1.5, 1.0, 0.249), "horizontal_hop", 2**12)
-    # Of more discs the hops of two neighbours are rarer than those of any pair.
+    # Two neighbours among more discs hop less often than any pair does.
     found = replace(found, neighbour_mean=2 * found.exact_mean)
     (axes,) = td.plot(found).axes
     assert axes.get_title("left").endswith(r"1.5\times1$,  $r=0.249$,  horizontal hops")

@@ -101,7 +101,8 @@ def test_a_time_is_that_between_two_readings_of_a_clock(monkeypatch):
 @pytest.mark.parametrize("most", [1e7, 1e5])
 def test_a_trajectory_has_a_price_for_its_rows_or_the_most(blocks, most, monkeypatch):
     monkeypatch.setattr(paths, "MOST_PATH_EVENTS", most)
-    price, rows = cost._price_of_trajectory(NEAR), min(most, 1e6)
+    (price,) = (one for one in td.cost(NEAR).prices if one.quantity == "trajectory")
+    rows = min(most, 1e6)
     assert float(price.method.removesuffix(" rows")) == rows
     # The 32 blocks of the pilot have about a thousand rows each.
     assert price.seconds(0.1) == price.seconds(1e-9) == pytest.approx(rows / 1e6, rel=0.7)

@@ -403,7 +403,7 @@ def animate(box, radius, rows, paths):
     durations = [1500 if motion.hop and time == motion.centre else 50 for time in motion.frames]
     durations[-1] = 1000
     for path in paths:
-        kind = Path(path_text(path)).suffix.lower()
+        kind = Path(path).suffix.lower()
         if kind == ".html":
             write_page(path, images, durations, str(motion.scene))
         elif kind == ".mp4":

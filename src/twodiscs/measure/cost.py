@@ -473,9 +473,8 @@ def cost(
     """
     from twodiscs.dynamics.runs import DynamicsRun
 
-    if (found := PRICED_ERRORS if errors is None else as_list(errors)) is None:
-        found = [errors]
-    errors = [check_error("errors", error) for error in found]
+    found = as_list(PRICED_ERRORS if errors is None else errors)
+    errors = [check_error("errors", error) for error in ([errors] if found is None else found)]
     check_fraction("shell", shell, THINNEST_SHELL)
     run = DynamicsRun(check_scene(scene), dict.fromkeys(scene.events, 1.0), 10**15, 0)
     measured = pilots(run)

@@ -132,7 +132,7 @@ class Result(Printed):
         names = "error", "samples", "number", "hops", "replicas", "duration", "budget", "function"
         names = [name for name in names if name in self.settings]
         if amount is not None:
-            first = next((name for name in names if self.settings[name] is not None), names[0])
+            first = next(name for name in names if self.settings[name] is not None)
             larger = {first: amount} | larger
         larger = {name: value for name, value in larger.items() if value is not None}
         if unknown := [name for name in larger if name not in names]:

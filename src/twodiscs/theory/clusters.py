@@ -185,6 +185,6 @@ def _corners(scene, i, duration):
     # In a field a disc at the height y has the density of the kinetic energy left, 1 − c y.
     fall = 2 * scene.field * scene.masses[i] * (scene.height - 2 * radius)
     left = max(1 - fall, 0.0)
-    # So weak a field changes it by less than the terms would lose to their difference.
+    # Below the root of the precision the difference 1 − left has a larger error than the value 1.
     mean = (1 - left ** (d / 2)) / (fall * d / 2) if fall > 1e-8 else 1.0
     return found / mean, found * left ** (d / 2 - 1) / mean

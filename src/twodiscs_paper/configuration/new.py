@@ -53,7 +53,7 @@ def new(path):
     if os.path.lexists(path):
         raise InputError(f"{path} exists already and is not overwritten")
     with writing_to(path) as new_path:
-        # In one pass, because the name of the file may have these words, too.
+        # Both at once, because the name of the file may have these words, too.
         text = re.sub("RUN|FOLDER", lambda word: {"RUN": run, "FOLDER": folder}[word[0]], NEW)
         Path(new_path).write_text(text, encoding="utf-8", newline="\n")
     print(f"{path} is written. To build it: {run}")
