@@ -16,7 +16,7 @@ from marks import slow
 
 import twodiscs as td
 from twodiscs.dynamics import ensemble, runs
-from twodiscs.dynamics.many import all_pairs, many_intervals, many_paths
+from twodiscs.dynamics.many import all_pairs, many_intervals, many_paths, many_rates
 from twodiscs.dynamics.two import hop_clusters, returns, strip
 from twodiscs.measure.intervals import make_intervals, resolving_edges
 from twodiscs.points.intervals_point import BIN_GROWTH, N_BINS, wide_edges
@@ -173,4 +173,8 @@ def test_intervals_of_many_are_those_of_trajectories(scene, event, monkeypatch):
         c = np.bincount(np.concatenate([bins, wide[bins]]), minlength=66)
         due += [c, c * c, c * own.size]
     assert np.array_equal(sums, due)
+    # The price: a window has as many intervals as a chain counts at least, or up to twice as many.
+    most = many_intervals.events_per_interval(scene, event) / many_rates.work_per_event(scene)
+    most /= many_rates.expected_event_rate(scene) * many_intervals.mean_interval(scene, event)
+    assert 1 <= most <= 2 + 2 / many_intervals.per_chain(scene, event)
     assert scene.discs < 20 or opened[:replicas] == [*range(3 * replicas, 4 * replicas)]
