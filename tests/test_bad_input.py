@@ -34,6 +34,7 @@ from twodiscs_paper.configuration.yaml_files import ConfigError, load, read
 
 RING, FIELD = Scene(1.5, 1.0, 0.2, periodic="x"), Scene(1.5, 1.0, 0.2, field=0.4)
 FOUR = Scene(6.0, 1.0, 0.2, discs=4, periodic="x")
+DEEP = Scene(1.0, 1.0, 0.2499, field=1e3)
 ROUGH, CENTRES = Scene(1.5, 1.0, 0.2, moment_of_inertia=0.4), [[0.3, 0.5], [1.2, 0.5]]
 NAN, INF = np.nan, np.inf
 #: Disc 2 is where the next image of disc 1 is.
@@ -182,6 +183,8 @@ td.trajectory(PAPER, start=__file__) → start must be an extended XYZ file with
 td.trajectory(PAPER, start=([[0.3, 0.5], [1.2, 0.5]], np.zeros((2, 2)))) → energy of 0.5, not 0.0
 td.trajectory(PAPER, 1e9) → must be below 2.71e6, where 1e7 events are due and fill 0.98 GB
 td.intervals(Scene(1.5, 1, 0.3), 'horizontal_hop') → has no intervals: it is blocked at radius 0.3
+td.intervals(DEEP, 'vertical_hop') → leaves a fraction 1e-13 of the prism of all centres
+td.transmission(DEEP, 'vertical_hop') → with effects needs 0.0001 of it
 td.intervals(Scene(1.5, 1, 0.13, discs=16), 'vertical_hop') → is so large for 16 discs that the time
 td.intervals(Scene(1, 1, 0.1, discs=3, moment_of_inertia=1), 'vertical_hop') → must have smooth
 insertions.sample(Scene(1.5, 1.0, 0.13, discs=16), 1000, 1) → in none of them 16 discs fit
