@@ -65,7 +65,7 @@ def terms(scene):
     """
     _require_simple(scene)
     n, kt = scene.discs, 1 / scene.velocity_components
-    volume = math.prod(scene.side(axis) for axis in scene.axes)
+    volume = math.prod(scene.sides)
     ideal = n * kt / volume
     if not scene.walled:
         momentum = virial.momentum_per_hit(scene) / scene.fastest
@@ -233,7 +233,7 @@ def free_energy(of):
         raise InputError(f"of must be a Scene or a result of sample, not {quote(of)}")
     if scene.field:
         raise InputError(f"field must be 0 for the free energy of hard discs, not {scene.field!r}")
-    ideal = scene.discs * math.fsum(math.log(scene.side(axis)) for axis in scene.axes)
+    ideal = scene.discs * math.fsum(map(math.log, scene.sides))
     if not is_result:
         if scene.discs > 2:
             known = n_discs.known_derivatives(scene, False)

@@ -203,7 +203,7 @@ class Trajectory(pd.DataFrame):
         scene, times = self.scene, None if times is None else make_list(times)
         centres, velocities = self.positions(times), self.velocities(times)
         at = self["time"].to_numpy(float) if times is None else np.atleast_1d(times)
-        rough, sides = scene.moment_of_inertia is not None, list(map(scene.side, scene.axes))
+        rough, sides = scene.moment_of_inertia is not None, [*scene.sides]
         spins = self._along_axes(times, "s") if rough else np.empty((*centres.shape[:2], 0))
         if len(sides) == 2:
             sides.append(2 * max(scene.radii))
@@ -371,7 +371,6 @@ def from_corner(scene, given):
             parts = None
         if parts is None:
             return given
-    sides = np.array([scene.side(axis) for axis in scene.axes])
     centres, velocities = (np.asarray(part, float)[..., :axes] for part in parts[:2])
     moving = [*np.moveaxis(velocities, -1, 0), *parts[2:]]
     weights = [1.0] * axes + [scene.moment_of_inertia] * len(parts[2:])
@@ -380,7 +379,8 @@ def from_corner(scene, given):
         twice = (squares @ np.array(scene.masses))[..., None]
         moving = [part * np.sqrt(2 * ENERGY / np.where(twice, twice, 1.0)) for part in moving]
     names = ["x", "y", "z"][:axes] + ["u", "v", "w"][:axes] + ["s"] * len(parts[2:])
-    known = dict(zip(names, [*np.moveaxis(centres - sides / 2, -1, 0), *moving], strict=True))
+    places = np.moveaxis(centres - np.array(scene.sides) / 2, -1, 0)
+    known = dict(zip(names, [*places, *moving], strict=True))
     if missing := [field for field in disc_fields(scene) if field not in known]:
         raise InputError(f"start must have the spins of rough discs, {missing[0]} of each disc")
     return np.stack([known[field] for field in disc_fields(scene)], axis=-1)
@@ -423,13 +423,12 @@ def read_xyz(scene, path):
 
 def _frame_of(scene, about, columns):
     """Return centres, velocities and maybe spins of a frame, if its box and its discs are right."""
-    sides = [scene.side(axis) for axis in scene.axes]
-    lattice = np.array(about["Lattice"].split(), float)[::4][: len(sides)]
+    lattice = np.array(about["Lattice"].split(), float)[::4][: len(scene.sides)]
     if "id" in columns:
         order = np.argsort(columns["id"].ravel())
         columns = {name: column[order] for name, column in columns.items()}
     radii = columns.get("radius", np.array(scene.radii))
-    is_right = len(columns["pos"]) == scene.discs and np.allclose(lattice, sides, 1e-9, 0.0)
+    is_right = len(columns["pos"]) == scene.discs and np.allclose(lattice, scene.sides, 1e-9, 0.0)
     if not is_right or not np.allclose(radii.ravel(), scene.radii, 1e-9, 0.0):
         raise InputError(
             f"start must have the box and the discs of the scene, not {len(columns['pos'])} discs "

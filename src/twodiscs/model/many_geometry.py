@@ -152,9 +152,8 @@ def can_be_level(scene, axis):
 
 def arrangement(scene):
     """Return centres [(x, y), …] without overlap, with the largest distances known here."""
-    half_x = scene.range_x / 2
     centres, _ = arranged(scene.discs, scene.range_x, scene.range_y, scene.periodic)
-    return [(x - half_x, y - scene.range_y / 2) for x, y in centres]
+    return [(x - scene.range_x / 2, y - scene.range_y / 2) for x, y in centres]
 
 
 # Arrangements ------------------------------------------------------------------------------------
@@ -181,14 +180,13 @@ def _patterns(n, along, across, ring, torus):
                 s = along / steps if steps > 0 else 0.0
                 # On a ring the only neighbour of a single disc is its image, which is no contact.
                 in_row = s if count > 1 else math.inf
-                two_on = math.hypot((1 - 2 * shift) * s, 2 * v) if shift else math.inf
+                two_on = math.hypot((1 - 2 * shift) * s, 2 * v)
                 yield min(in_row, math.hypot(shift * s, v), two_on), rows, count, shift, fewer, s
 
 
 def _rows(n, along, across, ring, torus):
     """Return (least distance, centres) of the best of ``_patterns``."""
-    best = max(_patterns(n, along, across, ring, torus))
-    least, rows, count, shift, fewer, s = best
+    least, rows, count, shift, fewer, s = max(_patterns(n, along, across, ring, torus))
     v = across / (rows - (not torus)) if rows > 1 else 0.0
     centres = [
         ((i + (shift * row % 1 if torus else shift * (row % 2))) * s, row * v)

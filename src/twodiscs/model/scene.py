@@ -280,7 +280,7 @@ class Box:
     @property
     def box_text(self):
         """The sides of the box as text, "1.5 × 1.0" say."""
-        return " × ".join(repr(self.side(axis)) for axis in self.axes)
+        return " × ".join(map(repr, self.sides))
 
     def unit(self, quantity: str) -> str:
         """Return the unit of a quantity.

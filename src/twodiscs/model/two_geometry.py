@@ -24,9 +24,7 @@ def check(scene):
 def _fits(scene):
     """Return, by exact arithmetic, whether both discs have room to move."""
     widest = 2 * max(scene.exact_radii)
-    if any(Fraction(scene.side(axis)) <= widest for axis in scene.axes):
-        return False
-    return scene.squared_reaches() > scene.exact_contact**2
+    return widest < Fraction(scene.shortest) and scene.squared_reaches() > scene.exact_contact**2
 
 
 def _check_energy(scene):
@@ -59,8 +57,6 @@ def _lowest_potential(scene, spread):
     The lower disc is on the bottom. The other one is on the bottom beside it if there is room, or
     else on the lower disc.
     """
-    if not scene.field:
-        return 0.0
     square = scene.exact_contact**2 - spread
     apart = math.sqrt(square) if square > 0 else 0.0
     (r1, r2), (m1, m2) = scene.radii, scene.masses
@@ -146,12 +142,10 @@ def _largest_with_effects(scene, without=""):
     n, total = len(walls), math.fsum(walls)
     squares = math.fsum(side * side for side in walls)
     squares += math.fsum(scene.side(axis) ** 2 / 4 for axis in scene.periodic)
-    limits = [min(map(scene.side, scene.axes)) / max(1.0, ratio) / 2]
+    limits = [scene.shortest / max(1.0, ratio) / 2]
     limits += [side / (1 + ratio) for side in walls]
     if n == 0:
         limits.append(math.sqrt(squares) / (1 + ratio))
-    elif n == 1:
-        limits.append(squares / (2 * total) / (1 + ratio))
     elif total**2 >= (n - 1) * squares:
         # The smaller root, without its cancellation.
         root = math.sqrt(total**2 - (n - 1) * squares)
