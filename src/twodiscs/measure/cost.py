@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from twodiscs.measure.exact_values import as_list
-from twodiscs.measure.result import Printed
+from twodiscs.measure.result import Printed, frame_of
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import THINNEST_SHELL, check_error, check_fraction
 from twodiscs.model.events import EVENTS
@@ -399,13 +399,10 @@ class Cost(Printed):
         >>> float(td.cost(scene, 1e-3).frame().loc[("volume", "rejection"), "floor"])
         0.0
         """
-        import pandas as pd
-
-        return pd.DataFrame(self.rows).set_index(["quantity", "method"]).astype(float)
+        return frame_of(self.rows, index=["quantity", "method"]).astype(float)
 
     def _texts(self) -> pd.DataFrame:
         """Return the texts of the printed table."""
-        import pandas as pd
 
         def times(seconds):
             return [format_seconds(seconds(error)) for error in self.errors]
@@ -416,7 +413,7 @@ class Cost(Printed):
             floor = format_number(price.floor, ".1e") if price.floor else ""
             rows.append([price.quantity, price.method, *times(price.seconds), least, floor])
         names = [np.format_float_scientific(e, trim="-", exp_digits=1) for e in self.errors]
-        return pd.DataFrame(rows, columns=["quantity", "method", *names, "least", "floor"])
+        return frame_of(rows, ["quantity", "method", *names, "least", "floor"])
 
     @property
     def note(self) -> str:

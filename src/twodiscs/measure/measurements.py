@@ -21,7 +21,7 @@ from twodiscs.analysis.tables import (
     shortfall,
 )
 from twodiscs.measure.exact_values import Quantities
-from twodiscs.measure.result import Immutable, Result, note_of_number, work
+from twodiscs.measure.result import Immutable, Result, frame_of, note_of_number, work
 from twodiscs.model.calls import checked_call, warn
 from twodiscs.model.checks import (
     THINNEST_SHELL,
@@ -234,9 +234,7 @@ def derived(quantity, u, exact, unit, count):
 
 def text_table(measurements):
     """Return the texts of ``measurements`` as a ``DataFrame``."""
-    import pandas as pd
-
-    return pd.DataFrame([one.cells() for one in measurements], columns=TEXT_COLUMNS)
+    return frame_of([one.cells() for one in measurements], TEXT_COLUMNS)
 
 
 class Measurements(Result, Mapping[str, Measurement]):
@@ -330,7 +328,7 @@ class Measurements(Result, Mapping[str, Measurement]):
         [1.328, 0.008, 1.338]
         """
         rows = [{"quantity": row_quantity(row)} | row for row in self.rows]
-        frame = indexed_frame(rows, index="quantity")
+        frame = frame_of(rows, index="quantity")
         first, last = ["estimate", "stderr"], ["exact", "z"]
         return frame[first + [name for name in frame if name not in first + last] + last]
 
@@ -346,12 +344,6 @@ def measurement(scene, row, source=None):
         row["count"] if "count" in row else row["hits"], row["status"], scene.unit(quantity),
         row.get("expectation"), row.get("bound"), source,
     )  # fmt: skip
-
-
-def indexed_frame(rows, index):
-    import pandas as pd
-
-    return pd.DataFrame(rows).set_index(index)
 
 
 # The calls -------------------------------------------------------------------------------------

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from twodiscs.dynamics.averages import ObserveRun, check_times
-from twodiscs.measure.result import Result, note_of_number, progress_bar, work
+from twodiscs.measure.result import Result, frame_of, note_of_number, progress_bar, work
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import InputError, check_count
 from twodiscs.model.formats import format_number, quote, texts_with_error
@@ -231,14 +231,12 @@ class Observed(Result):
 
     def _texts(self) -> pd.DataFrame:
         """Return the texts of the printed table, one row for each time."""
-        import pandas as pd
-
         columns = [("time", [format_number(time, ".12g") for time in self.times])]
         for name, mean, stderr in self.series:
             texts = zip(*map(texts_with_error, mean, stderr), strict=True)
             columns += zip((name, "± error"), texts, strict=True)
         names, texts = zip(*columns, strict=True)
-        return pd.DataFrame(zip(*texts, strict=True), columns=names)
+        return frame_of(zip(*texts, strict=True), names)
 
 
 @checked_call

@@ -181,6 +181,14 @@ class Result(Printed):
         write_json(path, self.to_dict())
 
 
+def frame_of(rows, columns=None, index=None):
+    """Return a ``DataFrame`` of some rows; its ``index`` may be one or more of its columns."""
+    import pandas as pd
+
+    frame = pd.DataFrame(rows, columns=columns)
+    return frame if index is None else frame.set_index(index)
+
+
 def work(kind, run, cores=1, progress=None, resume_from=None):
     """Return the point of a ``run`` of a ``kind`` of result, with a progress bar.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from twodiscs.measure.result import Result, note_of_number, work
+from twodiscs.measure.result import Result, frame_of, note_of_number, work
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import check_choice, check_count, check_integer
 from twodiscs.model.events import HOPS
@@ -105,16 +105,11 @@ class Transmission(Result):
         >>> found.frame().shape
         (21, 2)
         """
-        import pandas as pd
-
         rows = [(t, e.value, e.stderr) for t, e in zip(self.times, self.curve, strict=True)]
-        frame = pd.DataFrame(rows, columns=["time", "kappa", "stderr"], dtype=float)
-        return frame.set_index("time")
+        return frame_of(rows, ["time", "kappa", "stderr"], "time").astype(float)
 
     def _texts(self) -> pd.DataFrame:
         """Return the texts of the printed table, one row for each quantity."""
-        import pandas as pd
-
         name, kappa, passage = self.hop.replace("_", " "), self.coefficient, self.passage_time
         if kappa is None:
             why = f"too frequent, with a mean time of {self.neighbour_mean:.4g}; .frame() has κ(t)"
@@ -131,7 +126,7 @@ class Transmission(Result):
                 ("mean time between hops, exact", exact),
                 ("mean time between passages", str(passage)),
             ]
-        return pd.DataFrame(lines, columns=["quantity", "value"])
+        return frame_of(lines, ["quantity", "value"])
 
 
 @checked_call
