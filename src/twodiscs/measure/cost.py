@@ -140,8 +140,7 @@ def blocks_wanted(scene, pilots, target):
         noise = max(((pilot.errors[e] / target[e]) ** 2 for e in own), default=0.0)
         needed = (exact.replicas_needed(scene, e, target[e]) / pilot.replicas for e in own)
         needed = max(needed, default=0.0) if name == "all" else 0.0
-        wanted = max(ROUND_MARGIN * noise, needed)
-        blocks[name] = wanted if wanted > pilot.first_round else pilot.first_round
+        blocks[name] = max(pilot.first_round, ROUND_MARGIN * noise, needed)
     return blocks
 
 

@@ -81,11 +81,6 @@ def read(path, table):
     frame, configuration = table.frame(path), _configuration(path)
     columns = table.present_columns(frame)
     units = {name: column.unit for name, column in columns.items()}
-    if (box := read_box(configuration)) is not None:
-        # A table names the units of two discs.
-        of_two = {"length⁴": box.unit("volume"), "length³": box.unit("area")}
-        for name, unit in units.items():
-            units[name] = re.sub("length[⁴³]", lambda found: of_two[found[0]], unit)
     frame.attrs = {
         "table": table.name(),
         "meaning": table.meaning(),
@@ -95,8 +90,12 @@ def read(path, table):
         "sha256": digest(path),
         "configuration": configuration,
     }
-    if box is not None:
+    if (box := read_box(configuration)) is not None:
         frame.attrs["box"] = box.parameters()
+        # A table names the units of two discs.
+        of_two = {"length⁴": box.unit("volume"), "length³": box.unit("area")}
+        for name, unit in units.items():
+            units[name] = re.sub("length[⁴³]", lambda found: of_two[found[0]], unit)
     return frame
 
 

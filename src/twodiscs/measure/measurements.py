@@ -20,7 +20,7 @@ from twodiscs.analysis.tables import (
     row_quantity,
     shortfall,
 )
-from twodiscs.measure.exact_values import Quantities
+from twodiscs.measure.exact_values import Quantities, as_list
 from twodiscs.measure.result import Immutable, Result, frame_of, note_of_number, work
 from twodiscs.model.calls import checked_call, warn
 from twodiscs.model.checks import (
@@ -353,16 +353,15 @@ def _named(key, what, names, allowed, scene):
     """Return the ``names`` in the order of ``allowed``, or all that are allowed for None."""
     if names is None:
         return list(allowed)
-    if isinstance(names, str):
-        names = [names]
-    single = isinstance(names, bytes | Mapping) or not isinstance(names, Iterable)
-    if single or not (names := [*names]):
-        raise InputError(f"{key} must be some of {', '.join(allowed)}, not {quote(names)}")
-    for name in names:
+    found = [names] if isinstance(names, str) else as_list(names)
+    if not found:
+        wrong = quote(names if found is None else found)
+        raise InputError(f"{key} must be some of {', '.join(allowed)}, not {wrong}")
+    for name in found:
         hint = why_absent(scene, name) or did_you_mean(name, allowed)
         if not isinstance(name, str) or name not in allowed:
             raise InputError(f"{what} must be one of {', '.join(allowed)}, not {quote(name)}{hint}")
-    return [name for name in allowed if name in names]
+    return [name for name in allowed if name in found]
 
 
 @checked_call

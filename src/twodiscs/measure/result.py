@@ -46,6 +46,7 @@ class Printed(Immutable):
     """
 
     scene: Scene
+    #: The difference between the work that was asked for and the work that was done, None if none.
     note: str | None = None
 
     def __str__(self) -> str:
@@ -76,8 +77,6 @@ class Result(Printed):
     settings = Settings()
     components: dict[str, dict]
     version: str = twodiscs.__version__
-    #: The difference between the work that was asked for and the work that was done, None if none.
-    note: str | None = None
 
     def _again(self, larger, **how):
         """Return the result of the settings with ``larger`` ones, which goes on from this one."""

@@ -399,12 +399,11 @@ def read_xyz(scene, path):
                 about = dict(part.split("=", 1) for part in shlex.split(file.readline()))
                 kinds, columns, at = about["Properties"].split(":"), {}, 0
                 lines = [file.readline().split() for _ in range(int(line))]
-                for name, kind, width in zip(kinds[::3], kinds[1::3], kinds[2::3], strict=True):
+                widths = map(int, kinds[2::3])
+                for name, kind, width in zip(kinds[::3], kinds[1::3], widths, strict=True):
                     if kind in "RI":
-                        columns[name] = np.array(
-                            [row[at : at + int(width)] for row in lines], float
-                        )
-                    at += int(width)
+                        columns[name] = np.array([row[at : at + width] for row in lines], float)
+                    at += width
                 frames.append(_frame_of(scene, about, columns))
     except OSError as error:
         why = error.strerror or error

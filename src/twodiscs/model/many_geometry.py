@@ -189,7 +189,7 @@ def _rows(n, along, across, ring, torus):
     least, rows, count, shift, fewer, s = max(_patterns(n, along, across, ring, torus))
     v = across / (rows - (not torus)) if rows > 1 else 0.0
     centres = [
-        ((i + (shift * row % 1 if torus else shift * (row % 2))) * s, row * v)
+        ((i + shift * row % 1) * s, row * v)
         for row in range(rows)
         for i in range(count - fewer * (row % 2))
     ]
