@@ -34,6 +34,9 @@ SCENE = td.Scene(1.5, 1.0, 0.2)
 #: Next to the threshold of horizontal hops, which are rare and have strips.
 NEAR = SCENE.with_radius(0.2499)
 
+#: No larger discs fit.
+LAST = SCENE.with_radius(math.nextafter(SCENE.largest_radius, 0))
+
 
 def new_run(scene, error, budget=None):
     """Return the run of ``simulate(scene, error, budget=budget)``."""
@@ -41,7 +44,7 @@ def new_run(scene, error, budget=None):
     return DynamicsRun(scene, target, budget, job_seed(scene, "dynamics", 1, None))
 
 
-@pytest.mark.parametrize("scene", [SCENE, NEAR])
+@pytest.mark.parametrize("scene", [SCENE, NEAR, SCENES["rough"]])
 def test_a_pilot_has_the_errors_of_a_run_of_the_same_blocks(blocks, scene):
     run, measured = new_run(scene, 1.0), td.simulate(scene, 1.0)
     found = forecast_dynamics(run, cost.pilots(run))
@@ -321,7 +324,7 @@ def test_an_event_that_no_pilot_counted_has_no_price_and_no_forecast():
 
 @pytest.mark.parametrize(
     ("scene", "floor"),
-    [(SCENE, 1e-15), (td.Scene(1.5, 1.0, 0.15, discs=3), 1e-14),
+    [(LAST, 1e-15), (td.Scene(1.5, 1.0, 0.15, discs=3), 1e-14),
      (td.Scene(4.0, 1.0, 0.3, discs=4), 1e-12)],
 )  # fmt: skip
 def test_exact_values_have_the_precision_of_their_theory(scene, floor, monkeypatch):
