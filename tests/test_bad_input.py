@@ -106,6 +106,7 @@ depth: 1, moment_of_inertia: 0.4 → moment_of_inertia must be left out in a box
 CALLS = """
 Scene(1.5, 1, 0.1, depth=1e50) → depth must lie between 1e-45 and 1e45
 Scene(1.5, 1, 0.1, depth=1, periodic='x,y') → periodic must be some of the axes x, y and z, each
+Scene(0, 1, 0.1) → width must be a positive, finite number, not 0.0
 Scene('0,3', 1, 0.1) → width must be a positive number, not '0,3'; decimals follow a point, 0.3
 Scene(1.5, 1, 0.1, n_discs=3) → 'n_discs'; did you mean discs?
 td.sample(Scene(20, 20, 0.5, discs=64)) → … double holds the volume …: divide all lengths by 16.0
@@ -243,6 +244,8 @@ td.trajectory(PAPER)[:0].states_at([1]) → and at least one row, but has 0 rows
 pd.concat([td.trajectory(PAPER, 1), td.trajectory(FIELD, 1)]).scene → must have a scene in its attrs
 td.plot(td.sample(PAPER, 1), figure='volum') → one of volume, …, not 'volum'; did you mean volume?
 td.plot(td.sample(PAPER, 1), ax=td.sample(PAPER, 1)) → Axes of matplotlib, not a result of sample
+td.cost(PAPER, shell=1) → shell must lie between 1e-6 and 1, ends excluded, not 1
+td.Measurement('a', 1, 1, 1, 0, 1, 'done', '') → status must be one of reached, …, not 'done'
 td.sample(PAPER, shell=1e-300) → shell must lie between 1e-6 and 1, ends excluded, not 1e-300
 td.sample(PAPER, 1, seed=2.0**53) → seed must be an integer of at least 0, not 9007199254740992.0
 td.plot(td.sample(PAPER, 1), ax=Figure().subplots(2)) → ax must be one plane Axes of matplotlib, not

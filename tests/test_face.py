@@ -200,6 +200,7 @@ def test_the_exact_table_holds_the_exact_numbers():
     assert [*table.index] == [0.3, 0.1, 0.9]
     assert table["regime"][0.9].startswith("radius 0.9 does not fit")
     assert math.isnan(table["volume"][0.9])
+    assert td.exact_table(1.5, 1.0, [0.3, 0.1])["ergodic_components"].dtype == int
     for radius, row in table.drop(0.9).iterrows():
         scene = td.Scene(1.5, 1.0, radius, field=0.2)
         known = pd.Series({"volume": td.volume(scene), **td.areas(scene), **td.mean_times(scene)})

@@ -504,7 +504,7 @@ def test_times_are_any_iterable():
     for times in ((0, 1), range(2), map(float, range(2)), (t for t in (0, 1)), {0: 1, 1: 0}.keys()):
         assert td.observe(PAPER, lambda start, now: now["x1"], times, 1) == averages
     assert td.diffusion(RING, iter([1, 3]), 1) == td.diffusion(RING, [1, 3], 1)
-    for times in (iter([0.5, 2]), {0.5: 0, 2: 0}.keys(), np.array([0.5, 2])):
+    for times in (iter([0.5, 2]), {0.5: 0, 2: 0}.keys(), np.array([0.5, 2], object)):
         assert np.array_equal(path.states_at(times), path.states_at([0.5, 2]))
     assert path.states_at(np.array(2.0)) == path.states_at(2)
 

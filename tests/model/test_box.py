@@ -107,6 +107,8 @@ def test_thresholds_follow_from_the_geometry(effects, vertical, horizontal):
     last = box.scene(math.nextafter(box.last_radius, 0))  # of which there is a scene
     for event in {*EVENTS} - {*HOPS}:
         assert box.threshold(event) == (box.last_radius if last.is_possible(event) else None)
+    too_high = box.field * (box.height - 2 * box.last_radius) > 0.5  # for all the energy
+    assert (box.threshold("top_wall") is None) == (too_high or "y" in box.periodic)
     assert not box.fits(box.last_radius)
     assert box.last_radius <= box.largest_radius * (1 + 1e-15)
 

@@ -72,6 +72,7 @@ def test_odd_values_are_named_in_a_short_sentence(value):
         (0.4, 12.0, ("0", "12")), (123.4, 12.0, ("123", "12")), (0.5, None, ("0.5", "")),
         (1 / 3, 0.0, ("0.33333333", "")), (None, None, ("–", "")), (0.0, 0.1, ("0.00", "0.10")),
         (1.23456, 0.0996, ("1.23", "0.10")), (-4e-4, 0.02, ("0.000", "0.020")),
+        (1 / 3, 1e-20, ("0.33333333333333331", "1.0e-20")),  # all digits of a double
     ],
 )  # fmt: skip
 def test_a_value_ends_at_the_second_digit_of_its_error_and_a_zero_has_no_sign(value, error, texts):

@@ -55,6 +55,7 @@ def test_arrangements_fit(discs, sides, periodic):
 def test_the_densest_packings_of_rows_in_a_square_are_found(discs, apart):
     """The centres are in a square of side 1, at the largest distance that there is."""
     assert largest_radius(discs, 1 + apart, 1 + apart) == pytest.approx(apart / 2, rel=1e-14)
+    assert largest_radius(4, 2.0, 2.0) == 0.5  # exactly, because all four can touch
 
 
 @pytest.mark.parametrize("periodic", ["", "x"])
