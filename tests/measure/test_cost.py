@@ -305,7 +305,8 @@ def test_a_run_has_its_first_round_whatever_is_asked_and_the_replicas_of_bursts(
     needed = exact.replicas_needed(rough, "disc_collision", 0.02) / 1024
     assert needed > 8
     # Initial states in a strip are in the neck, so it needs no others.
-    pilot = pilot._replace(first_round=8, errors={"disc_collision": 0.01, "horizontal_hop": 0.01})
+    errors = dict.fromkeys(("disc_collision", "top_wall", "horizontal_hop"), 0.01)
+    pilot = pilot._replace(first_round=8, errors=errors)
     pilots = {"all": pilot, "horizontal_hop": pilot}
     found = cost.blocks_wanted(rough, pilots, dict.fromkeys(pilot.errors, 0.02))
     assert found == {"all": pytest.approx(needed), "horizontal_hop": 8}
