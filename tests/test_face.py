@@ -300,6 +300,8 @@ def test_tables_come_back_with_units_and_provenance(simulated, sampled, tmp_path
     assert times.attrs["path"] == str(folder / "mean_times.csv")
     assert times.attrs["configuration"] == provenance
     assert times.attrs["box"] == td.Box(1.5, 1.0, discs=3, periodic="x").parameters()
+    (folder / "configuration.json").write_text('{"seed": 3}')  # as beside the tables of a build
+    assert td.load(folder)["volume"].attrs["configuration"] == {"seed": 3}
     (folder / "volume.csv").write_text("radius,quantity\nx,y\n")
     with pytest.raises(td.InputError, match=r"volume\.csv "):
         td.load(folder)

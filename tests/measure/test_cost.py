@@ -157,6 +157,8 @@ def test_ten_times_the_accuracy_takes_a_hundred_times_as_long(blocks):
     assert td.cost(NEAR, "draft").errors == [1e-2]
     found = td.cost(NEAR)
     assert found.errors == [1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
+    with pytest.raises(KeyError, match=r"volume.* is no \(quantity, method\) such as \('vertical"):
+        found["volume", "strips"]
     assert found.seconds(1e-6) == pytest.approx(100 * found.seconds(1e-5))
     # All times take what the worst of those that share a run takes, and the strips beside it.
     costs = [p.c for p in found.prices if p.method == "dynamics" and "horizontal" not in p.quantity]

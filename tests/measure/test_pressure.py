@@ -139,6 +139,7 @@ def test_a_pressure_has_the_unit_of_a_force_on_a_side_of_the_box(name, unit):
     point = Laws(EXACT[name]).dynamics(np.random.default_rng(1), events=("right_wall", "top_wall"))
     rows = MeanTimesTable.rows([point])
     found = td.pressure(Measurements("simulate", point.scene, rows, {}, point))
+    assert str(found).startswith(f"{point.scene}\n\n")
     units = {quantity: one.unit for quantity, one in found.items()}
     assert units.pop("compressibility_factor") == ""
     assert {*units.values()} == {unit}
@@ -154,6 +155,8 @@ def test_the_free_energy_is_measured_by_the_volume():
     assert found.stderr == pytest.approx(volume.stderr / volume.value)
     four = td.Scene(1.5, 1.0, 0.12, discs=4)  # whose volume is not known exactly
     assert td.free_energy(four) is td.free_energy(td.sample(four, 1)).exact is None
+    pressures = td.pressure(four)
+    assert {name for name in pressures if pressures[name] is not None} == {"ideal_pressure"}
 
 
 # Diffusion ----------------------------------------------------------------------------------------
