@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping
 from importlib import metadata
 from os import PathLike
 from pathlib import Path
@@ -101,16 +100,15 @@ def read(path, table):
 
 def read_box(configuration):
     """Return the ``Box`` of the only scene of a configuration; None if there is none."""
-    scenes = configuration.get("scenes", []) if isinstance(configuration, Mapping) else []
     try:
-        (scene,) = scenes
+        (scene,) = configuration["scenes"]
         # YAML reads 1e0 as text.
         sides, effects = (
             {name: value if name == "periodic" else float(value) for name, value in block.items()}
             for block in (scene["box"], scene.get("effects", {}))
         )
         return Box(**sides, **effects, discs=scene.get("discs", 2))
-    except (InputError, AttributeError, KeyError, TypeError, ValueError):
+    except (AttributeError, KeyError, TypeError, ValueError):
         return None
 
 

@@ -334,8 +334,7 @@ def make_observed(scene, function, times, replicas, starts=None, seed=1, name=No
         return {name: one(start, now) for name, one in functions.items()}
 
     settings["function"] = ", ".join(map(str, functions))
-    taken = called if by_name else function
-    found = _averages("observe", scene, settings, how, taken, starts)
+    found = _averages("observe", scene, settings, how, called if by_name else function, starts)
     return replace(found, function=function)
 
 

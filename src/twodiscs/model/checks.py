@@ -173,10 +173,9 @@ def check_error(name, value):
 
     Raises ``InputError`` for anything else.
     """
-    real = is_real(value)
-    if not real and isinstance(value, str) and value in NAMED_ERRORS:
+    if isinstance(value, str) and value in NAMED_ERRORS:
         return NAMED_ERRORS[value]
-    if not real or not 0 < value <= 1:
+    if not is_real(value) or not 0 < value <= 1:
         raise InputError(
             f"{name} must be a number above 0 and at most 1, or one of "
             f"{', '.join(NAMED_ERRORS)}, not {quote(value)}{decimal_hint(value)}"

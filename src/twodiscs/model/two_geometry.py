@@ -165,7 +165,7 @@ def require_followable(scene):
     """
     largest = scene.largest_radius
     # With effects, initial states need more room than dynamics in doubles.
-    jams = scene.is_plain and largest < min(scene.width, scene.height) / 2
+    jams = scene.is_plain and largest < scene.shortest / 2
     if jams and scene.radius > (closest := largest * (1 - LEAST_DISTANCE)):
         raise InputError(
             f"radius {scene.radius!r} must not exceed {closest!r} for molecular dynamics: "
