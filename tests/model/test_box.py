@@ -121,6 +121,10 @@ def test_a_field_ends_the_scenes_where_the_energy_does_not_lift_one_disc_onto_th
     assert box.largest_radius > box.last_radius == pytest.approx(end, rel=1e-15)
     assert not box.fits(box.last_radius)
     assert box.fits(math.nextafter(box.last_radius, 0))
+    # Or where unequal discs side by side have all the energy: g m1 (r2 − r1) or g m2 (r1 − r2).
+    for ratio, end in ((1.5, 1 / 5), (0.75, 2 / 15)):
+        unequal = Box(3.0, 1.0, field=5.0, radius_ratio=ratio, mass_ratio=3.0)
+        assert unequal.last_radius == pytest.approx(end, rel=1e-15)
 
 
 #: Squares and boxes of 2 to 1, and widths beside these: thresholds coincide, or nearly.
