@@ -147,6 +147,8 @@ td.scan(1.5, 1, 0.2, 0.1, measure=td.volume) → measure must be a function of a
 td.scan(1.5, 1, 0.2, measure='volume') → measure must be a function … calls, not 'volume'
 td.scan(1.5, 1, 0.2, measure=td.volume) → measure must return a result of its scene, of one function
 td.scan(1.5, 1, [0.1, 0.2], measure=lambda s: td.sample(PAPER, 1)) → of its scene, of one function
+td.intervals(PAPER, 'wall') → hop must be one of vertical_hop, horizontal_hop, not 'wall'
+td.transmission(PAPER, 'wall') → hop must be one of vertical_hop, horizontal_hop, not 'wall'
 td.intervals(PAPER, td.EVENTS[0], 1, error=1) → number and error must not both be given: leave out
 td.sample(PAPER, 1, error=0.1) → samples and error must not both be given: leave out one of them
 td.sample(PAPER, budget=1) → budget must be left out without an error: samples is the number to draw
