@@ -155,6 +155,7 @@ td.sample(PAPER, budget=1) → budget must be left out without an error: samples
 td.sample(PAPER, 1, quantities=5) → quantities must be some of volume, …, not 5
 td.sample(PAPER, error={'volum': 0.1}) → quantity must be one of volume, …; did you mean volume?
 td.simulate(PAPER, 1, events='hop') → event must be one of vertical_hop, …, not 'hop'
+td.sample(Scene(1.5, 1, 0.38, field=0.5), 1) → radius 0.38 leaves a fraction 6e-06 of the prism
 td.sample(PAPER, 1, method='rejecton') → conditioned, not 'rejecton'; did you mean rejection?
 td.sample(FIELD, 1, method='conditioned') → method must be one of rejection, not 'conditioned'
 td.simulate(PAPER, 1, method='strips') → method must be one of dynamics, not 'strips'
