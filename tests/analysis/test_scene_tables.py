@@ -114,20 +114,20 @@ def test_a_rare_hop_has_the_row_of_its_strip():
     count, n = round(0.125 * 10**7 / 0.004 / tau) // 4 * 4, 10**7 // 2
     # The first of two strata has a few starts too many.
     slow, fast = count // 4, count // 4 * 3
-    strip = StripCount(
-        duration=0.125, share=0.004, replicas=2 * n, count=count, squares=count,
-        events=10**8,
-        strata=([[0.499, 0.501]], [[n, n]], [[slow, fast]], [[slow, fast]]),
-    )  # fmt: skip
+    sums = np.array([[[n, n]], [[slow, fast]], [[2 * slow, 2 * fast]]])
+    component = {"duration": 0.125, "share": 0.004, "replicas": n, "shares": [[0.499, 0.501]]}
+    strip = StripCount.of(component | {"sums": {(0, 2): [sums, np.int64(10**8)]}})
+    assert strip.events == 10**8
     point = replace(point, strips={"horizontal_hop": strip})
     found = {row["event"]: row for row in MeanTimesTable.rows([point])}
     assert [row["starts"] for row in found.values()].count("strip") == 1
     row = found["horizontal_hop"]
     assert (row["starts"], row["share"], row["count"]) == ("strip", 0.004, count)
+    assert (row["replicas"], row["duration"]) == (2 * n, 0.125)
     # ⟨N⟩ is 0.499 · q/2 + 0.501 · 3 q/2 with q of all starts together.
     assert row["estimate"] == pytest.approx(tau / 1.001, rel=1e-6)
     rates = np.array([slow, fast]) / n
-    error = math.sqrt(np.sum(np.array([0.499, 0.501]) ** 2 * rates * (1 - rates)) / (n - 1))
+    error = math.sqrt(np.sum(np.array([0.499, 0.501]) ** 2 * rates * (2 - rates)) / (n - 1))
     mean = [0.499, 0.501] @ rates
     assert row["relative_stderr"] == pytest.approx(error / mean, rel=1e-9)
     assert row["z"] == pytest.approx((mean / 1.001 - mean) / error, abs=1e-3)
