@@ -145,13 +145,13 @@ class Locator(caching.UserProvidedCacheLocator):
         return cls(function, file) if _package(function.__module__) in SOURCES else None
 
 
-def compiled(function, **options):
+def compiled(function):
     """Compile ``function`` with ``OPTIONS``; the functions that it calls are compiled into it.
 
     The code of kernels in ``SOURCES`` is kept on disk. A function within a function is not kept,
-    because others in its module have the same name. ``options`` are further ones of ``numba.njit``.
+    because others in its module have the same name.
     """
-    return _kept(numba.njit(function, **OPTIONS | options))
+    return _kept(numba.njit(function, **OPTIONS))
 
 
 def _kept(kernel):
