@@ -5,6 +5,7 @@ Without it a number of a point could be lost, or an error be made up.
 
 import math
 from dataclasses import replace
+from itertools import islice
 
 import numpy as np
 import pytest
@@ -202,7 +203,7 @@ def test_rows_of_the_histogram():
 @pytest.mark.parametrize("discs", [2, 3])
 @pytest.mark.parametrize(
     ("events", "counts", "status"),
-    [(0.4, (100, 100, 9), "extrapolated"), (0.39, (99, 100, 9), "too-few"),
+    [(0.4, (100, 110, 9), "extrapolated"), (0.39, (99, 100, 9), "too-few"),
      (0.39, (100, 99, 9), "too-few"), (0.41, (100, 100, 9), "not-resolved")],
 )  # fmt: skip
 def test_a_density_at_zero_needs_few_events_and_many_intervals(discs, events, counts, status):
@@ -213,6 +214,11 @@ def test_a_density_at_zero_needs_few_events_and_many_intervals(discs, events, co
     assert (found.status, found.count) == (status, sum(counts[:2]))
     assert (found.value is None) == (status == "not-resolved")
     assert (found.stderr is None) == (status != "extrapolated")
+    if status == "extrapolated":  # by a parabola without a linear term, or by a line
+        weights = np.array([7, -1]) / 6 if discs == 2 else np.array([3, -1]) / 2
+        first = [(one.density.value, one.density.stderr) for one in islice(point.bins(), 2)]
+        parts = weights * np.transpose(first)
+        assert [found.value, found.stderr] == pytest.approx([parts[0].sum(), np.hypot(*parts[1])])
 
 
 # Units ------------------------------------------------------------------------------------------

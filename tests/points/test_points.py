@@ -85,6 +85,7 @@ def test_the_error_of_a_density_is_that_of_a_ratio_of_two_numbers_of_each_chain(
     component |= {"edges": [0.0, width, 2 * width]}
     component["sums"] = {(0, 2): [bins, np.array(moments)]}
     point = IntervalsPoint.of(BOX.scene(0.1), {"all": component})
+    assert point.overflow == beyond.sum()
     grain, mean = width * TIME_GRAIN, times.sum() / total
     assert point.mean / grain == pytest.approx(mean, rel=1e-12)
     residuals = (times - mean * intervals).std(ddof=1) * math.sqrt(chains) / total

@@ -3,6 +3,7 @@
 Without these tests threads could change the order, hide an error or keep a process from ending.
 """
 
+import itertools
 import threading
 import time
 
@@ -25,12 +26,22 @@ def test_results_come_in_order_from_other_threads(cores):
     assert len(threads) <= cores
 
 
-def test_only_some_calls_are_begun_ahead():
-    begun = []
-    results = map_in_threads(lambda i: begun.append(i), ((i,) for i in range(100)), 2)
-    next(results)
+def test_only_some_calls_are_begun_ahead_and_none_after_the_end():
+    """Two calls for each core wait at most; when nobody asks on, those that work end alone."""
+    begun, asked, go = [], itertools.count(), threading.Event()
+
+    def work(number):
+        begun.append(threading.current_thread())
+        return number < 9 or go.wait(60)
+
+    results = map_in_threads(work, ((next(asked),) for _ in range(100)), 2)
+    assert [next(results) for _ in range(9)] == [True] * 9
+    assert next(asked) == 4 + 8
     results.close()
-    assert len(begun) <= 6
+    go.set()
+    for thread in {*begun}:
+        thread.join(60)
+    assert len(begun) <= 9 + 2
 
 
 def test_errors_come_out_and_end_the_work():
