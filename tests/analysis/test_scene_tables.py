@@ -118,13 +118,12 @@ def test_a_rare_hop_has_the_row_of_its_strip():
     sums = np.array([[[n, n]], [[slow, fast]], [[2 * slow, 2 * fast]]])
     component = {"duration": 0.125, "share": 0.004, "replicas": n, "shares": [[0.499, 0.501]]}
     strip = StripCount.of(component | {"sums": {(0, 2): [sums, np.int64(10**8)]}})
-    assert strip.events == 10**8
     point = replace(point, strips={"horizontal_hop": strip})
     found = {row["event"]: row for row in MeanTimesTable.rows([point])}
     assert [row["starts"] for row in found.values()].count("strip") == 1
     row = found["horizontal_hop"]
     assert (row["starts"], row["share"], row["count"]) == ("strip", 0.004, count)
-    assert (row["replicas"], row["duration"]) == (2 * n, 0.125)
+    assert (row["replicas"], row["duration"], strip.events) == (2 * n, 0.125, 10**8)
     # ⟨N⟩ is 0.499 · q/2 + 0.501 · 3 q/2 with q of all starts together.
     assert row["estimate"] == pytest.approx(tau / 1.001, rel=1e-6)
     rates = np.array([slow, fast]) / n

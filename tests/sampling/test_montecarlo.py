@@ -140,14 +140,13 @@ def test_shells_scale_with_the_room(share):
     room = scene.largest_radius - scene.radius
     epsilon = montecarlo.shell_thickness(scene, "disc_collision", 0.02)
     assert epsilon == 0.02 * min(scene.radius, room)
-    heavy, balls = replace(scene, mass_ratio=4.0), replace(scene, depth=0.9)
     for hop, side in zip(HOPS, (1.5, 1.0), strict=True):
         epsilon = montecarlo.shell_thickness(scene, hop, 0.02)
         assert epsilon == 0.02 * min(scene.radius, abs(side / 4 - scene.radius))
         # With effects the room is the gap between two discs that pass, at its largest.
-        for one, depth in ((heavy, 0.0), (balls, 0.9 - 2 * scene.radius)):
+        for more, depth in (({"mass_ratio": 4.0}, 0.0), ({"depth": 0.9}, 0.9 - 2 * scene.radius)):
             gap = math.hypot(side - 2 * scene.radius, depth) - 2 * scene.radius
-            epsilon = montecarlo.shell_thickness(one, hop, 0.02)
+            epsilon = montecarlo.shell_thickness(replace(scene, **more), hop, 0.02)
             assert epsilon == pytest.approx(0.02 * min(scene.radius, abs(gap)), rel=1e-6)
 
 

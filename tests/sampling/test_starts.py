@@ -123,8 +123,7 @@ def test_states_are_the_first_ones_of_their_stream(scene):
 def test_given_centres_are_moved_by_whole_periods(discs):
     """Discs of a larger number into the cell, disc 2 of two to the image nearest to disc 1."""
     scene = Scene(1.5, 1.0, 0.1, periodic="xy"[: 4 - discs], discs=discs)
-    names = initial_states.components(scene)
-    given = {name: np.linspace(-9.0, k, 50) for k, name in enumerate(names)}
+    given = {n: np.linspace(-9.0, k, 50) for k, n in enumerate(initial_states.components(scene))}
     moved = {name: column.copy() for name, column in given.items()}
     shifts = initial_states.move_into_cell(scene, moved)
     for name, column in given.items():
