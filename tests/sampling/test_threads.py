@@ -3,7 +3,6 @@
 Without these tests threads could change the order, hide an error or keep a process from ending.
 """
 
-import itertools
 import threading
 import time
 
@@ -28,13 +27,13 @@ def test_results_come_in_order_from_other_threads(cores):
 
 def test_only_some_calls_are_begun_ahead_and_none_after_the_end():
     """Two calls for each core wait at most; when nobody asks on, those that work end alone."""
-    begun, asked, go = [], itertools.count(), threading.Event()
+    begun, asked, go = [], iter(range(100)), threading.Event()
 
     def work(number):
         begun.append(threading.current_thread())
         return number < 9 or go.wait(60)
 
-    results = map_in_threads(work, ((next(asked),) for _ in range(100)), 2)
+    results = map_in_threads(work, ((number,) for number in asked), 2)
     assert [next(results) for _ in range(9)] == [True] * 9
     assert next(asked) == 4 + 8
     results.close()
