@@ -453,10 +453,8 @@ class HopHistogramTable(Table):
             mean = _mean_interval(point)
             start = {"radius": point.radius, "event": point.event}
             for each in point.bins():
-                cells = each._asdict()
-                density = cells.pop("density")
-                cells |= {"density": density.value, "stderr": density.stderr or None}
-                rows.append(start | cells | mean)
+                density = {"density": each.density.value, "stderr": each.density.stderr or None}
+                rows.append(start | each._asdict() | density | mean)
         return rows
 
 
