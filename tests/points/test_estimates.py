@@ -141,8 +141,8 @@ def test_the_density_at_zero_of_chains_is_that_of_counts_with_other_errors():
     densities = [n / intervals / width for n in counts]
     errors = [3.0, 4.0]
     value, error = estimates.density_of_chains_at_zero(densities, errors)
-    assert value == pytest.approx(independent.value)
-    assert error == pytest.approx(math.sqrt((7 / 6 * 3) ** 2 + (4 / 6) ** 2))
+    due = math.sqrt((7 / 6 * 3) ** 2 + (4 / 6) ** 2)
+    assert (value, error) == pytest.approx((independent.value, due))
     # As many independent intervals have nearly uncorrelated counts.
     binomial = [math.sqrt(n) / intervals / width for n in counts]
     _, error = estimates.density_of_chains_at_zero(densities, binomial)
@@ -151,8 +151,7 @@ def test_the_density_at_zero_of_chains_is_that_of_counts_with_other_errors():
     value, error = estimates.density_of_chains_at_zero(densities, errors, linear=True)
     weights = 1 / np.array(errors)
     (_, constant), covariance = np.polyfit([0.5, 1.5], densities, 1, w=weights, cov="unscaled")
-    assert value == pytest.approx(constant)
-    assert error == pytest.approx(math.sqrt(covariance[1, 1]))
+    assert (value, error) == pytest.approx((constant, math.sqrt(covariance[1, 1])))
 
 
 @pytest.mark.parametrize("components", range(2, 11))
@@ -201,6 +200,9 @@ def test_strata_of_few_starts_are_taken_together_and_one_start_has_no_error():
     starts = np.array([[99, 99, 99], [99, 99, 1]])
     mean, _ = estimates.stratified_mean(shares, starts, counts, counts)
     assert mean == pytest.approx(2 / 3 * 8 / 396 + 1 / 3 * 7 / 100)
+    starts[1, 2] = 2
+    mean, _ = estimates.stratified_mean(shares, starts, counts, counts)
+    assert mean == pytest.approx(np.mean(counts / starts))
     one = np.zeros((2, 3), int)
     one[1, 1] = 1
     assert estimates.stratified_mean(shares, one, 3 * one, 9 * one) == (3.0, math.inf)

@@ -87,14 +87,19 @@ def test_the_error_of_a_density_is_that_of_a_ratio_of_two_numbers_of_each_chain(
     point = IntervalsPoint.of(BOX.scene(0.1), {"all": component})
     assert point.overflow == beyond.sum()
     grain, mean = width * TIME_GRAIN, times.sum() / total
-    assert point.mean / grain == pytest.approx(mean, rel=1e-12)
     residuals = (times - mean * intervals).std(ddof=1) * math.sqrt(chains) / total
-    assert point.stderr / grain == pytest.approx(residuals, rel=1e-12)
+    due = pytest.approx([mean, residuals], rel=1e-12)
+    assert [point.mean / grain, point.stderr / grain] == due
     for found, c in zip(point.bins(), counts, strict=False):
         density = c.sum() / total
         residuals = (c - density * intervals).std(ddof=1) * math.sqrt(chains) / total
-        assert found.density.value == pytest.approx(density / width)
-        assert found.density.stderr == pytest.approx(residuals / width)
+        due = pytest.approx((density / width, residuals / width))
+        assert (found.density.value, found.density.stderr) == due
+    # Chains of two discs have as many intervals each, and the sums of their times alone.
+    component |= {"returns": 256, "sums": {(0, 2): [bins[:2], np.array(moments[:2])]}}
+    point, unit = IntervalsPoint.of(BOX.scene(0.1), {"all": component}), grain / 256
+    due = pytest.approx([times.mean(), times.std(ddof=1) / math.sqrt(chains)], rel=1e-12)
+    assert [point.mean / unit, point.stderr / unit] == due
 
 
 def test_the_error_of_a_ratio_of_insertions_is_that_of_its_samples():
@@ -108,8 +113,7 @@ def test_the_error_of_a_ratio_of_insertions_is_that_of_its_samples():
     found = point.ratio({"top_wall_area": 2.0})
     ratio = 2 * 4 * area.mean() / (3 * volume.mean())
     relative = (area / area.mean() - volume / volume.mean()).std() / math.sqrt(samples)
-    assert found.value == pytest.approx(ratio)
-    assert found.relative_stderr == pytest.approx(relative)
+    assert (found.value, found.relative_stderr) == pytest.approx((ratio, relative))
     found, _ = point.total({"volume": 1.0, "top_wall_area": 2.0})
     each = 3 * volume + 2 * 4 * area
     assert (found.value, found.n) == (pytest.approx(each.mean()), samples)
