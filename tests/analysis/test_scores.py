@@ -88,8 +88,7 @@ def test_a_probability_of_zero_or_one_leaves_nothing_to_chance():
 def test_two_shells_that_overlap_have_a_normal_sum():
     rng = np.random.default_rng(4)
     samples, trials = 10**6, 5000
-    measures, both = (3.0, 5.0), 0.2
-    only = (0.1, 0.3)
+    measures, both, only = (3.0, 5.0), 0.2, (0.1, 0.3)
     counts = rng.multinomial(samples, [both, *only, 1 - both - sum(only)], trials)
     law = samples, measures, (both + only[0], both + only[1])
     found = [scores.shells_z((int(n + a), int(n + b)), int(n), *law) for n, a, b, _ in counts]

@@ -136,10 +136,9 @@ def test_weights_below_their_resolution_have_no_error():
 
 
 def test_the_density_at_zero_of_chains_is_that_of_counts_with_other_errors():
-    counts, intervals, width = [5200, 4900], 10**6, 0.125
+    counts, intervals, width, errors = [5200, 4900], 10**6, 0.125, [3.0, 4.0]
     independent = density_at_zero(counts, intervals, width)
     densities = [n / intervals / width for n in counts]
-    errors = [3.0, 4.0]
     value, error = estimates.density_of_chains_at_zero(densities, errors)
     due = math.sqrt((7 / 6 * 3) ** 2 + (4 / 6) ** 2)
     assert (value, error) == pytest.approx((independent.value, due))

@@ -88,8 +88,8 @@ def test_the_error_of_a_density_is_that_of_a_ratio_of_two_numbers_of_each_chain(
     assert point.overflow == beyond.sum()
     grain, mean = width * TIME_GRAIN, times.sum() / total
     residuals = (times - mean * intervals).std(ddof=1) * math.sqrt(chains) / total
-    due = pytest.approx([mean, residuals], rel=1e-12)
-    assert [point.mean / grain, point.stderr / grain] == due
+    found = point.mean / grain, point.stderr / grain
+    assert found == pytest.approx((mean, residuals), rel=1e-12)
     for found, c in zip(point.bins(), counts, strict=False):
         density = c.sum() / total
         residuals = (c - density * intervals).std(ddof=1) * math.sqrt(chains) / total

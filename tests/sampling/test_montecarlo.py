@@ -3,7 +3,6 @@
 Without these tests a shell could be hit with another probability than its exact expectation.
 """
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -145,7 +144,7 @@ def test_shells_scale_with_the_room(share):
         assert epsilon == 0.02 * min(scene.radius, abs(side / 4 - scene.radius))
         # With effects the room is the gap between two discs that pass, at its largest.
         for more, depth in (({"mass_ratio": 4.0}, 0.0), ({"depth": 0.9}, 0.9 - 2 * scene.radius)):
-            gap = math.hypot(side - 2 * scene.radius, depth) - 2 * scene.radius
+            gap = np.hypot(side - 2 * scene.radius, depth) - 2 * scene.radius
             epsilon = montecarlo.shell_thickness(replace(scene, **more), hop, 0.02)
             assert epsilon == pytest.approx(0.02 * min(scene.radius, abs(gap)), rel=1e-6)
 
