@@ -215,9 +215,7 @@ def test_a_density_at_zero_needs_few_events_and_many_intervals(discs, events, co
     assert (found.stderr is None) == (status != "extrapolated")
     if status == "extrapolated":  # by a parabola without a linear term, or by a line
         weights = np.array([7, -1]) / 6 if discs == 2 else np.array([3, -1]) / 2
-        parts = weights * np.transpose(
-            [astuple(one.density)[:2] for one in islice(point.bins(), 2)]
-        )
+        parts = weights * np.transpose([astuple(b.density)[:2] for b in islice(point.bins(), 2)])
         assert [found.value, found.stderr] == pytest.approx([parts[0].sum(), np.hypot(*parts[1])])
 
 
