@@ -119,7 +119,9 @@ def test_parts_of_a_channel_are_those_of_its_heights(discs, height, length):
     """
     scene, lattice = channel(discs, height, length), np.linspace(0, height, 25)
     assert is_ordered(scene)
-    assert not is_ordered(replace(scene, height=2 * scene.height))
+    longest = (2 + math.sqrt(3)) * scene.radius
+    assert is_ordered(replace(scene, height=longest * (1 - 1e-9)))
+    assert not is_ordered(replace(scene, height=longest * (1 + 1e-9)))
     assert not is_ordered(replace(scene, periodic="x"))
     fitting = total_of(np.array(np.meshgrid(*[lattice] * discs, sparse=False))) < length
     parts = ndimage.label(fitting)[1]
