@@ -180,8 +180,13 @@ def test_without_a_budget_a_run_has_a_day():
     for name, fine in new_run(NEAR, 2e-4).components.items():
         assert fine.planned == pytest.approx(25 * easy[name].planned, rel=1 / PLAN_STEPS)
     hard = new_run(NEAR, 1e-9)
-    work = sum(component.budget * component.cost_ratio for component in hard.components.values())
-    assert work == pytest.approx(DAY_OF_EVENTS)
+    kicked = replace(NEAR, friction=4.0)
+    each = find_engine(kicked).rates.work_per_event(kicked)
+    for run, by in ((hard, 1), (new_run(kicked, 1e-9), each)):
+        work = sum(component.budget * component.cost_ratio for component in run.components.values())
+        assert work * by == pytest.approx(DAY_OF_EVENTS)
+    paid = new_run(kicked, 1e-9, 10**9).components.values()
+    assert sum(component.budget for component in paid) * each == pytest.approx(1e9)
     assert hard.most_events == DAY_OF_EVENTS
     many = new_run(td.Scene(2, 1.5, 0.1, discs=12), 1e-9)
     assert many.most_events * many_rates.cost_ratio(many.scene) == pytest.approx(DAY_OF_EVENTS)
