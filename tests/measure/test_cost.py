@@ -201,6 +201,7 @@ def test_without_a_budget_a_run_has_a_day():
         run = montecarlo.MonteCarloRun(scene, ("volume",), None, 0.02, 1, {"volume": 1e-3})
         day = run.components["all"]
         assert day.budget * day.cost_ratio == pytest.approx(montecarlo.DAY_OF_SAMPLES)
+        assert day.block_work == replace(run, samples=1, target=None).components["all"].block_work
         assert day.error_over_target([0 * day.work(0, 1)[0]], 1) == [math.inf]  # without a hit
 
 
