@@ -9,6 +9,7 @@ import re
 from dataclasses import replace
 
 import pytest
+from effect_scenes import SCENES
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -17,6 +18,7 @@ from twodiscs.dynamics.engine import Engine, find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.two import path, strip, two_rates
 from twodiscs.model.checks import LONGEST_LENGTH, SHORTEST_LENGTH, InputError
+from twodiscs.model.events import WALLS
 from twodiscs.model.scene import Box
 from twodiscs.model.two_geometry import LEAST_DISTANCE
 from twodiscs.sampling.initial_states import require_initial_states
@@ -42,6 +44,14 @@ def scene_of(width, height, effects, share):
     """Return a scene at a ``share`` of the largest radius; InputError if there is none."""
     box = Box(width, height, **effects)
     return box.scene(share * box.largest_radius)
+
+
+@pytest.mark.parametrize("name", ["channel", "rough"])
+def test_a_run_is_planned_with_the_hits_of_all_walls(name):
+    """Those of both discs at both walls of an axis count as one event."""
+    scene = SCENES[name]
+    rates = [two_rates.expected_rate(scene, wall) for wall in WALLS if scene.is_possible(wall)]
+    assert sum(rates) == pytest.approx(two_rates.expected_rate(scene, "any_wall"))
 
 
 @pytest.mark.parametrize("width", [1.0, 1.5])
