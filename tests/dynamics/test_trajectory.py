@@ -87,10 +87,14 @@ def test_each_disc_may_start_at_its_own_walls_and_not_beyond(disc, axis, ratio):
     ids=repr,
 )
 def test_rows_do_not_depend_on_how_many_are_made_at_a_time(scene, monkeypatch):
-    whole = paths.follow_trajectory(scene, 5, None, 200.0)
+    whole, told = paths.follow_trajectory(scene, 5, None, 200.0), []
     monkeypatch.setattr(rows, "CHUNK_NUMBERS", 1)
-    for one, other in zip(whole, paths.follow_trajectory(scene, 5, None, 200.0), strict=True):
+    parts = paths.follow_trajectory(scene, 5, None, 200.0, lambda *now: told.append(now))
+    for one, other in zip(whole, parts, strict=True):
         assert one.tobytes() == other.tobytes()
+    assert told[-1] == (whole.times[-1], 200.0)
+    assert told == sorted(told)
+    assert len(told) > 4
     assert whole.times.size > 4 * (64 + rows.CHUNK_PADDING)
 
 
