@@ -244,7 +244,7 @@ def _levels(channel, kinds, vectors, logs):
         # Functions that are even and odd about the middle have half of the diagonal each.
         kernel = _folded(channel, kinds * np.array([1, sign])[:, None, None])
         columns, rows = _factors(kernel)
-        small, log = rows @ columns, 0.0
+        small, log, size = rows @ columns, 0.0, 1.0
         diagonal = np.diag(kernel) / channel.weights
         for k in range(1, n):
             if k > 1:
