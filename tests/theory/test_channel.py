@@ -5,6 +5,7 @@ or its limits.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -209,3 +210,18 @@ def test_exact_says_before_it_begins_that_it_takes_minutes(scene, is_slow, monke
         td.exact(scene)
     assert ["may take some minutes" in str(one.message) for one in recwarn] == [True] * is_slow
     assert {one.filename for one in recwarn} <= {__file__}
+
+
+def test_a_channel_that_needs_too_many_terms_is_refused(monkeypatch):
+    monkeypatch.setattr(channel, "MOST_TERMS", 24)
+    with pytest.raises(td.InputError, match=r"^the .* for 3 discs needs more than 24 terms"):
+        channel.derivatives(td.Scene(3.0, 0.4, 0.18, discs=3), hops=False)
+
+
+@pytest.mark.parametrize("unit", [2.0**30, 2.0**-30])
+def test_what_is_known_of_discs_does_not_depend_on_the_unit_of_length(unit):
+    scenes = [td.Scene(1.5 * u, u, 0.15 * u, discs=3) for u in (1.0, unit)]
+    (log_one, *ones), (log_volume, *rest) = map(known_derivatives, scenes)
+    assert log_volume == pytest.approx(log_one + 6 * math.log(unit), rel=1e-14)
+    assert [value * unit for value in rest] == ones
+    assert known_derivatives(replace(scenes[1], discs=5)) is None
