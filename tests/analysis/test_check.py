@@ -78,6 +78,8 @@ def test_all_that_was_measured_is_compared(points):
         assert {row["bound"] for row in rows} == {scores.bonferroni_bound(len(rows), 5e-4)}
     z = [row["z"] for row in found if row["comparison"] == "volume"]
     mean, size = (row for row in found[-over_radii:] if row["quantity"] == "volume")
+    assert (mean["exact"], size["exact"]) == (0.0, 1.0)
+    assert mean["stderr"] == pytest.approx(len(z) ** -0.5)
     assert mean["estimate"] == pytest.approx(np.mean(z))
     assert size["estimate"] == pytest.approx(np.sqrt(np.mean(np.square(z))))
     assert (mean["z"], size["z"]) == (scores.z_mean(z), scores.z_spread(z))
