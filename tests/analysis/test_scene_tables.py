@@ -4,6 +4,7 @@ Without it a number of a point could be lost, or an error be made up.
 """
 
 import math
+from collections import Counter
 from dataclasses import astuple, replace
 from itertools import islice
 
@@ -135,6 +136,10 @@ def test_a_rare_hop_has_the_row_of_its_strip():
     assert (other["starts"], other["event"]) == ("invariant", "horizontal_hop")
     assert other["count"] == point.counts["horizontal_hop"]
     assert other["replicas"] == point.replicas
+    # Both are compared with theory, every other event once.
+    compared = Counter(row["quantity"] for row in tables.CheckTable.rows([point]))
+    for event in found:
+        assert compared[f"{event}_time"] == 1 + (event == "horizontal_hop")
 
 
 def test_none_seen_gives_a_bound_and_no_estimate():
