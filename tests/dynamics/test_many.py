@@ -44,7 +44,7 @@ def check(found, errors, expected, spread=None):
 
 
 THREE, CHANNEL = Scene(1.5, 1.0, 0.15, discs=3), Scene(2.0, 0.6, 0.18, discs=4)
-#: Two rough discs just pass each other along y.
+#: The rough discs have hardly room one above the other, so hops in x are rare.
 ROUGH, UPRIGHT = replace(THREE, radius=0.23, moment_of_inertia=0.5), CHANNEL.turned()
 EXACT = [THREE, replace(THREE, radius=0.26), ROUGH, CHANNEL, UPRIGHT]
 #: In a low channel no hops in x are counted, by a kernel of its own. All such kernels are slow.

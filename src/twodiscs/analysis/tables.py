@@ -209,7 +209,8 @@ def _sampled_score(point, quantity, sampled, expectation):
         probability = min(expectation / point.quantities[quantity].measure, 1.0)
         return scores.binomial_z(sampled.hits, point.samples, probability)
     if expectation == 0:
-        return (0.0 if estimate is None else math.inf), "certain"
+        z, test = scores.impossible_z(0 if estimate is None else 1)
+        return abs(z), test
     if sampled.enough < scores.NORMAL_EVENTS:
         return None, None
     t = (estimate.value - expectation) / estimate.stderr

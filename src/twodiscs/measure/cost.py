@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from twodiscs.measure.exact_values import as_list
-from twodiscs.measure.result import Printed, frame_of
+from twodiscs.measure.result import Printed, data_frame
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import THINNEST_SHELL, check_error, check_fraction
 from twodiscs.model.events import EVENTS
@@ -398,7 +398,7 @@ class Cost(Printed):
         >>> float(td.cost(scene, 1e-3).frame().loc[("volume", "rejection"), "floor"])
         0.0
         """
-        return frame_of(self.rows, index=["quantity", "method"]).astype(float)
+        return data_frame(self.rows, index=["quantity", "method"]).astype(float)
 
     def _texts(self) -> pd.DataFrame:
         """Return the texts of the printed table."""
@@ -412,7 +412,7 @@ class Cost(Printed):
             floor = format_number(price.floor, ".1e") if price.floor else ""
             rows.append([price.quantity, price.method, *times(price.seconds), least, floor])
         names = [np.format_float_scientific(e, trim="-", exp_digits=1) for e in self.errors]
-        return frame_of(rows, ["quantity", "method", *names, "least", "floor"])
+        return data_frame(rows, ["quantity", "method", *names, "least", "floor"])
 
     @property
     def note(self) -> str:

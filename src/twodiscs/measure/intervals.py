@@ -11,7 +11,7 @@ import numpy as np
 
 from twodiscs.analysis.tables import HopHistogramTable
 from twodiscs.measure.measurements import Measurement, text_table
-from twodiscs.measure.result import Result, frame_of, note_of_number, work
+from twodiscs.measure.result import Result, data_frame, note_of_number, work
 from twodiscs.model.calls import checked_call, warn
 from twodiscs.model.checks import (
     AccuracyWarning,
@@ -157,7 +157,7 @@ class Intervals(Result):
         ['right', 'count', 'density', 'stderr']
         """
         names = "left", "right", "count", "density", "stderr"
-        return frame_of([{n: row[n] for n in names} for row in self._bins], index="left")
+        return data_frame([{n: row[n] for n in names} for row in self._bins], index="left")
 
 
 def resolved_width(scene):

@@ -93,8 +93,10 @@ def read(path, table):
         frame.attrs["box"] = box.parameters()
         # A table names the units of two discs.
         of_two = {"length⁴": box.unit("volume"), "length³": box.unit("area")}
-        for name, unit in units.items():
-            units[name] = re.sub("length[⁴³]", lambda found: of_two[found[0]], unit)
+        frame.attrs["units"] = {
+            name: re.sub("length[⁴³]", lambda found: of_two[found[0]], unit)
+            for name, unit in units.items()
+        }
     return frame
 
 

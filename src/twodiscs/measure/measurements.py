@@ -21,7 +21,7 @@ from twodiscs.analysis.tables import (
     shortfall,
 )
 from twodiscs.measure.exact_values import Quantities, as_list
-from twodiscs.measure.result import Immutable, Result, frame_of, note_of_number, work
+from twodiscs.measure.result import Immutable, Result, data_frame, note_of_number, work
 from twodiscs.model.calls import checked_call, warn
 from twodiscs.model.checks import (
     THINNEST_SHELL,
@@ -234,7 +234,7 @@ def derived(quantity, u, exact, unit, count):
 
 def text_table(measurements):
     """Return the texts of ``measurements`` as a ``DataFrame``."""
-    return frame_of([one.cells() for one in measurements], TEXT_COLUMNS)
+    return data_frame([one.cells() for one in measurements], TEXT_COLUMNS)
 
 
 class Measurements(Result, Mapping[str, Measurement]):
@@ -328,7 +328,7 @@ class Measurements(Result, Mapping[str, Measurement]):
         [1.328, 0.008, 1.338]
         """
         rows = [{"quantity": row_quantity(row)} | row for row in self.rows]
-        frame = frame_of(rows, index="quantity")
+        frame = data_frame(rows, index="quantity")
         first, last = ["estimate", "stderr"], ["exact", "z"]
         return frame[first + [name for name in frame if name not in first + last] + last]
 

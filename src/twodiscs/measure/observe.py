@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from twodiscs.dynamics.averages import ObserveRun, check_times
-from twodiscs.measure.result import Result, frame_of, note_of_number, progress_bar, work
+from twodiscs.measure.result import Result, data_frame, note_of_number, progress_bar, work
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import InputError, check_count
 from twodiscs.model.formats import format_number, quote, texts_with_error
@@ -236,7 +236,7 @@ class Observed(Result):
             texts = zip(*map(texts_with_error, mean, stderr), strict=True)
             columns += zip((name, "± error"), texts, strict=True)
         names, texts = zip(*columns, strict=True)
-        return frame_of(zip(*texts, strict=True), names)
+        return data_frame(zip(*texts, strict=True), names)
 
 
 @checked_call

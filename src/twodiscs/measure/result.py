@@ -180,7 +180,7 @@ class Result(Printed):
         write_json(path, self.to_dict())
 
 
-def frame_of(rows, columns=None, index=None):
+def data_frame(rows, columns=None, index=None):
     """Return a ``DataFrame`` of some rows; its ``index`` may be one or more of its columns."""
     import pandas as pd
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 from twodiscs.measure.exact_values import as_list, fitting_scenes
 from twodiscs.measure.measurements import make_simulation
-from twodiscs.measure.result import Result, frame_of
+from twodiscs.measure.result import Result, data_frame
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import InputError
 from twodiscs.model.formats import quote
@@ -120,7 +120,7 @@ class Scan(Result, Sequence[Result]):
             row = {name: "" for name, value in rows[0].items() if isinstance(value, str)}
             row |= {index: "does not fit" if index == "quantity" else math.nan, "status": why}
             rows.append(dict(zip(self.parameters, values, strict=True)) | row)
-        return frame_of(rows, index=[*self.parameters, index])
+        return data_frame(rows, index=[*self.parameters, index])
 
     def __str__(self) -> str:
         return "\n\n".join([*map(str, self), *self.refused.values()])

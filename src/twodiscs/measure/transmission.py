@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from twodiscs.measure.result import Result, frame_of, note_of_number, work
+from twodiscs.measure.result import Result, data_frame, note_of_number, work
 from twodiscs.model.calls import checked_call
 from twodiscs.model.checks import check_choice, check_count, check_integer
 from twodiscs.model.events import HOPS
@@ -106,7 +106,7 @@ class Transmission(Result):
         (21, 2)
         """
         rows = [(t, e.value, e.stderr) for t, e in zip(self.times, self.curve, strict=True)]
-        return frame_of(rows, ["time", "kappa", "stderr"], "time").astype(float)
+        return data_frame(rows, ["time", "kappa", "stderr"], "time").astype(float)
 
     def _texts(self) -> pd.DataFrame:
         """Return the texts of the printed table, one row for each quantity."""
@@ -126,7 +126,7 @@ class Transmission(Result):
                 ("mean time between hops, exact", exact),
                 ("mean time between passages", str(passage)),
             ]
-        return frame_of(lines, ["quantity", "value"])
+        return data_frame(lines, ["quantity", "value"])
 
 
 @checked_call
