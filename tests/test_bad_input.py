@@ -167,6 +167,7 @@ td.trajectory(PAPER, start=td.starts(PAPER, 2)) → numbers x1, …; start[0] is
 td.trajectory(PAPER, start=td.trajectory(PAPER, 1)) → …; states_at(times)[0] is a state of a traj…
 td.trajectory(PAPER, hops='no') → hops must be True or False, not 'no'
 td.intervals(PAPER, 'vertical_hop', 1, bins=[0, 1, INF]) → edges from 0 on, not [0, 1, inf]
+td.intervals(PAPER, 'vertical_hop', 1, bins=[0, 1, 1]) → ascending edges from 0 on, not [0, 1, 1]
 td.starts(PAPER, 1e8) → number must be an integer from 1 to 15000000, not 100000000
 td.frames(PAPER, [0, 1], 1e8) → number must be an integer from 1 to 7500000, not 100000000
 td.observe(PAPER, x1, [1], 1e9 + 1) → replicas must be an integer from 1 to 1000000000, not

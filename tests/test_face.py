@@ -25,6 +25,7 @@ import twodiscs as td
 from twodiscs.analysis.tables import SCENE_TABLES
 from twodiscs.dynamics.paths import check_start
 from twodiscs.figures import style
+from twodiscs.measure.load import plugin
 from twodiscs.measure.measurements import Measurement, measurement
 from twodiscs.points.monte_carlo_point import InsertionPoint
 from twodiscs.sampling.initial_states import components
@@ -125,6 +126,10 @@ def test_measurements_know_their_errors_and_print_themselves(simulated, sampled)
     assert found.interval(0.6826894921370859) == pytest.approx(ends, rel=1e-12)
     assert sampled.frame().loc["volume", "estimate"] == sampled["volume"].value
     assert "length⁴" in str(sampled["volume"])
+    texts = "{} = {} ± {} {unit}, exact {}, z = {}, {} counted, {}"
+    cells = [*found.cells()]
+    unit = cells.pop(4)
+    assert str(found) == texts.format(*cells, unit=unit)
 
 
 def test_a_measurement_without_an_honest_error_has_no_interval_and_no_score():
@@ -137,6 +142,9 @@ def test_a_measurement_without_an_honest_error_has_no_interval_and_no_score():
     assert "0.00" not in f"{blocked}{tiny}"
     unseen = Measurement("any_wall_time", None, None, 1.0, None, 0, "none-seen", "time", None, 0.5)
     assert "> 0.5" in unseen.cells()[1]
+    few = Measurement("any_wall_time", 1.0, None, None, None, 3, "too-few", "time")
+    assert (few.relative_stderr, few.cells()[3]) == (None, "not known")
+    assert blocked["horizontal_hop_time"].cells()[3] == "–"
     for wrong in (float, lambda m: m.u, lambda m: f"{m:.3f}"):
         with pytest.raises(td.InputError, match="must have a value, but its status is impossible"):
             wrong(blocked["horizontal_hop_time"])
@@ -283,11 +291,12 @@ def test_tables_come_back_with_units_and_provenance(simulated, sampled, tmp_path
     SCENE_TABLES["theory"].write(folder / "theory.csv", [])
     SCENE_TABLES["mean_times"].write(folder / "mean_times.csv", simulated.rows)
     SCENE_TABLES["volume"].write(folder / "volume.csv", sampled.rows[:1])
+    plugin("tables")["tails"].write(folder / "tails.csv", [])  # of a study
     (folder / "mine.csv").write_text("a,b\n1,2\n")
     several = provenance | {"scenes": [one | {"name": "two"}, one]}
     (tmp_path / "configuration.json").write_text(json.dumps(several))
     found = td.load(folder)
-    assert [*found] == ["mean_times", "theory", "volume"]
+    assert [*found] == ["mean_times", "tails", "theory", "volume"]
     times = found["mean_times"]
     for column in ("estimate", "count"):
         assert [*times[column]] == [row[column] for row in simulated.rows]
@@ -383,11 +392,12 @@ td.transmission(td.Scene(1.5, 1, 0.249), "horizontal_hop", 10) → You asked for
 
 
 @pytest.mark.parametrize("line", NOTES.strip().splitlines())
-def test_a_result_says_what_was_done_instead(line):
+def test_a_result_says_what_was_done_instead(line, recwarn):
     call, _, said = line.partition(" →")
     found = eval(call)
     assert (found.note or "").startswith(said.strip())
     assert bool(found.note) == bool(said) == str(found).endswith(found.note or "no note")
+    assert bool(recwarn.list) == ("but the budget" in (found.note or ""))
 
 
 @pytest.mark.parametrize(
@@ -479,6 +489,10 @@ def test_a_shell_is_a_part_of_the_volume(sampled):
     ratio = area.u / volume.u
     relative = ratio.std_dev / ratio.nominal_value
     assert relative**2 == pytest.approx(1 / area.count - 1 / volume.count)
+    # All walls follow from two of them, also if no volume is asked for.
+    three = [f"{wall}_area" for wall in ("right_wall", "top_wall", "any_wall")]
+    right, top, both = (m.u for m in td.sample(PAPER, 1, quantities=three).values())
+    assert (both - 4 * (right + top)).std_dev < 1e-6 * both.std_dev
     # With effects all walls have a shell of their own.
     walls = td.sample(SCENES["rough"], 1)["any_wall_area"]
     assert (walls.u.nominal_value, walls.u.std_dev) == pytest.approx((walls.value, walls.stderr))

@@ -375,7 +375,7 @@ def test_states_between_rows_lead_from_one_to_the_next(scene):
             assert np.allclose(ends[name], path[name][1:], rtol=0, atol=1e-9)
 
 
-def test_averages_over_states_have_honest_errors():
+def test_averages_over_states_have_honest_errors(tmp_path):
     """Five standard errors each: energy is kept, ⟨u²⟩ of four components is 1/4, and t u at first.
 
     A velocity together with a position is an array for each replica.
@@ -403,6 +403,10 @@ def test_averages_over_states_have_honest_errors():
     assert (found.replicas, found.mean[0]) == (5000, pytest.approx(given["x1"].mean()))
     assert list(found.frame().columns) == ["mean", "stderr"]
     assert found.stderr[0] == pytest.approx(error, rel=1e-12)
+    found.save(tmp_path / "given.json")
+    assert str(td.load_result(tmp_path / "given.json")).endswith(
+        "5000 given starts: errors hold if they are independent"
+    )
 
 
 def test_what_is_observed_has_names():

@@ -200,8 +200,10 @@ def test_rows_of_the_histogram():
     first, second = [row for row in HopHistogramTable.rows([empty]) if row["bins"] == "equal"]
     assert (first["density"], first["stderr"]) == (0.0, None)
     assert second["stderr"] > 0
-    few = HopHistogramTable.rows([LAWS[2].intervals(rng, chains=99)])
+    few = HopHistogramTable.rows([point := LAWS[2].intervals(rng, chains=99)])
     assert few[0]["z"] is few[0]["mean_stderr"] is None
+    said = [Intervals(one.scene, one, {}).mean.status for one in (points[0], point)]
+    assert said == ["sampled", "too-few"]
 
 
 @pytest.mark.parametrize("discs", [2, 3])

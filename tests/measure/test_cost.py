@@ -329,6 +329,8 @@ def test_an_event_that_no_pilot_counted_has_no_price_and_no_forecast():
     found = forecast_dynamics(run, {"all": pilot})
     assert found.events == pytest.approx(run.components["all"].budget)
     assert found.shortfall(run).endswith("with too few events horizontal_hop for an error.")
+    blocked = cost.pilots(new_run(SCENE.with_radius(0.3), 1.0))["all"].errors
+    assert {*td.EVENTS} - {*blocked} == {"horizontal_hop"}
 
 
 @pytest.mark.parametrize(
