@@ -22,7 +22,7 @@ from unittest.mock import Mock, call, create_autospec
 import numpy as np
 import pandas as pd
 import pytest
-from effect_scenes import PAPER, SCENES, THREE
+from effect_scenes import PAPER, SCENES, THREE, in_unit
 from matplotlib.backend_bases import FigureCanvasBase
 from numba.core.compiler_lock import global_compiler_lock
 
@@ -343,10 +343,14 @@ def test_a_bar_is_where_the_work_is(monkeypatch):
         assert [bar.desc for bar in tqdm._instances] == ["work, compiling"]
         watch(10, 10)
         assert [bar.desc for bar in tqdm._instances] == ["work"]
-    for progress, stderr in ((None, SimpleNamespace(write=len)), (True, None)):
+    # A terminal has the bar of a terminal, also where notebooks could have another one.
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: name)
+    monkeypatch.setitem(sys.modules, "tqdm.notebook", None)
+    terminal = SimpleNamespace(write=len, flush=dict, isatty=lambda: True)
+    for progress, stderr in ((None, SimpleNamespace(write=len)), (True, None), (None, terminal)):
         monkeypatch.setattr(sys, "stderr", stderr)
         with progress_module.progress_bar(progress, "work") as watch:
-            assert watch is None
+            assert (watch is None) == (stderr is not terminal)
 
 
 # States -------------------------------------------------------------------------------------------
@@ -463,7 +467,11 @@ def test_what_is_observed_is_a_trajectory(scene):
         due = frames[name[0]][:, k, int(name[1:]) - 1]
         assert np.array_equal(kept[k][1][name], due)
     kept.clear()
-    for given in (frames[:, 0], frames[:, 0].view((float, len(frames.dtype.names)))):
+    plain = frames[:, 0].view((float, len(frames.dtype.names)))
+    names = [letters[: len(scene.axes)] for letters in ("xyz", "uvw")]
+    pair = [np.stack([frames[name][:, 0] for name in few], axis=-1) for few in names]
+    pair[0] += np.array(scene.sides) / 2  # from the corner
+    for given in (frames[:, 0], plain, pair):
         found = td.observe(scene, seen, [times[1] - times[0]], starts=given)
         assert found.replicas == replicas
         assert found.note.endswith("errors hold if they are independent")
@@ -515,19 +523,20 @@ def test_times_are_any_iterable():
 
 @pytest.mark.parametrize(
     "scene",
-    [PAPER, *map(SCENES.get, ("combination", "rough", "friction")), td.Scene(6, 1, 0.2, discs=5)],
+    [PAPER, *map(SCENES.get, ("combination", "rough", "friction")), td.Scene(6, 1, 0.2, discs=5),
+     in_unit(PAPER, 1e12)],
     ids=str,
-)
+)  # fmt: skip
 def test_states_show_that_rows_are_missing(scene, tmp_path):
     """New labels hide a selection; only rows of hops can be left out, which change no state."""
-    path = td.trajectory(scene, duration=30, seed=1)
+    path = td.trajectory(scene, duration=30 * scene.height, seed=1)
     middle = path["time"].iloc[-1] / 2
     whole = path.states_at([middle])
     hops = path.event.str.endswith("_hop")
     for right in (path.reset_index(drop=True), path.set_index("time", drop=False), path.iloc[3:-3]):
         assert right.states_at([middle]) == whole
     without, places = path[~hops].positions([middle]), path.positions([middle])
-    np.testing.assert_allclose(without, places, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(without, places, rtol=0, atol=1e-14 * scene.height)
     k = len(path) // 3
     for wrong in (
         path[::-1],

@@ -103,7 +103,8 @@ def test_the_face_has_the_coefficient_and_the_curve():
     for number in (kappa, passage):
         value, error = texts_with_error(number.value, number.stderr)
         assert f" {value} ± {error}\n" in f"{found}\n"
-    assert texts_with_error(found.uncorrected, kappa.stderr)[0] in str(found)
+    for number, error in ((found.uncorrected, kappa.stderr), (found.exact_mean, passage.stderr)):
+        assert f" {texts_with_error(number, error)[0]}\n" in str(found)
     assert td.transmission(scene, "horizontal_hop", hops=2**14, seed=2).coefficient != kappa
 
 

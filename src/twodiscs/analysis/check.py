@@ -107,7 +107,7 @@ def flux_time(event, point):
     """
     scene = point.scene
     weights = wall_weights(scene) if event == "any_wall" else {f"{event}_area": 1.0}
-    if not {"volume", *weights} <= point.quantities.keys():
+    if not weights.keys() <= point.quantities.keys():
         return None
     ratio = point.ratio(weights)
     if ratio is None:

@@ -179,9 +179,9 @@ def _measured(result, rows, name, constant, factors):
     power = "²³"[len(scene.axes) - 2]
     unit = "" if name.endswith("factor") else f"energy/length{power}"
     due = _combine_rates(scene, constant, factors)
-    count = min((row["count"] for row in counted), default=0)
     if not counted:
-        return Measurement(name, constant, 0.0, due, None, count, "exact", unit)
+        return Measurement(name, constant, 0.0, due, None, 0, "exact", unit)
+    count = min(row["count"] for row in counted)
     if any(row["estimate"] is None for row in counted):
         return Measurement(name, None, None, due, None, count, "derived", unit)
     # A time is that of the trajectories that can have the event, which are a share of all.
