@@ -126,10 +126,8 @@ def test_measurements_know_their_errors_and_print_themselves(simulated, sampled)
     assert found.interval(0.6826894921370859) == pytest.approx(ends, rel=1e-12)
     assert sampled.frame().loc["volume", "estimate"] == sampled["volume"].value
     assert "length⁴" in str(sampled["volume"])
-    texts = "{} = {} ± {} {unit}, exact {}, z = {}, {} counted, {}"
-    cells = [*found.cells()]
-    unit = cells.pop(4)
-    assert str(found) == texts.format(*cells, unit=unit)
+    texts = "{0} = {1} ± {2} {4}, exact {3}, z = {5}, {6} counted, {7}"
+    assert str(found) == texts.format(*found.cells())
 
 
 def test_a_measurement_without_an_honest_error_has_no_interval_and_no_score():

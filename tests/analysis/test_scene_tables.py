@@ -156,6 +156,7 @@ def test_too_few_events_show_no_error():
     assert row["estimate"] == pytest.approx(20480 / 60)
     assert row["stderr"] is row["relative_stderr"] is row["bound"] is None
     assert (row["z"], row["test"]) == (0.0, "cluster-bound")
+    assert time_row(60, 90, 20480 / 20)["z"] < 0  # too many of them
     # 180 events in clusters of three are as good as 60.
     assert time_row(180, 540, 20480 / 180)["status"] == "too-few"
     row = time_row(300, 350, 20480 / 300)

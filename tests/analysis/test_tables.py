@@ -38,6 +38,7 @@ COST_ROW = {"stage": "dynamics", "radius": 1e-05, "events": 2**53 + 1, "seconds"
         (tables.CheckTable, lambda: [CHECK_ROW]),
         (tables.TheoryTable, lambda: tables.TheoryTable.rows(BOX, [0.3, 0.1])),
         (tables.GridTable, lambda: tables.GridTable.rows(Box(40.0, 0.6, discs=64), [0.1, 0.2])),
+        (tables.TrajectoryTable, lambda: tables.TrajectoryTable.rows(Box(1.5, 1), 0.1, 1)),
         (tables.TrajectoryTable, lambda: tables.TrajectoryTable.rows(Box(1.5, 1, discs=4), 0.1, 1)),
         (tables.MeanTimesTable, lambda: tables.MeanTimesTable.rows([LAWS[2].dynamics(RNG)])),
         (tables.AreasTable, lambda: tables.AreasTable.rows([LAWS[2].monte_carlo(RNG, 10**7)])),

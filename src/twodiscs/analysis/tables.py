@@ -194,7 +194,7 @@ def _area_row(point, event):
     expectations = [
         4 * theory.shell_expectation(scene, wall, walls[wall].epsilon) for wall in walls
     ]
-    probabilities = [min(e / m, 1.0) for e, m in zip(expectations, measures, strict=True)]
+    probabilities = [e / m for e, m in zip(expectations, measures, strict=True)]
     score = scores.shells_z(hits, point.right_and_top, point.samples, measures, probabilities)
     return _sampled_row(point, quantity, sampled, value, sum(expectations), score)
 
