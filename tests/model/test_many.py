@@ -30,6 +30,7 @@ def test_three_discs_fit_as_far_as_closed_forms_say(width):
     is_triangle = height > a * math.sqrt(3) / 2
     expected = min(triangle if is_triangle else zigzag, short / 2)
     assert largest_radius(3, width, 1.0) == pytest.approx(expected, rel=1e-13)
+    assert not Box(width, 1.0, discs=3).fits(largest_radius(3, width, 1.0))
 
 
 @pytest.mark.parametrize("discs", [2, 3, 4, 5, 8, 13, 64])

@@ -228,9 +228,11 @@ def test_energy_to_pass_one_above_the_other_is_that_of_the_cheaper_order():
     corner = Scene(1.5, 0.6, 0.25, radius_ratio=0.25, mass_ratio=0.25, field=8.0)
     assert corner.confined == (True, False)
     assert replace(corner, field=math.nextafter(8.0, 0)).confined == (False, False)
+    # Nor is no room in the corner, (h − σ)² + (r1 − r2)² = σ².
+    assert Scene(1.5, 0.5625, 0.25, radius_ratio=0.25).confined == (True, False)
 
 
 def test_friction_is_limited_by_the_time_along_the_shortest_side():
-    assert Scene(1.5, 1.0, 0.2, friction=1e6).friction == 1e6
-    with pytest.raises(InputError, match=r"the shortest side, which is 1000000\.0, not 1010000\.0"):
-        Scene(1.5, 1.0, 0.2, friction=1.01e6)
+    assert Scene(1.5, 0.5, 0.2, friction=2e6).friction == 2e6
+    with pytest.raises(InputError, match=r"the shortest side, which is 2000000\.0, not 2020000\.0"):
+        Scene(1.5, 0.5, 0.2, friction=2.02e6)
