@@ -161,7 +161,7 @@ def test_components_hops_and_confined_discs(scene):
 @given(
     st.sampled_from(["", "x", "y", "xy"]),
     st.floats(0.3, 3.0),
-    st.floats(0.2, 5.0),
+    st.just(1.0) | st.floats(0.2, 5.0),
     st.none() | st.floats(0.3, 3.0),
 )
 @settings(max_examples=200, deadline=None, derandomize=True)

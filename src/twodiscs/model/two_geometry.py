@@ -143,7 +143,6 @@ def _largest_with_effects(scene, without=""):
     squares = math.fsum(side * side for side in walls)
     squares += math.fsum(scene.side(axis) ** 2 / 4 for axis in scene.periodic)
     limits = [scene.shortest / max(1.0, ratio) / 2]
-    limits += [side / (1 + ratio) for side in walls]
     if n == 0:
         limits.append(math.sqrt(squares) / (1 + ratio))
     elif total**2 >= (n - 1) * squares:
