@@ -236,7 +236,8 @@ observe(lambda a, b: 1.0) → function must return a real number, or the same
 observe(lambda a, b: None) → 4096 replicas, not None: is its return missing?
 observe(lambda a, b: b) → an array with the fields x1, y1, x2, y2, u1, v1
 observe(lambda a, b: b['x1'].astype(str)) → of shape (4096,) and kind <U
-observe(lambda a, b: {'x': b['x1'], 'x_stderr': b['x1']}) → none of them another one with _stderr
+observe(lambda a, b: {'x': b['x1'], 'x_stderr': b['x1']}) → none of them time or another one with
+observe({'time': x1}) → must be texts, none of them time or another one with _stderr, not ['time']
 observe({1: x1}) → names of what function returns must be texts, none … with _stderr, not [1]
 observe({'x': x1, 'y': 1}) → function must take two arrays of states, not be {'x': <function
 observe({}) → function must take two arrays of states, not be {}

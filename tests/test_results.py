@@ -494,7 +494,7 @@ def test_averages_tell_and_count_their_replicas():
     with pytest.raises(td.InputError, match="sums must be those of all"):
         run.point({"all": {(0, 2): sums}})
     run = averages.ObserveRun(PAPER, 1, np.array([0]), 4096, None, names=("x", "x_stderr"))
-    with pytest.raises(td.InputError, match="none of them another one with _stderr"):
+    with pytest.raises(td.InputError, match="time or another one with _stderr"):
         run.point({"all": {(0, 1): (4096, np.zeros((1, 2)), np.ones((1, 2)))}})
 
 

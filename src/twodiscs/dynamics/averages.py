@@ -108,12 +108,12 @@ def _values(function, start, now):
 
 
 def check_names(names):
-    """Raise ``InputError`` unless these are different texts, with those of their errors too."""
+    """Raise ``InputError`` unless these are different texts, with their errors and the time too."""
     texts = all(isinstance(name, str) for name in names)
-    if not texts or len({*names, *(f"{name}_stderr" for name in names)}) < 2 * len(names):
+    if not texts or len({"time", *names, *(f"{name}_stderr" for name in names)}) <= 2 * len(names):
         raise InputError(
-            "names of what function returns must be texts, none of them another one with _stderr, "
-            f"not {quote([*names])}"
+            "names of what function returns must be texts, none of them time or another one with "
+            f"_stderr, not {quote([*names])}"
         )
 
 
