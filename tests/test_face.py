@@ -150,17 +150,19 @@ def test_a_measurement_without_an_honest_error_has_no_interval_and_no_score():
 
 def test_a_bound_that_says_nothing_is_no_perfect_match():
     row = {"quantity": "any_wall_time", "estimate": 1.0, "stderr": None, "exact": 2.0, "count": 3}
-    row |= {"expectation": 1.5, "bound": 0.5}
+    row |= {"expectation": 1.5, "bound": 0.5, "status": "too-few"}
     for z, test, known, text in (
         (0.0, "cluster-bound", None, "–"),
         (0.0, "exact-tail", None, "–"),
         (0.0, "normal", 0.0, "+0.00"),
         (-1.5, "cluster-bound", -1.5, "-1.50"),
     ):
-        found = measurement(PAPER, row | {"z": z, "test": test, "status": "too-few"})
+        found = measurement(PAPER, row | {"z": z, "test": test})
         assert (found.z, found.expectation, found.bound) == (known, 1.5, 0.5)
         assert found.cells()[5] == text
         assert ("z = " in str(found)) == (known is not None)
+        unseen = measurement(PAPER, row | {"estimate": None, "z": z, "test": test})
+        assert unseen.z == known
 
 
 def test_a_quantity_has_one_name(simulated, sampled):

@@ -131,9 +131,6 @@ class Measurement(Immutable):
 
     def __post_init__(self):
         check_choice("status", self.status, STATUSES)
-        if self.value is None or self.exact is None:
-            # The tables then have z = 0 if no event was expected, which compares nothing.
-            object.__setattr__(self, "z", None)
 
     @property
     def relative_stderr(self) -> float | Any:
