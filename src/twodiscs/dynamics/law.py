@@ -83,7 +83,7 @@ def divided(whole, first, second):
 
 def two_disc_law(scene):
     """Return the ``Law`` of a ``Scene``."""
-    m1, m2 = scene.masses[:2]
+    m1, m2 = scene.masses
     fractions = divided(1.0, m2, m1)
     halves = {
         f"half_{axis}{disc}": (scene.side(axis) - 2 * radius) / 2

@@ -54,10 +54,10 @@ def quiet_time(scene, hop, times=CLUSTER_PAUSE):
 def cluster_coefficient(sizes):
     """Return the fraction of hops that are passages as an ``Estimate``, ⟨1[n odd]/n⟩.
 
-    ``sizes`` are those of ``cluster_sizes``.
+    ``sizes`` are those of ``cluster_sizes``; the last entry, of an even n, has no passages.
     """
     n = np.arange(sizes.size)
-    odd, hops = (n % 2 == 1) & (n < sizes.size - 1), int(sizes.sum())
+    odd, hops = n % 2 == 1, int(sizes.sum())
     mean = float((sizes[odd] / n[odd]).sum()) / hops
     square = float((sizes[odd] / n[odd] ** 2).sum()) / hops
     return Estimate(mean, math.sqrt((square - mean * mean) / hops), hops)

@@ -203,9 +203,8 @@ def hop_sums(scene, hop, times, blocks, seed, first=0, on_surface=True):
     """
     times = np.array(times, float)
     scene, hop = hopping_along(scene, hop, "x")
-    falls, rises, hops, events = np.zeros((4, LANES))
     sums, begin = np.zeros((blocks, N_HOP_SUMS, times.size), np.int64), first * HOPS_PER_BLOCK
-    net = NetHops(times, on_surface, _axis(hop), falls, rises, hops, events, sums, begin)
+    net = NetHops(times, on_surface, _axis(hop), *np.zeros((4, LANES)), sums, begin)
     return sums, _followed(net, scene, hop, blocks, seed, first, on_surface)
 
 
@@ -217,7 +216,6 @@ def cluster_sizes(scene, hop, gap, blocks, seed, first=0):
     a time ``gap``. Arguments are otherwise as for ``hop_sums``.
     """
     scene, hop = hopping_along(scene, hop, "x")
-    falls, hops, events = np.zeros((3, LANES))
     most, sizes = float(LARGEST_CLUSTER), np.zeros(LARGEST_CLUSTER + 1, np.int64)
-    clusters = Clusters(float(gap), _axis(hop), most, falls, hops, events, sizes)
+    clusters = Clusters(float(gap), _axis(hop), most, *np.zeros((3, LANES)), sizes)
     return sizes, _followed(clusters, scene, hop, blocks, seed, first)

@@ -110,12 +110,11 @@ def record_intervals(
     if scene.is_plain:  # initial states are drawn on the surface of vertical hops only
         scene, hop = hopping_along(scene, hop, "y")
     horizontal = True if hop == "horizontal_hop" else None
-    to_come, age, interval, elapsed = np.zeros((4, lanes))
     finished, lane_of = np.zeros(lanes + 1), np.zeros(lanes + 1, np.int64)
     counts, totals = np.zeros((lanes, sums.shape[1]), np.int64), np.zeros((stop - first) * chains)
     recorded = Returns(
-        horizontal, float(returns), width, edges, wide, to_come, age, interval, elapsed, finished,
-        lane_of, counts, sums, totals, first * chains,
+        horizontal, float(returns), width, edges, wide, *np.zeros((4, lanes)),
+        finished, lane_of, counts, sums, totals, first * chains,
     )  # fmt: skip
     sampler = start_sampler(scene, surface=1 if horizontal is None else 0)
     follow(recorded, scene, sampler, seed, first, stop, chains, lanes, SWEEPS, going)

@@ -88,9 +88,8 @@ class Strip(NamedTuple):
 def strip_around(scene, hop, time):
     """Return the ``Strip`` of a ``time`` T of at most ``widest``."""
     within = scene.fastest * time
-    if scene.field:
-        # At this height less kinetic energy is left; the first, wider strip bounds it.
-        within *= math.sqrt(find_neck(scene, hop, within).most)
+    # In a field less kinetic energy is left at this height; the first, wider strip bounds it.
+    within *= math.sqrt(find_neck(scene, hop, within).most)
     return Strip(time, within, exact.fraction_near(scene, hop, within))
 
 
