@@ -171,7 +171,7 @@ td.intervals(PAPER, 'vertical_hop', 1, bins=[0, 1, 1]) → ascending edges from 
 td.starts(PAPER, 1e8) → number must be an integer from 1 to 15000000, not 100000000
 td.frames(PAPER, [0, 1], 1e8) → number must be an integer from 1 to 7500000, not 100000000
 td.observe(PAPER, x1, [1], 1e9 + 1) → replicas must be an integer from 1 to 1000000000, not
-td.observe(PAPER, x1, [1e3], 1e9) → at most 270… for times up to 1000, with 1e11
+td.observe(PAPER, x1, [1e3], 1e8) → at most 27081956 for times up to 1000, with 1e11
 td.observe(Scene(1.5, 1, 0.2, friction=2), x1, [1e9], 1) → times must be below 1.76e6, where 1e7
 td.transmission(PAPER, 'vertical_hop', 1e19) → hops must be an integer from 1 to 1000000000, not
 td.observe(PAPER, x1, [1], starts=td.starts(PAPER, 1)) → starts must be two states or more
@@ -230,7 +230,7 @@ observe(times=[0.5, True]) → times must be ascending numbers from 0 on, not [0
 observe(lambda a, b: [b['x1'], pd.to_timedelta(b['x1'])]) → units would be lost: return plain
 td.trajectory(PAPER).positions(1j) → times must be numbers from 0.0 to … not 1j
 observe(lambda a, b: b['x3']) → function must use the fields x1, y1, x2, …, but there is no field of
-observe(lambda a, b: 1.0) → function must return a real number, or the same
+observe(lambda a, b: 1.0) → a real number, or the same … 4096 replicas, not 1.0
 observe(lambda a, b: None) → 4096 replicas, not None: is its return missing?
 observe(lambda a, b: b) → an array with the fields x1, y1, x2, y2, u1, v1
 observe(lambda a, b: b['x1'].astype(str)) → of shape (4096,) and kind <U

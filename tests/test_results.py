@@ -401,7 +401,7 @@ def test_averages_over_states_have_honest_errors(tmp_path):
     assert found != td.observe(PAPER, seen, [0, 1, 7.5], 20000, seed=4)
     assert list(found.frame().columns) == [f"{n}_{k}" for n in ("mean", "stderr") for k in range(3)]
     given = np.sort(td.starts(PAPER, 5000), order="x1")  # more than a block; their means differ
-    found = td.observe(PAPER, lambda start, now: now["x1"], [0], starts=given)
+    found = td.observe(PAPER, lambda start, now: now["x1"].tolist(), [0], starts=given)
     error = given["x1"].std(ddof=1) / math.sqrt(5000)
     assert (found.replicas, found.mean[0]) == (5000, pytest.approx(given["x1"].mean()))
     assert list(found.frame().columns) == ["mean", "stderr"]

@@ -17,8 +17,8 @@ from marks import slow
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import all_pairs as many
 from twodiscs.dynamics.many import class_counts, many_rates
-from twodiscs.dynamics.runs import relative_errors
-from twodiscs.model.events import EVENT_AXES, EVENTS, SHELL_EVENTS, WALLS
+from twodiscs.dynamics.runs import DynamicsRun, relative_errors
+from twodiscs.model.events import EVENT_AXES, EVENTS, HOPS, SHELL_EVENTS, WALLS
 from twodiscs.model.many_geometry import CELL_DISCS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import insertions, many_initial_states
@@ -127,6 +127,14 @@ def test_orders_are_those_of_the_ergodic_components(scene):
         order = np.take_along_axis(order, (np.argmin(order, axis=0) + np.arange(n)[:, None]) % n, 0)
     orders = math.factorial(n) // (n if scene.periodic else 1)
     assert np.unique(order, axis=1).shape[1] * scene.ergodic_components == orders
+
+
+def test_hops_whose_rate_is_not_known_have_the_whole_budget():
+    """Insertions find no room for twelve discs."""
+    crowded, hop = Scene(1.5, 1.0, 0.15, discs=12), HOPS[0]
+    assert many_rates.expected_rate(crowded, hop) == 0
+    run = DynamicsRun(crowded, {hop: 0.1}, 10**9, 1).components["all"]
+    assert 1 <= run.planned * run.block_events / 10**9 < 1.07
 
 
 def test_states_of_one_block_at_a_time(monkeypatch):

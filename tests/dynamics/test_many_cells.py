@@ -20,6 +20,7 @@ from twodiscs.dynamics import rows
 from twodiscs.dynamics.many import all_pairs as many
 from twodiscs.dynamics.many import cell_list as many_cells
 from twodiscs.dynamics.many import class_counts, many_intervals, many_paths, many_rates
+from twodiscs.model.events import EVENTS, HOPS, WALLS
 from twodiscs.model.many_geometry import CELL_DISCS
 from twodiscs.sampling.many import chains, many_initial_states
 from twodiscs.sampling.many.cell_grid import make_grid
@@ -98,13 +99,17 @@ def test_a_log_has_room_for_pairs_of_a_row_or_a_column(discs, stretches):
         assert log.times.size < max(200 * discs, many_paths.LOG_ENTRIES + 1)
 
 
-def test_which_kernel_runs():
-    """By the number of discs."""
+def test_which_kernel_runs(monkeypatch):
+    """By the number of discs, and by whether a hop is counted."""
     small, large = (td.Scene(15.0, 1.0, 0.1, discs=n) for n in (CELL_DISCS - 1, CELL_DISCS))
     assert many_initial_states.large_grid(small) is None
     assert many_initial_states.large_grid(large) is not None
     assert [make_grid(scene).x.size for scene in [*SHORT, *TORI]] == [4, 3, 4, 3]
     assert make_grid(TORI[0]).y.size == 3
+    monkeypatch.setattr(class_counts, "run_classes", lambda *_, hops: (hops,))
+    monkeypatch.setattr(class_counts, "combine_classes", bool)
+    for events in (EVENTS, HOPS[:1], WALLS):
+        assert class_counts.run_blocks(large, events, 1, 0, 1, 1.0) == (events != WALLS)
 
 
 #: Scenes in which both kernels go there and back.
@@ -207,20 +212,22 @@ def test_a_small_budget_has_an_error_bar(discs, packing):
 
 @pytest.mark.parametrize("budget", [1e6, 1.2e6, 1.6e6, 4e6, 1e8])
 @pytest.mark.parametrize("discs", [64, 1024, 2048, 4096])
-def test_a_budget_has_room_for_the_replicas_of_an_error_or_for_few(discs, budget):
+@pytest.mark.parametrize("friction", [0.0, 0.01])
+def test_a_budget_has_room_for_the_replicas_of_an_error_or_for_few(discs, budget, friction):
     """In whole blocks; few replicas have no error, and 150 of them are a budget that is enough."""
-    scene = td.Scene(discs**0.5, discs**0.5, 0.3, discs=discs, periodic="xy")
+    scene = td.Scene(discs**0.5, discs**0.5, 0.3, discs=discs, periodic="xy", friction=friction)
+    work = many_rates.work_per_event(scene)
 
     def planned(budget):
         duration = many_rates.replica_duration(scene, budget)
         each = many_rates.events_per_disc(scene, duration)
         block = many_rates.block_replicas(scene, duration)
-        blocks = max(1, int(budget / (block * each * discs)))
+        blocks = max(1, int(budget / work / (block * each * discs)))
         assert each >= 0.9 * discs / many_rates.DISCS_PER_EVENT
-        return block * blocks, block * blocks * each * discs
+        return block * blocks, block * blocks * each * discs * work
 
     replicas, events = planned(budget)
-    assert (replicas < 100) == (budget < 0.9 * 100 * discs**2 / many_rates.DISCS_PER_EVENT)
+    assert (replicas < 100) == (budget < 0.9 * 100 * work * discs**2 / many_rates.DISCS_PER_EVENT)
     assert planned(max(150 / replicas, 1) * events)[0] >= 100
 
 
@@ -249,8 +256,11 @@ def test_crowded_discs_have_replicas_of_one_length():
     assert six == pytest.approx(5 * three)
     # A kick has its work.
     few, hop = td.Scene(1.5, 1.0, 0.1, discs=4), "vertical_hop"
-    both = [many_intervals.events_per_interval(replace(few, friction=f), hop) for f in (0.0, 3.0)]
-    assert both[1] == pytest.approx(both[0] * many_rates.work_per_event(replace(few, friction=3.0)))
+    work = many_rates.work_per_event(kicked := replace(few, friction=3.0))
+    both = [many_intervals.events_per_interval(scene, hop) for scene in (few, kicked)]
+    assert both[1] == pytest.approx(both[0] * work)
+    times = [many_rates.replica_duration(scene) for scene in (few, kicked)]
+    assert 1 / math.sqrt(2) < times[1] * work / times[0] < math.sqrt(2)
     channel = td.Scene(8.0, 0.41, 0.2, discs=CELL_DISCS)
     for event in ("any_wall", "disc_collision"):
         assert many_rates.expected_rates(channel)[event] == pytest.approx(td.rate(channel, event))

@@ -135,10 +135,10 @@ def test_the_coefficient_does_not_depend_on_the_gap(discs, blocks):
     ("scene", "hop", "said"),
     [
         (Scene(48, 1, 0.2, discs=64), HOP, r"^discs must be at most 19 for passages, not 64$"),
-        (Scene(3, 1, 0.26, discs=4), HOP, "must be open for passages, but is blocked at radius"),
-        (Scene(3, 1, 0.26, discs=4, periodic="x"), HOP, "must be open for passages, but is"),
+        (Scene(3, 1, 0.25, discs=4), HOP, "must be open for passages, but is blocked at radius"),
+        (Scene(3, 1, 0.25, discs=4, periodic="x"), HOP, "must be open for passages, but is"),
         (Scene(3, 1, 0.2, discs=4, periodic="x"), "vertical_hop", "along the only periodic axis"),
-        (Scene(4, 1, 0.22, discs=14), HOP, "fewer than 0.0001 of the proposals of a hop have no"),
+        (Scene(4, 1, 0.15, discs=14), HOP, "fewer than 0.0001 of the proposals of a hop have no"),
     ],
 )
 def test_what_cannot_be_followed_is_refused_in_a_sentence(scene, hop, said, monkeypatch):

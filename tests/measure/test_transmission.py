@@ -67,9 +67,10 @@ def test_a_plateau_is_what_passages_leave(law):
     higher = transmission.plateau(Estimate(fallen + step, 0.01, 9), time, mean, law).value
     assert found.stderr == pytest.approx(0.01 * (higher - kappa) / step, rel=1e-3)
     # Up to a tenth of a passage in the time.
-    assert transmission.plateau(Estimate(0.5, 0.01, 9), 1.0, 5.0, law) is not None
-    assert transmission.plateau(Estimate(0.5, 0.01, 9), 1.0, 4.99, law) is None
-    assert transmission.plateau(Estimate(-0.01, 0.01, 9), time, mean, law) is None
+    assert transmission.plateau(Estimate(0.5, 0.01, 9), 2.0, 10.0, law) is not None
+    assert transmission.plateau(Estimate(0.5, 0.01, 9), 2.0, 9.98, law) is None
+    for least in (0.0, -0.01):
+        assert transmission.plateau(Estimate(least, 0.01, 9), time, mean, law) is None
 
 
 @pytest.mark.parametrize(("x", "others"), [(0.01, 0.0), (0.3, 0.0), (0.3, 4 / 3)])
