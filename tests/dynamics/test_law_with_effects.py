@@ -33,6 +33,7 @@ EPS = 2.0**-52
 SCENES = effect_scenes.SCENES | {
     "dense": Scene(1.5, 1.0, 0.38),
     "stack": Scene(1.5, 1.0, 0.3755, field=0.5),
+    "tube": Scene(1.5, 1.0, 0.2, depth=1.2, mass_ratio=2.0, periodic="z"),
     "all": effect_scenes.ALL,
 }
 

@@ -17,7 +17,6 @@ from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.two import strip
 from twodiscs.model.events import EVENT_AXES, HOPS
 from twodiscs.model.scene import Scene
-from twodiscs.points.dynamics_point import StripCount
 from twodiscs.points.estimates import stratified_mean
 from twodiscs.sampling.initial_states import STATE_ROWS, draw_states, start_sampler, states
 from twodiscs.sampling.streams import open_stream
@@ -103,8 +102,7 @@ def test_starts_fill_the_strata_as_their_exact_shares_say_and_hops_have_the_exac
     shares = strip.stratum_fractions(scene, hop, band)
     found, _ = strip.run_blocks(scene, hop, band, 4, 0, 100)
     check_rate(scene, hop, band, found)
-    told = StripCount.of(strip.constants(scene, hop) | {"sums": {(0, 100): (found, 0)}}).estimate()
-    assert abs(told.value - 1 / exact.rate(scene, hop)) < 5 * told.stderr
+    assert strip.constants(scene, hop)["duration"] == 2 * band.time
     starts, *_ = found
     assert starts.sum() == 100 * REPLICAS
     expected = starts.sum() * shares

@@ -7,6 +7,7 @@ import inspect
 import math
 import re
 from dataclasses import replace
+from unittest.mock import Mock
 
 import pytest
 from effect_scenes import SCENES
@@ -16,9 +17,9 @@ from hypothesis import strategies as st
 from twodiscs.dynamics import paths, runs
 from twodiscs.dynamics.engine import Engine, find_engine
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.two import path, strip, two_rates
+from twodiscs.dynamics.two import event_counts, path, strip, two_rates
 from twodiscs.model.checks import LONGEST_LENGTH, SHORTEST_LENGTH, InputError
-from twodiscs.model.events import WALLS
+from twodiscs.model.events import EVENTS, WALLS
 from twodiscs.model.scene import Box
 from twodiscs.model.two_geometry import LEAST_DISTANCE
 from twodiscs.sampling.initial_states import require_initial_states
@@ -46,12 +47,19 @@ def scene_of(width, height, effects, share):
     return box.scene(share * box.largest_radius)
 
 
-@pytest.mark.parametrize("name", ["channel", "rough"])
-def test_a_run_is_planned_with_the_hits_of_all_walls(name):
-    """Those of both discs at both walls of an axis count as one event."""
+@pytest.mark.parametrize("name", ["channel", "rough", "balls", "field", "unequal"])
+def test_a_run_is_planned_and_counted_with_the_hits_of_all_walls(name, monkeypatch):
+    """Those of both discs at both walls of an axis count as one event.
+
+    If these events have all hits, the kernel may add them up, but not without the walls of z.
+    """
     scene = SCENES[name]
     rates = [two_rates.expected_rate(scene, wall) for wall in WALLS if scene.is_possible(wall)]
-    assert sum(rates) == pytest.approx(two_rates.expected_rate(scene, "any_wall"))
+    have_all = sum(rates) == pytest.approx(two_rates.expected_rate(scene, "any_wall"))
+    assert have_all == (name in ("channel", "rough"))
+    monkeypatch.setattr(event_counts, "follow", followed := Mock())
+    event_counts.run_blocks(scene, EVENTS, 1, 0, 1, 1.0)
+    assert have_all or followed.mock_calls[0].args[0].tracked[2]
 
 
 @pytest.mark.parametrize("width", [1.0, 1.5])
