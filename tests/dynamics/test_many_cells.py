@@ -242,6 +242,11 @@ def test_crowded_discs_have_replicas_of_one_length():
     block = many_rates.block_replicas(roomy, many_rates.replica_duration(roomy))
     assert many_rates.block_replicas(roomy) == block
     assert many_paths.trajectory_rate(TORI[1]) == many_rates.expected_event_rate(TORI[1])
+    kicked = td.Scene(3.0, 2.0, 0.2, discs=5, friction=1000.0)
+    work = many_rates.work_per_event(kicked)
+    less = many_rates.replica_duration(replace(kicked, friction=0)) / work
+    assert work > 10
+    assert 0.5 < many_rates.replica_duration(kicked) / less < 2
     # A chain lasts as long as a replica: at least 256 intervals, at most 64 windows of these.
     for scene, hop, window in (
         (BORDER[0], "vertical_hop", many_rates.replica_duration(BORDER[0])),

@@ -266,3 +266,7 @@ def test_a_budget_of_intervals_has_the_whole_blocks_that_it_can_pay(blocks):
     assert runs.IntervalsRun(scene, hop, 10**9, 5, budget).components["all"].planned == int(blocks)
     with pytest.raises(td.InputError, match=r"^budget must allow for 65536 intervals"):
         runs.IntervalsRun(scene, hop, 10**9, 5, int(0.999 * events))
+    # An error starts with the number that it needs if intervals spread as much as their mean.
+    wanted = {"hop": hop, "seed": 5, "name": "", "number": 7, "budget": 10**12}
+    numbers = [runs.IntervalsRun.of(scene, wanted | {"error": e}).intervals for e in (None, 0.125)]
+    assert numbers == [7, 64]
