@@ -231,6 +231,11 @@ def test_a_budget_has_room_for_the_replicas_of_an_error_or_for_few(discs, budget
     assert planned(max(150 / replicas, 1) * events)[0] >= 100
 
 
+def test_a_log_has_room_for_the_spins_of_rough_discs():
+    shapes = [many_cells.new_log(3, rough).states.shape for rough in (None, 0.4)]
+    assert shapes == [(3, 2, 4), (3, 2, 5)]
+
+
 def test_crowded_discs_have_replicas_of_one_length():
     """Whatever the budget, with the most events of a replica. Rates of a channel are exact."""
     box = td.Box(64.0, 64.0, discs=4096, periodic="xy")
