@@ -145,6 +145,7 @@ td.scan(1.5, 1, 0.2, field=[1, 'x']) → field must be a positive number, or 0, 
 td.scan(1.5, 1, 0.2, field=[0, 1], name='a') → field must differ, because one scene, or one name
 td.scan(1.5, 1, 0.2, 0.1, measure=td.volume) → measure must be a function of a scene, without
 td.scan(1.5, 1, 0.2, measure='volume') → measure must be a function … calls, not 'volume'
+td.scan(1.5, 1, 0.2, measure=lambda s: td.observe(s, {'radius': x1}, 0, 9)) → the name radius, which
 td.scan(1.5, 1, 0.2, measure=td.volume) → measure must return a result of its scene, of one function
 td.scan(1.5, 1, [0.1, 0.2], measure=lambda s: td.sample(PAPER, 1)) → of its scene, of one function
 td.intervals(PAPER, 'wall') → hop must be one of vertical_hop, horizontal_hop, not 'wall'

@@ -188,7 +188,8 @@ def scan(
     Raises
     ------
     InputError
-        As ``simulate``, for equal values of a parameter, and for an unknown effect.
+        As ``simulate``, for equal values of a parameter, for an unknown effect, and for an average
+        of ``observe`` that has the name of a parameter.
 
     Examples
     --------
@@ -219,7 +220,7 @@ def scan(
             "measure must be a function of a scene, without error, duration, seed, budget, events, "
             f"name, cores and progress, which it gives to what it calls, not {quote(measure)}"
         )
-    results = []
+    results, names = [], ("radius", *scanned)
     for scene in scenes:
         result = measure(scene) if measure else make_simulation(scene, **asked)
         known = isinstance(result, Result) and not isinstance(result, Scan)
@@ -228,6 +229,7 @@ def scan(
                 "measure must return a result of its scene, of one function such as diffusion or "
                 f"sample, not {quote(result)}"
             )
+        if taken := [name for name in getattr(result, "names", ()) if name in names]:
+            raise InputError(f"no average may have the name {taken[0]}, which is scanned")
         results.append(result)
-    names = ("radius", *scanned)
     return Scan(results, {tuple(of[n] for n in names): why for of, why in refused}, names)
