@@ -210,6 +210,7 @@ td.simulate(Scene(1, 9, 0.24999999, discs=20, periodic='x'), 1) → not exceed 0
 td.plot(td.trajectory(PAPER)[['time']]) → must have at least two rows and the column event, but has
 td.free_energy('a') → of must be a Scene or a result of sample, not 'a'
 td.diffusion(PAPER, [1]) → axis must be periodic in the scene for diffusion
+td.diffusion(RING, time=[1]) → argument 'time'; did you mean times?
 td.diffusion(RING, [1], axis='y') → axis must be one of x for
 td.diffusion(RING, [0, 1]) → times must be above 0 for diffusion
 start(x1=0.1 + 1e-8) → have the discs apart, with 0.4 or more between their centres, not 0.3999999
@@ -227,6 +228,7 @@ observe(times={1: 0, 0: 0}) → times must be ascending numbers from 0 on, not [
 observe(times=np.ma.masked_array([1, 2], [0, 1])) → from 0 on, not a MaskedArray object
 observe(lambda a, b: np.ma.masked_less(b['x1'], 0)) → 4096 replicas, not an array with masked values
 observe(times=np.array([10], 'm8[ms]')) → not a ndarray object: give numbers without units
+observe(times=np.array([0.5, '1'], object)) → times must be ascending numbers from 0 on, not
 observe(times=[0.5, True]) → times must be ascending numbers from 0 on, not [0.5, True]
 observe(lambda a, b: [b['x1'], pd.to_timedelta(b['x1'])]) → units would be lost: return plain
 td.trajectory(PAPER).positions(1j) → times must be numbers from 0.0 to … not 1j

@@ -80,11 +80,16 @@ def test_cells_have_all_digits_one_truth_value_and_lines_that_end_alike(tmp_path
 
 @pytest.mark.parametrize(
     ("change", "message"),
-    [*(({"seconds": wrong}, "seconds must be a float") for wrong in (np.nan, "1.0", True)),
-     *(({"stage": wrong}, "stage must be a str") for wrong in ("", 3)),
-     ({"events": 1.0}, "events must be a int"),
-     ({"colour": 1}, r"columns of cost\.csv, but see colour")],
-)  # fmt: skip
+    [
+        ({"seconds": np.nan}, "seconds must be a float"),
+        ({"seconds": "1.0"}, "seconds must be a float"),
+        ({"seconds": True}, "seconds must be a float"),
+        ({"events": 1.0}, "events must be a int"),
+        ({"stage": ""}, "stage must be a str"),
+        ({"stage": 3}, "stage must be a str"),
+        ({"colour": 1}, r"columns of cost\.csv, but see colour"),
+    ],
+)
 def test_a_wrong_cell_writes_nothing(tmp_path, change, message):
     with pytest.raises(ValueError, match=message):
         tables.CostTable.write(tmp_path / "x.csv", [COST_ROW, {**COST_ROW, **change}])

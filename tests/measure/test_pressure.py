@@ -110,6 +110,7 @@ def test_measured_pressures_are_the_exact_ones(name, recwarn):
     # One measured number over a known one.
     due = pressure.u / found["ideal_pressure"].u
     assert (found["compressibility_factor"].u - due).std_dev < 1e-9 * due.std_dev
+    assert found["ideal_pressure"].count == 0
     assert not recwarn.list
     for quantity, exact in td.pressure(scene).items():
         one = found[quantity]

@@ -228,6 +228,8 @@ def test_energy_to_pass_one_above_the_other_is_that_of_the_cheaper_order():
     corner = Scene(1.5, 0.6, 0.25, radius_ratio=0.25, mass_ratio=0.25, field=8.0)
     assert corner.confined == (True, False)
     assert replace(corner, field=math.nextafter(8.0, 0)).confined == (False, False)
+    # Nor is no room in the corner, (h − σ)² + (r1 − r2)² = σ².
+    assert Scene(1.5, 0.5625, 0.25, radius_ratio=0.25).confined == (True, False)
 
 
 def test_friction_is_limited_by_the_time_along_the_shortest_side():
