@@ -131,6 +131,11 @@ def test_bursts_in_corners_scale_as_the_stays():
     left = (1 - 2 * 0.5 * 0.6) ** 2  # the density at the top over that at the bottom
     assert top / right == pytest.approx(left / (1 + left), rel=1e-9)
     assert clusters.corner_variance(replace(ROUGH, field=0.9), "top_wall", 1e-3) == 0
+    # A heavy disc is slow, and falls as a light one in a stronger field.
+    heavy, light = replace(ROUGH, field=0.2, mass_ratio=4.0), replace(ROUGH, field=0.8)
+    both, one = (clusters.corner_variance(heavy, wall, 1e-3) for wall in ("any_wall", "right_wall"))
+    due = clusters.corner_variance(light, "right_wall", 1e-3) / 2
+    assert both - 4 * one == pytest.approx(due, rel=1e-9)
     small = [Scene(1.5, 1.0, 0.01, moment_of_inertia=0.5, field=f) for f in (0.0, 1e-6, 1e-60)]
     one, *weak = (clusters.corner_variance(scene, "any_wall", 1e-3) for scene in small)
     assert weak == pytest.approx([one] * 2, rel=1e-2)

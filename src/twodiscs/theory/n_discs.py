@@ -36,7 +36,7 @@ def takes_minutes(scene):
     These are channels in which A is near a length at which S is stationary (see ``channel``). For
     eight discs or more the terms of the inverse fall fast: .3 s where four discs take 36 s.
     """
-    if not 2 < scene.discs < 8 or exact_method(scene) != "channel":
+    if scene.discs > 7 or exact_method(scene) != "channel":
         return False
     length = scene.width if is_ordered(scene) else scene.height
     return length < 1.1 * scene.discs * 2 * scene.radius
