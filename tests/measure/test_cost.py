@@ -302,6 +302,17 @@ def test_all_walls_have_the_price_of_their_own_shell_with_effects():
     assert variance * sampler.block == pytest.approx(1 / due - 1)
 
 
+@pytest.mark.parametrize(("more", "rel"), [(["volume"], 0.02), ([], 0.15)])
+def test_all_walls_have_the_price_of_two_shells_that_overlap(more, rel):
+    """Samples in one shell are valid, so more of them are in the other one than of all samples."""
+    scene, asked = td.Scene(1.5, 1.0, 0.3), ["right_wall_area", "top_wall_area", *more]
+    sampler = montecarlo.samplers(scene)["rejection"](scene, asked, 0.5, 0)
+    variance, _ = cost.variances(scene, sampler, None, 1)["any_wall_area"]
+    found = td.sample(scene, 1e6, quantities=[*asked, "any_wall_area"], shell=0.5)
+    due = found["any_wall_area"].relative_stderr ** 2 * found.rows[0]["samples"]
+    assert variance * sampler.block == pytest.approx(due, rel=rel)
+
+
 def test_a_run_has_its_first_round_whatever_is_asked_and_the_replicas_of_bursts():
     pilot = cost.Pilot(1e-3, 1e5, 1024, {"disc_collision": 0.1}, 32)
     for error, blocks in ((1.0, 32), (0.1, 32), (0.02, 32), (0.001, ROUND_MARGIN * 1e4)):
