@@ -6,6 +6,7 @@ Without it a forecast could promise an error or a time that no run has.
 import math
 import platform
 from dataclasses import replace
+from functools import partial
 from itertools import count
 from unittest.mock import Mock, call
 
@@ -324,6 +325,10 @@ def test_a_run_has_its_first_round_whatever_is_asked_and_the_replicas_of_bursts(
     rough = td.Scene(1.5, 1.0, 0.24999, moment_of_inertia=0.1)
     needed = exact.replicas_needed(rough, "disc_collision", 0.02) / 1024
     assert needed > 8
+    # A run plans them if its budget can pay for all of them, and none if it can pay for some.
+    run = partial(DynamicsRun, rough, {"disc_collision": 0.02}, seed=1)
+    planned = [run(budget=budget).components["all"].planned for budget in (10**6, 10**14)]
+    assert planned == [1, math.ceil(needed)]
     # Initial states in a strip are in the neck, so it needs no others.
     errors = dict.fromkeys(("disc_collision", "top_wall", "horizontal_hop"), 0.01)
     pilot = pilot._replace(first_round=8, errors=errors)
