@@ -277,6 +277,9 @@ def distribution_cases():
 
 CASES = [*cases()]
 
+#: Figures whose axes leave out data near a limit; the rates of hops leave out late ones.
+CUT = "diffusion", "tails", "thresholds"
+
 
 @pytest.mark.parametrize(
     ("name", "panel", "look", "due"),
@@ -288,6 +291,13 @@ def test_symbols_and_error_bars_are_those_of_the_table(name, panel, look, due):
     shown = sorted((bars if has_bars else points)(drawn(name)[panel], *look))
     assert len(shown) == len(due)
     np.testing.assert_allclose(shown, sorted(due), rtol=1e-7 if has_bars else 1e-15)
+    if name not in CUT:
+        axes = drawn(name)[panel]
+        for values, ends in zip(
+            zip(*shown, strict=True), (axes.get_xlim(), axes.get_ylim()), strict=False
+        ):
+            assert not any(value < min(ends) for value in values)
+            assert not any(value > max(ends) for value in values) or panel == "rates"
 
 
 @pytest.mark.parametrize("name", ["tails", "thresholds", "friction", "stability_of_runs"])

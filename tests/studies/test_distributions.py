@@ -13,6 +13,7 @@ import mpmath
 import numpy as np
 import pytest
 from factory import BOX, empty, of, written
+from scipy.stats import chi2, norm
 
 from twodiscs.analysis.scores import student_deviate
 from twodiscs.model.events import HOPS
@@ -47,7 +48,7 @@ def test_rate_maximizes_the_likelihood(rate):
     """With bins and censored times: the zero of the derivative and the curvature, by mpmath."""
     chances = -np.expm1(-rate * np.diff(EDGES)) * (1 + 0.1 * np.cos(np.arange(14)))
     bins = bins_of(EDGES, chances, 10**6)
-    found, _, _, degrees = distributions.constant_hazard(bins)
+    found, _, pearson, degrees = distributions.constant_hazard(bins)
     with mpmath.workdps(40):
 
         def log_likelihood(x, mean=False):
@@ -64,6 +65,10 @@ def test_rate_maximizes_the_likelihood(rate):
     assert found.value == pytest.approx(float(due), rel=1e-12)
     assert found.stderr == pytest.approx(float(1 / mpmath.sqrt(curvature)), rel=1e-12)
     assert (found.n, degrees) == (sum(one.count for one in bins), 13)
+    alive, counts = (np.array([getattr(one, name) for one in bins]) for name in ("alive", "count"))
+    ending = -np.expm1(-found.value * np.diff(EDGES))
+    deviations = (counts - alive * ending) / np.sqrt(alive * ending * (1 - ending))
+    assert pearson == pytest.approx(deviations @ deviations)
 
 
 def test_a_hazard_that_falls_slowly_shows_in_the_trend():
@@ -120,6 +125,13 @@ def test_what_is_measured_meets_what_is_exact(box, radius, hop):
     assert square["estimate"] == pytest.approx(2 * passage["reference"] / mean - 1)
     assert square["stderr"] == pytest.approx(2 * passage["reference_stderr"] / mean)
     assert (passage["z"] is None) == (tail_constant(scene, hop) > 0)
+    # The late hazard against 1/τ, and whether it is constant.
+    if rate := by_name.get(("rate", False)):
+        mean_rate, trend = 1 / rows[0]["reference"], by_name["trend", False]
+        assert rate["z"] * rate["stderr"] == pytest.approx(rate["estimate"] - mean_rate)
+        assert rate["p"] == pytest.approx(chi2.sf(rate["chi2"], rate["degrees"]))
+        assert trend["z"] * trend["stderr"] == pytest.approx(trend["estimate"])
+        assert trend["p"] == pytest.approx(2 * norm.sf(abs(trend["z"])))
 
 
 def test_radii_near_the_threshold():

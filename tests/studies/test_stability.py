@@ -246,10 +246,19 @@ def test_the_audit_sees_what_is_wrong():
     assert audited([GOOD], shortest=1000.0)[4][0]
 
 
-def test_a_gap_has_the_unit_of_the_longer_side(monkeypatch):
-    nearest, nothing = np.array([0.401**2]), np.zeros(1)
-    monkeypatch.setattr(stability, "audit", lambda *given: (nearest, *[nothing] * 4))
-    assert stability.run(td.Scene(3.0, 1.0, 0.2), 1, 1)["smallest_gap"] == pytest.approx(0.001 / 2)
+@pytest.mark.parametrize(("far_x", "far_y", "excess"), [(1.31, 0, 0.01 / 2), (0, 0.31, 0.01)])
+def test_distances_have_the_units_of_the_sides_and_a_window_its_least_time(
+    far_x, far_y, excess, monkeypatch
+):
+    """A gap has the unit of the longer side; a window of 10 events takes 0.1 mean times."""
+    scene, given = td.Scene(3.0, 1.0, 0.2), []
+    seen = np.array([[0.401**2], [0.5], [far_x], [far_y], [0]])
+    monkeypatch.setattr(stability, "audit", lambda *these: given.append(these) or seen)
+    found = stability.run(scene, 10 * stability.STATE_LANES, 1)
+    assert (found["smallest_gap"], found["excess"]) == pytest.approx((0.001 / 2, excess))
+    ((_, windows, window, _, least),) = given
+    assert (windows, window, found["events"]) == (1, 10, 10 * stability.STATE_LANES)
+    assert least == pytest.approx(0.01 * 10 / exact.event_rate(scene))
 
 
 def test_events_retraced_are_those_the_exponent_allows(monkeypatch):
@@ -261,6 +270,8 @@ def test_events_retraced_are_those_the_exponent_allows(monkeypatch):
     assert len(judged) == 2 * len(stability.ordinary_radii(box))
     assert all(row["passed"] for row in judged)
     assert all(row["value"] > 0 for row in rows)
+    # Logarithms of errors scatter by less than ten, and there are 1000 of them.
+    assert all(row["stderr"] < 0.3 * row["value"] for row in of(rows, quantity="return_error"))
     # In a box of 1e6 × 1e-6 the discs do not meet for millions of events.
     for row in stability.reversal_rows(td.Box(1e6, 1e-6), seed=3):
         assert (row["status"], row["value"], row["passed"]) == ("long", None, None)

@@ -151,8 +151,8 @@ SAMPLERS_BY_NAME = {"rejection": montecarlo.prism_sampler, "conditioned": montec
 
 
 def samples_method(scene, seed, quantity, fraction=None, name="rejection"):
-    """Return the ``Method`` of samples of the prism, or ``name``; an area has a shell."""
-    sampler = SAMPLERS_BY_NAME[name](scene, [quantity], fraction or 0.5, seed)
+    """Return the ``Method`` of samples of the prism, or ``name``; only an area has a shell."""
+    sampler = SAMPLERS_BY_NAME[name](scene, [quantity], fraction, seed)
     event = quantity.removesuffix("_area")
     true, thickness, bias = exact.volume(scene), None, 0.0
     if quantity != "volume":
