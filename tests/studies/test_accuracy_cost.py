@@ -280,6 +280,7 @@ def test_c_by_distance_is_drawn_for_each_method_and_quantity(rows, panels):
     for panel in ("dynamics", "strips", "rejection", "conditioned"):
         own = [row for row in of(rows, part="radius") if row["method"].endswith(panel)]
         assert own
+        assert panels[panel].get_title("left").endswith(f")  {panel}")
         for quantity in {row["quantity"] for row in own}:
             due = {(row["distance"], row["c"]) for row in of(own, quantity=quantity)}
             assert points(panels[panel], *looks[quantity]) == due

@@ -65,17 +65,16 @@ def test_rate_maximizes_the_likelihood(rate):
     assert found.value == pytest.approx(float(due), rel=1e-12)
     assert found.stderr == pytest.approx(float(1 / mpmath.sqrt(curvature)), rel=1e-12)
     assert (found.n, degrees) == (sum(one.count for one in bins), 13)
-    alive, counts = (np.array([getattr(one, name) for one in bins]) for name in ("alive", "count"))
-    ending = -np.expm1(-found.value * np.diff(EDGES))
-    deviations = (counts - alive * ending) / np.sqrt(alive * ending * (1 - ending))
-    assert pearson == pytest.approx(deviations @ deviations)
+    count, alive = np.array([one[-2:] for one in bins]).T
+    lasting = np.exp(-found.value * np.diff(EDGES))
+    due = (count - alive * (1 - lasting)) ** 2 / (alive * lasting * (1 - lasting))
+    assert pearson == pytest.approx(due.sum())
 
 
 def test_a_hazard_that_falls_slowly_shows_in_the_trend():
     chances = -np.expm1(-0.4 * ((EDGES[1:] + EDGES[:-1]) / 12) ** -0.2 * np.diff(EDGES))
-    _, trend, chi2, degrees = distributions.constant_hazard(bins_of(EDGES, chances, 10**6))
+    _, trend, _, _ = distributions.constant_hazard(bins_of(EDGES, chances, 10**6))
     assert trend.value == pytest.approx(-0.2, abs=0.02)
-    assert chi2 > 3 * degrees
 
 
 def test_bins_of_a_hazard_follow_one_another():
@@ -130,8 +129,7 @@ def test_what_is_measured_meets_what_is_exact(box, radius, hop):
         mean_rate, trend = 1 / rows[0]["reference"], by_name["trend", False]
         assert rate["z"] * rate["stderr"] == pytest.approx(rate["estimate"] - mean_rate)
         assert rate["p"] == pytest.approx(chi2.sf(rate["chi2"], rate["degrees"]))
-        assert trend["z"] * trend["stderr"] == pytest.approx(trend["estimate"])
-        assert trend["p"] == pytest.approx(2 * norm.sf(abs(trend["z"])))
+        assert trend["p"] == pytest.approx(2 * norm.sf(abs(trend["estimate"]) / trend["stderr"]))
 
 
 def test_radii_near_the_threshold():

@@ -69,8 +69,7 @@ def name_radii(rows):
         if row["case"] in names:
             texts[key] = rf"${names[row['case']]}\,{_power(row['distance'])}$"
         else:
-            text = panels.mathtext if row["case"] == "ordinary" else rounded
-            texts[key] = f"$r={text(row['radius'])}$"
+            texts[key] = f"$r={panels.mathtext(row['radius'])}$"
     return texts
 
 
