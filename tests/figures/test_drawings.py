@@ -45,8 +45,10 @@ def test_the_regimes_have_the_areas_of_their_hops(box):
     for axes in draw("integration_regimes", box, {}).axes:
         wide, high = axes.get_xlim()[1], axes.get_ylim()[1]
         areas = exact.areas(box.scene((box.width - wide) / 2))
-        arc = next(patch for patch in axes.patches if isinstance(patch, Arc))
+        arc, *marked = (patch for patch in axes.patches if isinstance(patch, Arc))
         sigma = arc.width / 2
+        angles = {arc.theta1, arc.theta2} - {0, 90}
+        assert {(one.theta1, one.theta2) for one in marked} == {(0, angle) for angle in angles}
         assert sigma == pytest.approx(box.width - wide, rel=1e-12)
         for angle, along_x in ((arc.theta1, False), (arc.theta2, True)):
             x, y = (sigma * f(math.radians(angle)) for f in (math.cos, math.sin))

@@ -219,8 +219,14 @@ def test_times_approach_the_end_of_their_hop():
     """The panel beneath: curves, estimates and laws over the distance from w/4 or h/4."""
     lower = drawn("mean_hop_time", "paper").axes[2]
     ends = {"vertical_hop": 0.375, "horizontal_hop": 0.25}
-    for (event, end), (distances, times) in zip(ends.items(), laws_in(lower), strict=True):
+    curves = [line.get_data() for line in lower.lines if line.get_zorder() == 5]
+    for (event, end), (distances, times), curve in zip(
+        ends.items(), laws_in(lower), curves, strict=True
+    ):
         law = leading_law(PAPER, event)
+        assert curve[1][0] == pytest.approx(times[0], rel=0.01)
+        last = exact.mean_times(PAPER.scene(float(end * (1 - curve[0][-1]))))[event]
+        assert curve[1][-1] == pytest.approx(last, rel=1e-9)
         np.testing.assert_allclose(times, law.coefficient * (end * distances) ** -2, rtol=1e-5)
         assert distances.max() < radius.LAW_RANGE
     rows = of(tables_of("paper")["mean_times"], event="horizontal_hop")

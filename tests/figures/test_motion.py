@@ -19,6 +19,7 @@ def test_the_panels_beneath_show_most_hops_and_a_hop_that_is_not_undone():
     assert motion._loneliest_hop(hops, 10.0, 0.0, 100.0) == 90
     # Its stretch would go beyond the end.
     assert motion._loneliest_hop(hops, 10.0, 0.0, 92.0) is None
+    assert motion._loneliest_hop(100 - hops[::-1], 10.0, 6.0, 200.0) == 97
     assert motion._loneliest_hop(hops[:1], 10.0, 0.0, 100.0) is None
 
 
@@ -75,7 +76,7 @@ def test_lines_of_many_discs_are_those_of_the_trajectory(box):
             assert len(line.get_xdata()) <= motion.DISC_BENDS * discs + 1 <= len(times)
             places = [row[f"{axis}{disc}"] for row in rows[: len(times)]]
             assert np.interp(times, *line.get_data()) == pytest.approx(places, abs=1e-12)
-        assert len(axes.lines) == disc == discs
+        assert len({line.get_color() for line in axes.lines}) == disc == discs
         shown = [line.get_ydata()[line.get_xdata() <= axes.get_xlim()[1]] for line in axes.lines]
         ends = (np.min(shown), np.max(shown)) if box.effects.get("periodic") else (-0.75, 0.75)
         assert axes.get_ylim() == ends

@@ -122,3 +122,4 @@ def test_clusters_hold_each_crossing_once():
     counts = study.crossing_counts(1, "reflected", 0.125, 4, 100)
     assert sum(number for _, number in counts["sizes"]) == 2 * brownian_steps.STEP_CROSSINGS
     assert counts["tried"] == 2 * brownian_steps.STEP_CROSSINGS  # none is rejected
+    assert study.crossing_counts(2, "reflected", 0.125, 4, 100) != counts

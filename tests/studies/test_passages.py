@@ -149,6 +149,20 @@ def test_the_density_of_points_is_that_of_an_ideal_gas():
     assert file.exact_density(1e-3, 3e-4, 1e3) == pytest.approx((1, math.sqrt(2)), abs=1e-5)
 
 
+@pytest.mark.parametrize("rate", [None, 0.5])
+def test_points_on_a_ring_fly_until_they_are_kicked(rate):
+    """⟨x²⟩ = 2v²(γt − 1 + exp(−γt))/γ² without collisions, v²t² without kicks.
+
+    Three points whose momentum is 0 have two of five components of velocity along the ring.
+    """
+    places, _ = file.recorded(Scene(3.0, 1.0, 1e-6, discs=3, periodic="x"), 4.0, 2, 1000, 1, rate)
+    for time, squares in zip((4.0, 8.0), file.squares(places, [1, 2]), strict=True):
+        turns = (rate or 0.0) * time
+        share = 2 * (turns - 1 + math.exp(-turns)) / turns**2 if rate else 1.0
+        due, found = 2 / 5 / 3 * time**2 * share, file.sample_mean(squares)
+        assert abs(found.value - due) < 5 * found.stderr < 0.25 * due
+
+
 def test_damped_sound_has_its_limits():
     """t ≪ 1/γ: sound at constant temperature, S ℓ c t; t ≫ 1/γ: F √t, on a ring that is long."""
     scene, variance = Scene(768.0, 1.0, 0.28, discs=1024, periodic="x"), 0.1
@@ -197,6 +211,9 @@ def test_long_files_have_the_law_of_their_density(inertia, small, monkeypatch):
     judged = [row for row in rows if row.get("z") is not None]
     assert [row["quantity"] for row in judged] == ["single_file"] * 3
     assert all(abs(row["z"]) < 5 for row in judged)
+    # Four kicks while a disc with the thermal speed goes as far as the channel is high.
+    (kicks,) = {row["friction"] for row in judged}
+    assert kicks == pytest.approx(4 / math.sqrt(2 * 18 - 1))
     # Blocked: no exchange, so that discs and places move alike.
     moved, place = (of(rows, quantity=name, radius=0.28) for name in ("displacement", "file"))
     for one, other in zip(moved, place, strict=True):
