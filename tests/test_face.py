@@ -255,9 +255,10 @@ def test_a_state_is_a_start():
 
 
 def test_what_changes_with_time_is_drawn_with_its_errors(tmp_path):
-    def seen(start, now):
-        return np.stack([start["u1"] * now["u1"], (now["x1"] - start["x1"]) ** 2], axis=1)
-
+    seen = {
+        "uu": lambda start, now: start["u1"] * now["u1"],
+        "xx": lambda start, now: (now["x1"] - start["x1"]) ** 2,
+    }
     averages = td.observe(PAPER, seen, [0, 1, 2], replicas=1)
     (axes,) = td.plot(averages, tmp_path / "averages.png").axes
     moved = td.diffusion(td.Scene(1.5, 1.0, 0.2, periodic="x"), [1, 2], 1)
@@ -267,7 +268,8 @@ def test_what_changes_with_time_is_drawn_with_its_errors(tmp_path):
             line, _, (bars,) = symbols.lines
             half = [np.ptp(bar[:, 1]) / 2 for bar in bars.get_segments()]
             np.testing.assert_allclose([*line.get_data(), half], [found.times, *columns], rtol=1e-9)
-    assert len(axes.get_legend().texts) == 2
+    assert [text.get_text() for text in axes.get_legend().texts] == ["uu", "xx"]
+    assert axes.get_ylabel() == "average"
     assert [p.get_ylabel() for p in panels] == [name.replace("_", " ") for name in moved.names]
     for small in (moved, averages.more(5000)):
         for panel in td.plot(small).axes:
@@ -278,8 +280,9 @@ def test_what_changes_with_time_is_drawn_with_its_errors(tmp_path):
     looks = {(s.get_color(), s.get_marker(), s.get_markerfacecolor()) for s in symbols}
     assert len(looks) == 8
     for some in (PAPER, SCENES["combination"]):
-        figure = td.plot(td.observe(some, lambda a, b: b["x1"], [1], replicas=1))
+        figure = td.plot(td.observe(some, {"a_place": lambda a, b: b["x1"]}, [1], replicas=1))
         assert figure.axes[0].get_legend() is None
+        assert figure.axes[0].get_ylabel() == "a place"
         with style.context():
             assert unclear(figure) == []
 

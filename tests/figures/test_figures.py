@@ -240,11 +240,16 @@ def test_blocked_hop_area_is_shown_as_zero():
     assert blocked <= points(axes, *style.SERIES[0]) != set()
 
 
-def test_an_estimate_above_the_curve_is_in_the_picture():
+def test_an_estimate_above_or_below_the_curve_is_in_the_picture():
     first, *others = of(tables_of("paper")["areas"], quantity="vertical_hop_area")
     far = first | {"estimate": 1.2 * first["exact"], "stderr": 0.1 * first["exact"]}
     main = draw("vertical_hop_area", PAPER, {"areas": [far, *others]}).axes[0]
     assert main.get_ylim()[1] > (1.2 * first["exact"]) ** 0.5
+    rows = [row for row in tables_of("paper")["mean_times"] if row["estimate"]]
+    for factor in (1, 2):
+        slow = [row | {"estimate": factor * row["estimate"]} for row in rows]
+        main = draw("pressure", PAPER, {"mean_times": slow}).axes[0]
+        assert main.get_ylim()[0] < 1 / factor
 
 
 def test_curves_are_drawn_to_their_end_without_any_residual():
