@@ -255,10 +255,7 @@ def test_a_state_is_a_start():
 
 
 def test_what_changes_with_time_is_drawn_with_its_errors(tmp_path):
-    seen = {
-        "uu": lambda start, now: start["u1"] * now["u1"],
-        "xx": lambda start, now: (now["x1"] - start["x1"]) ** 2,
-    }
+    seen = {"uu": lambda a, b: a["u1"] * b["u1"], "xx": lambda a, b: (b["x1"] - a["x1"]) ** 2}
     averages = td.observe(PAPER, seen, [0, 1, 2], replicas=1)
     (axes,) = td.plot(averages, tmp_path / "averages.png").axes
     moved = td.diffusion(td.Scene(1.5, 1.0, 0.2, periodic="x"), [1, 2], 1)

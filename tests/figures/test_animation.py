@@ -128,7 +128,8 @@ DRAWN = [td.Scene(1.5, 1.0, 0.2), SCENES["combination"], td.Scene(1.5, 1.0, 0.2,
 def test_discs_are_where_the_trajectory_has_them(scene):
     """On a periodic axis they go on beyond the box; what is drawn is folded into it.
 
-    Marks turn by the spins, whose times are those between two rows.
+    Marks turn by the spins, whose times are those between two rows. The strip has the separation
+    until now and its zeros, the hops.
     """
     path = td.trajectory(scene, duration=60)
     motion, circles, others = drawn(scene.box, scene.radius, path.to_dict("records"))
@@ -139,8 +140,16 @@ def test_discs_are_where_the_trajectory_has_them(scene):
         places = motion.places(disc, times)
         np.testing.assert_allclose(places, due, atol=1e-12)
         assert (np.abs(motion.fold(places)) <= [0.7501, 0.5001]).all()
+    hops = path["time"][(path["event"] == motion.hop) & (path["time"] >= motion.frames[0])]
+    assert set(circles[1][0][0].figure.axes[1].lines[0].get_ydata()) == {0}
     for time in motion.frames[::20]:
         show(time, circles, others)
+        past, apart = others["past"][0].get_data()
+        due = [now[f"{motion.axis}2"] - now[f"{motion.axis}1"] for now in path.states_at(past)]
+        np.testing.assert_allclose(apart, due, atol=1e-12)
+        assert (past[0], past[-1]) == (motion.frames[0], time)
+        assert others["present"][0].get_data() == ([time], apart[-1])
+        assert [*others["hops"][0].get_xdata()] == [*hops[hops <= time]]
         for disc, radius in enumerate(scene.radii, 1):
             (due,) = motion.fold(motion.places(disc, [time]))
             assert circles[disc][0][0].center == pytest.approx(tuple(due))

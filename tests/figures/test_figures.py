@@ -219,14 +219,11 @@ def test_times_approach_the_end_of_their_hop():
     """The panel beneath: curves, estimates and laws over the distance from w/4 or h/4."""
     lower = drawn("mean_hop_time", "paper").axes[2]
     ends = {"vertical_hop": 0.375, "horizontal_hop": 0.25}
-    curves = [line.get_data() for line in lower.lines if line.get_zorder() == 5]
-    for (event, end), (distances, times), curve in zip(
-        ends.items(), laws_in(lower), curves, strict=True
-    ):
+    curves = [line.get_xydata()[-1] for line in lower.lines if line.get_zorder() == 5]
+    lines = zip(ends.items(), laws_in(lower), curves, strict=True)
+    for (event, end), (distances, times), (far, time) in lines:
+        assert time == pytest.approx(exact.mean_times(PAPER.scene(end * (1 - far)))[event])
         law = leading_law(PAPER, event)
-        assert curve[1][0] == pytest.approx(times[0], rel=0.01)
-        last = exact.mean_times(PAPER.scene(float(end * (1 - curve[0][-1]))))[event]
-        assert curve[1][-1] == pytest.approx(last, rel=1e-9)
         np.testing.assert_allclose(times, law.coefficient * (end * distances) ** -2, rtol=1e-5)
         assert distances.max() < radius.LAW_RANGE
     rows = of(tables_of("paper")["mean_times"], event="horizontal_hop")
@@ -246,10 +243,8 @@ def test_an_estimate_above_or_below_the_curve_is_in_the_picture():
     main = draw("vertical_hop_area", PAPER, {"areas": [far, *others]}).axes[0]
     assert main.get_ylim()[1] > (1.2 * first["exact"]) ** 0.5
     rows = [row for row in tables_of("paper")["mean_times"] if row["estimate"]]
-    for factor in (1, 2):
-        slow = [row | {"estimate": factor * row["estimate"]} for row in rows]
-        main = draw("pressure", PAPER, {"mean_times": slow}).axes[0]
-        assert main.get_ylim()[0] < 1 / factor
+    slow = [row | {"estimate": 2 * row["estimate"]} for row in rows]
+    assert draw("pressure", PAPER, {"mean_times": slow}).axes[0].get_ylim()[0] < 1 / 2
 
 
 def test_curves_are_drawn_to_their_end_without_any_residual():
