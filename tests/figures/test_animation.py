@@ -212,6 +212,7 @@ def test_what_leaves_a_ring_comes_in_at_the_other_end():
     assert strip.get_xlim() == (motion.frames[0], motion.frames[-1])
     low, high = strip.get_ylim()
     paths = [line.get_ydata() for line in strip.lines if len(line.get_ydata()) > 2]
+    assert [line.get_xdata()[-1] for line in strip.lines[:4]] == [motion.frames[-1]] * 4
     assert len(paths) == 4
     assert all(low <= path.min() <= path.max() <= high for path in paths)
     walled = td.Box(1.5, 1.0, discs=4)

@@ -94,7 +94,7 @@ def test_of_very_many_discs_some_lines_are_drawn():
     assert close.get_xlim()[1] < whole.get_xlim()[1] / 2
     drawn = np.sort([line.get_ydata()[0] for line in whole.lines])
     assert len(drawn) == len(close.lines) == motion.LINES_PER_PANEL
-    assert close.get_title("right") == "24 of the discs"
+    assert (close.get_title("left"), close.get_title("right")) == ("(b)", "24 of the discs")
     assert (drawn[0], drawn[-1]) == (starts[0], starts[-1])
     assert np.diff(np.searchsorted(starts, drawn)).max() <= 3
 
