@@ -64,7 +64,8 @@ def expected_rates(scene):
         return guess
     by_class = rates(scene, known)
     summed = {
-        event: sum(by_class[name] for name in parts) for event, parts in EVENT_CLASSES.items()
+        event: sum(by_class.get(name, 0.0) for name in parts)
+        for event, parts in EVENT_CLASSES.items()
     }
     by_event = guess | {e: rate for e, rate in summed.items() if rate and e in scene.events}
     if (
