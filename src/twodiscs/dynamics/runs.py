@@ -171,7 +171,8 @@ class DynamicsRun(Run):
         needed = np.array(needed) / each
         needed = np.ceil(np.where(needed * block_events <= budget, needed, 0.0))
         planned = max([max(replicas, default=0.0) / each, *needed])
-        if scene.discs > 2:  # rare hops of two discs have their own components
+        if scene.discs > 2:
+            # A rate that is not known is 0; rare hops of two discs have their own components.
             planned = min(planned, budget / block_events)
 
         burst_variance = np.array([corner_variance(scene, event, duration) for event in EVENTS])
