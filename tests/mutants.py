@@ -94,7 +94,7 @@ MUTANTS = [
     ("proposals of heights as states", "    settle(state, initial, centres, initial.chain)\n", ""),
     ("diffusion of unequal discs as of equal ones", "discs = range(1, scene.discs + 1 if scene.identical else 2)", "discs = range(1, scene.discs + 1)"),
     ("hops shared on a ring as in a box", "2 - (not scene.periodic) * 2 / pairs", "2 - 2 / pairs"),
-    ("count of the event that is known best", 'count = min((row["count"] for row in counted), default=0)', 'count = max((row["count"] for row in counted), default=0)'),
+    ("count of the event that is known best", 'count = min(row["count"] for row in counted)', 'count = max(row["count"] for row in counted)'),
     ("rows of a trajectory back in time", "free = np.diff(time) >= 0", "free = np.ones(len(time) - 1, bool)"),
     ("name of a scene in the verdict", '(path.parent.name if path.stem == "check" else path.stem, read_table(path))', "(path.stem, read_table(path))"),
     ("ratio of another box in the errata", "return right, ratios[0], radius", "return right, ratios[-1], radius"),
