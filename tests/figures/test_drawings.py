@@ -100,7 +100,7 @@ def test_a_prism_hides_three_edges_and_a_cylinder_its_other_half(monkeypatch, az
     ends = [patch for patch in axes.patches if len(patch.get_xy()) > 5]
     hidden = [line for line in axes.lines if len(line.get_xdata()) > 2]
     assert len(ends) == len(hidden) == 2
-    # What is seen of an end is not behind the side.
+    # The side hides no part of an end that is drawn.
     middles = [patch.get_xy().mean(axis=0) for patch in ends]
     assert not any(strip.get_path().contains_point(at) for strip in strips for at in middles)
     # The hidden halves are the images of the visible ones by reflection at the centre.

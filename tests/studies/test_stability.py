@@ -247,7 +247,10 @@ def test_the_audit_sees_what_is_wrong():
 
 
 def test_distances_have_units_of_the_sides_and_a_window_its_least_time(monkeypatch):
-    """Of the longer side for a gap; a window of 10 events takes 0.1 mean times of an event."""
+    """Gaps and excesses along the side 3 have the unit 2, the power of two below it.
+
+    A window of ten events must last a hundredth of the mean time of ten events.
+    """
     scene, given = td.Scene(3.0, 1.0, 0.2), []
     seen = np.array([[0.401**2], [0.0], [1.33], [0.31], [0.0]])
     monkeypatch.setattr(stability, "audit", lambda *these: given.append(these) or seen)

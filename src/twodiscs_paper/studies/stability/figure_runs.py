@@ -69,7 +69,8 @@ def name_radii(rows):
         if row["case"] in names:
             texts[key] = rf"${names[row['case']]}\,{_power(row['distance'])}$"
         else:
-            texts[key] = f"$r={panels.mathtext(row['radius'])}$"
+            text = panels.mathtext if row["case"] == "ordinary" else rounded
+            texts[key] = f"$r={text(row['radius'])}$"
     return texts
 
 
