@@ -604,6 +604,7 @@ def test_sentences_have_an_end(tmp_path, kind):
     assert there_are_more or kind != "mistakes"
     assert all(len(sentence) <= checks.LONGEST_SENTENCE + 1 for sentence in found)
     assert str(InputError(*"a" * checks.MOST_SENTENCES)).split() == ["a"] * checks.MOST_SENTENCES
+    assert str(InputError("a" * checks.LONGEST_SENTENCE)) == "a" * checks.LONGEST_SENTENCE
 
 
 def test_numbers_of_one_meaning_and_merged_blocks_are_taken(tmp_path):

@@ -21,7 +21,7 @@ from twodiscs.dynamics.many import all_pairs as many
 from twodiscs.dynamics.many import cell_list as many_cells
 from twodiscs.dynamics.many import class_counts, many_intervals, many_paths, many_rates
 from twodiscs.model.events import EVENTS, HOPS, WALLS
-from twodiscs.model.many_geometry import CELL_DISCS
+from twodiscs.model.many_geometry import CELL_DISCS, LEAST_CELL_SIDE
 from twodiscs.sampling.many import chains, many_initial_states
 from twodiscs.sampling.many.cell_grid import make_grid
 
@@ -110,6 +110,14 @@ def test_which_kernel_runs(monkeypatch):
     monkeypatch.setattr(class_counts, "combine_classes", bool)
     for events in (EVENTS, HOPS[:1], WALLS):
         assert class_counts.run_blocks(large, events, 1, 0, 1, 1.0) == (events != WALLS)
+
+
+def test_a_ring_with_just_enough_room_has_two_cells():
+    tight = replace(SHORT[1], radius=SHORT[1].width / (4 * LEAST_CELL_SIDE))
+    tight.require_followable()
+    assert make_grid(tight).x.size == 3
+    with pytest.raises(td.InputError, match="room for two cells"):
+        replace(tight, radius=math.nextafter(tight.radius, 1.0)).require_followable()
 
 
 #: Scenes in which both kernels go there and back.

@@ -105,6 +105,14 @@ def test_a_time_with_a_root_on_one_side_of_h_4_is_not_smooth(roots, monkeypatch)
     assert statements.collision_time_is_smooth(reference.MpScene.of(3, 1, 0)) == (roots == (0, 0))
 
 
+@pytest.mark.parametrize("side", [-1, 1])
+@pytest.mark.parametrize("closed", ["h", "w"])
+def test_the_listed_regimes_end_where_the_hops_close(closed, side):
+    q = reference.MpScene(mpf(3) / 2, mpf(1), mpf(0))
+    q = q._replace(r=getattr(q, closed) / 4 * (1 + side * mpf("1e-9")))
+    assert statements.regimes_are_as_listed(q)
+
+
 # Corrections --------------------------------------------------------------------------------------
 
 

@@ -121,6 +121,10 @@ def test_sampling_and_estimates_hold(box, monkeypatch):
     assert all(0 < row["value"] < math.inf for row in of(estimates, quantity="volume"))
 
 
+def test_the_seed_after_the_largest_is_0():
+    assert stability.other_seed(2**63 - 1, 1) == 0
+
+
 # Times of events ----------------------------------------------------------------------------------
 
 

@@ -309,6 +309,8 @@ def scenes(draw):
 @given(scenes())
 # At the farthest separation roundings leave less energy than none.
 @example(Scene(2.7, 1.0, 0.13, depth=1.0, radius_ratio=2.3, field=0.6))
+# Disc 1 just reaches the top, at rest.
+@example(Scene(1.0, 1.0, 0.25, field=1.0))
 @settings(max_examples=40, deadline=None, derandomize=True)
 def test_what_is_possible(scene):
     """An area is positive where the event is possible, and 0 elsewhere; all is finite."""
