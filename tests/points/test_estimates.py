@@ -89,6 +89,7 @@ def test_mean_time_agrees_with_the_replicas_themselves():
     assert found.value == pytest.approx(60 / counts.mean(), rel=1e-14)
     assert found.relative_stderr == pytest.approx(relative, rel=1e-12)
     assert estimates.effective_count(*moments(counts)) == pytest.approx(relative**-2, rel=1e-12)
+    assert estimates.effective_count(*moments(np.array([3, 3]))) == 0
     z, test = scores.mean_time_z(*moments(counts), 60.0, 60 / 30.5)
     t = (30.5 - counts.mean()) / (counts.std(ddof=1) / math.sqrt(400))
     assert test == "normal"

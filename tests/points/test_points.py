@@ -101,14 +101,17 @@ def test_the_error_of_a_density_is_that_of_a_ratio_of_two_numbers_of_each_chain(
     point, unit = IntervalsPoint.of(BOX.scene(0.1), {"all": component}), grain / 256
     due = pytest.approx([times.mean(), times.std(ddof=1) / math.sqrt(chains)], rel=1e-12)
     assert [point.mean / unit, point.stderr / unit] == due
+    for found, c in zip(point.bins(), counts, strict=False):
+        spread = c.std(ddof=1) / math.sqrt(chains) / (256 * width)
+        assert found.density.stderr == pytest.approx(spread)
 
 
 def test_the_error_of_a_ratio_of_insertions_is_that_of_its_samples():
     samples = 5000
     common = RNG.poisson(100, samples)
     volume, area = common + RNG.poisson(50, samples), common + RNG.poisson(20, samples)
-    weights = {"volume": (int(volume.sum()), int((volume**2).sum()), 3.0)}
-    weights |= {"top_wall_area": (int(area.sum()), int((area**2).sum()), 4.0)}
+    weights = {"volume": (int(volume.sum()), int((volume**2).sum()), 3e-3)}
+    weights |= {"top_wall_area": (int(area.sum()), int((area**2).sum()), 4e-3)}
     joint = {"volume*top_wall_area": int((volume * area).sum())}
     point = inserted(samples, 1, weights, joint)
     found = point.ratio({"top_wall_area": 2.0})
@@ -116,7 +119,7 @@ def test_the_error_of_a_ratio_of_insertions_is_that_of_its_samples():
     relative = (area / area.mean() - volume / volume.mean()).std() / math.sqrt(samples)
     assert (found.value, found.relative_stderr) == pytest.approx((ratio, relative))
     found, _ = point.total({"volume": 1.0, "top_wall_area": 2.0})
-    each = 3 * volume + 2 * 4 * area
+    each = (3 * volume + 2 * 4 * area) / 1000
     assert (found.value, found.n) == (pytest.approx(each.mean()), samples)
     assert found.stderr == pytest.approx(each.std() / math.sqrt(samples))
 
@@ -163,7 +166,7 @@ def test_the_area_of_all_walls_is_as_sure_as_that_of_the_rarer_wall():
 
 
 PART = {"mean": 0.1 + 0.2, "sums": {(0, 1): [[2**62 + 1], [3]]}}
-CONTENT = file_content("simulate", {"radius": 0.1}, {"seed": 1}, {"all": PART})
+CONTENT = file_content("simulate", {"radius": 0.1}, {"name": "a", "seed": 1}, {"all": PART})
 SENTENCE = "is not what its job wrote; delete it, and it is made again"
 
 
@@ -174,7 +177,8 @@ def test_what_is_written_is_read_unless_it_was_edited(tmp_path):
     first = path.read_bytes()
     lines = first.decode().splitlines()[1:-1]  # one for each key, in order
     assert [line.split('"')[1] for line in lines] == sorted({*CONTENT, "sha256"})
-    write_json(path, dict(reversed(CONTENT.items())))
+    settings = dict(reversed(CONTENT["settings"].items()))
+    write_json(path, dict(reversed(CONTENT.items())) | {"settings": settings})
     assert path.read_bytes() == first
     with pytest.raises(ValueError, match="not JSON compliant"):
         write_json(path, CONTENT | {"components": math.nan})

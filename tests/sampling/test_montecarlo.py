@@ -127,10 +127,22 @@ def test_only_what_is_asked_for_is_sampled():
     assert point.quantities.keys() == {"volume"}
     assert point.samples == montecarlo.SAMPLES_PER_BLOCK
     assert point.right_and_top is None
+    point = sample_point(PAPER, ["right_wall_area", "top_wall_area"], 1, 0.02, 1)
+    assert point.right_and_top is not None
     # A hop has a shell at its threshold, too.
     point = sample_point(PAPER.with_radius(0.25), ["horizontal_hop_area"], 1, 0.02, 1)
     thickness = {name: one.epsilon for name, one in point.quantities.items()}
     assert thickness == {"horizontal_hop_area": 0.02 * 0.25}
+
+
+def test_the_shells_of_opposite_walls_have_equally_many_grains(monkeypatch):
+    """Grain k is at (k + 1/2)/2³² of the range; shells of an eighth have the outer ones."""
+    seen = []
+    monkeypatch.setattr(montecarlo, "shell_ends", lambda *arguments: seen.append(arguments))
+    montecarlo.prism_sampler(PAPER, ["top_wall_area"], 0.02, 1)
+    first_grain, grains, thick = seen[0][-1], 2**32, PAPER.range_y / 8
+    assert first_grain("y", 1, thick) == grains - grains // 8
+    assert first_grain("y", -1, thick) == grains // 8 - 1
 
 
 @pytest.mark.parametrize("share", [0.1, 0.6, 0.9, 1 - 1e-3, 1 - 1e-9])

@@ -197,6 +197,7 @@ def test_residue_at_close_packing_in_a_channel(share):
         (td.Scene(1.15, 0.5, 0.14, discs=4), True),
         (td.Scene(0.5, 1.0, 0.14, discs=4), True),
         (td.Scene(1.3, 0.5, 0.14, discs=4), False),
+        (td.Scene(2.0, 0.5, 0.14, discs=7), True),
         (td.Scene(2.0, 0.5, 0.14, discs=8), False),
         (td.Scene(0.6, 0.5, 0.14), False),
         (td.Scene(1.0, 1.0, 0.18, discs=4), False),
