@@ -170,7 +170,8 @@ def test_a_trajectory_tells_the_same_events_as_the_ensemble(scene):
             for disc in discs
         )
     seen["any_wall"] = sum(n for name, n in names.items() if name.startswith("wall"))
-    sums, _ = find_engine(scene).counts.run_blocks(scene, EVENTS, 3, 0, 1, 64.0, replicas=1)
+    sums, products = find_engine(scene).counts.run_blocks(scene, EVENTS, 3, 0, 1, 64.0, replicas=1)
+    assert np.array_equal(products, np.triu(np.outer(sums, sums)))
     for event, count in zip(EVENTS, sums, strict=True):
         assert event not in scene.events or count == seen[event]
     assert seen["any_wall"] > 10

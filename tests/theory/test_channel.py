@@ -5,7 +5,6 @@ or its limits.
 """
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,7 +12,7 @@ from marks import slow
 from scipy.integrate import quad_vec
 
 import twodiscs as td
-from twodiscs.theory import channel, exact, n_discs, three
+from twodiscs.theory import channel, exact, three
 from twodiscs.theory.flux import Derivatives
 from twodiscs.theory.n_discs import known_derivatives
 from twodiscs_paper.studies.passages.models.file import limit
@@ -57,13 +56,6 @@ def test_a_kernel_is_the_product_of_few_vectors_if_its_range_has_few(rank, size)
     columns, rows = channel._factors(left @ right.T)
     assert columns.shape == (200, size)
     assert columns @ rows == pytest.approx(left @ right.T, abs=1e-11)
-
-
-@pytest.mark.parametrize("radius", [0.1, 0.3])
-def test_two_discs_have_the_rates_of_their_areas(radius):
-    scene = td.Scene(1.5, 1.0, radius)
-    for event in scene.events:
-        assert n_discs.rate(scene, event) == pytest.approx(exact.rate(scene, event), rel=1e-14)
 
 
 def by_moments(scene, order=40):
@@ -217,12 +209,3 @@ def test_a_channel_that_needs_too_many_terms_is_refused(monkeypatch):
     monkeypatch.setattr(channel, "MOST_TERMS", 24)
     with pytest.raises(td.InputError, match=r"^the .* for 3 discs needs more than 24 terms"):
         channel.derivatives(td.Scene(3.0, 0.4, 0.18, discs=3), hops=False)
-
-
-@pytest.mark.parametrize("unit", [2.0**30, 2.0**-30])
-def test_what_is_known_of_discs_does_not_depend_on_the_unit_of_length(unit):
-    scenes = [td.Scene(1.5 * u, u, 0.15 * u, discs=3) for u in (1.0, unit)]
-    (log_one, *ones), (log_volume, *rest) = map(known_derivatives, scenes)
-    assert log_volume == pytest.approx(log_one + 6 * math.log(unit), rel=1e-14)
-    assert [value * unit for value in rest] == ones
-    assert known_derivatives(replace(scenes[1], discs=5)) is None
