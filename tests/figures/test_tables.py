@@ -185,6 +185,8 @@ def passage_cases():
             exponents += map(symbol, middle, select(some, friction=rate, quantity="local_exponent"))
         yield "friction", "kappa", look, kappa
         yield "friction", "exponent", look, exponents
+    limit = select(table("passages"), quantity="amplitude")
+    yield "transmission", "smooth", (style.BLACK, "*"), [symbol(0.0, row) for row in limit]
     limit = select(long_run("passages"), method="limit", quantity="coefficient")
     yield "friction", "kappa", (style.BLACK, "x"), [(r["friction"], r["estimate"]) for r in limit]
     # Two discs with friction have a figure of their own.
@@ -299,6 +301,28 @@ def test_a_loaded_table_is_drawn_with_those_that_lie_beside_it(name):
     for axes, due in zip(panels, drawn(name).values(), strict=True):
         for line, other in zip(axes.lines, due.lines, strict=True):
             np.testing.assert_array_equal(line.get_xydata(), other.get_xydata())
+
+
+def test_the_residuals_of_more_discs_are_those_of_the_table():
+    rows, axes = select(table("more_discs"), periodic=None), drawn("more_discs")["residuals"]
+    for event, look in (style.EVENT_LOOKS | {"virial": (style.BLACK, "x")}).items():
+        due = [row["z"] for row in select(rows, event=event) if row["z"] is not None]
+        assert sorted(z for _, z in points(axes, *look)) == sorted(due)
+
+
+def test_the_law_of_a_blocked_file_meets_its_symbols():
+    """Without kicks at the shortest time, with kicks at long times; within five errors."""
+    axes = drawn("files")["moved"]
+    lines = [n.get_data() for n in axes.lines if n.get_color() == style.BLACK]
+    curves = [np.log(line) for line in lines if len(line[0]) == 120]
+    rows = select(long_run("displacements"), quantity="displacement", radius=0.28)
+    rows = select(rows, moment_of_inertia=None)
+    for is_kicked, curve, kept in zip((False, True), curves, ([0], [-2, -1]), strict=True):
+        own = [row for row in rows if bool(row["friction"]) == is_kicked]
+        for row in (own[k] for k in kept):
+            time = math.log(row["time"] / math.sqrt(2 * row["discs"] - 1))
+            law = math.exp(np.interp(time, *curve))
+            assert abs(row["estimate"] - law) < 5 * row["stderr"]
 
 
 def test_a_table_without_a_figure_or_alone_is_one_sentence(tmp_path):

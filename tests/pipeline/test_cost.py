@@ -109,7 +109,9 @@ def test_the_bound_on_the_events_of_an_accuracy_is_not_below_the_plan(radius):
         components = job_cost.run_at(request, "dynamics", radius).components
         events = components["all"].planned * components["all"].block_events
         assert job_cost._events(request, radius) * 1.07 + components["all"].block_events >= events
-    assert job_cost._events(scene(discs=3, radii=[0.1]), 0.1) == float("inf")
+    assert job_cost._events(request, radius) < float("inf")
+    for effects in ({"discs": 3}, {"effects": {"moment_of_inertia": 0.5}}):
+        assert job_cost._events(scene(radii=[0.1], **effects), 0.1) == float("inf")
     for discs in (2, 3) if radius < 0.25 else ():
         histogram = {"hop_histogram": {"radii": [radius], "intervals": 1e5}}
         request = scene(radii=[radius], discs=discs, watch=histogram)

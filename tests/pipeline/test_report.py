@@ -12,7 +12,7 @@ from checkout import REPOSITORY, copy_tables
 from factory import EXPECTED, write_rows
 from PIL import Image
 
-from twodiscs.analysis.tables import CostTable, MeanTimesTable
+from twodiscs.analysis.tables import CheckTable, CostTable, MeanTimesTable
 from twodiscs_paper.pipeline.documents import report
 from twodiscs_paper.pipeline.results.verdict import verdict
 
@@ -45,7 +45,9 @@ def test_the_events_of_the_agreement_are_those_of_dynamics(tmp_path):
     copy_tables(tmp_path, {"paper": "paper"})
     counts = {"dynamics": 7, "monte_carlo": 100}
     write_rows(tmp_path / "paper", CostTable, ("stage", "events"), counts.items(), radius=0.1)
-    assert report.agreement(tmp_path, {"name": "paper"})["events"] == 7
+    found = report.agreement(tmp_path, {"name": "paper"})
+    kept = [row["z"] for row in CheckTable.read(EXPECTED / "paper" / "check.csv") if row["bound"]]
+    assert (found["events"], found["largest"]) == (7, max(abs(z) for z in kept if z is not None))
 
 
 def test_mean_times_are_those_of_their_table():

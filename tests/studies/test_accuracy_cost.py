@@ -275,6 +275,15 @@ def test_exact_values_are_at_the_bottom(rows, panels):
     assert {x for x, _ in points(panels["b"], style.BLACK, "P")} == nodes != set()
 
 
+def test_the_bar_of_a_root_mean_square_is_that_of_normal_errors():
+    """A square has the variance 2s⁴ + 4b²s², for errors with the bias b and the variance s²."""
+    bias, variance, number = 0.75, 0.25, 16
+    rms = math.hypot(bias, math.sqrt(variance))
+    row = {"c": 8 * variance, "seconds": 8.0, "floor": bias, "repetitions": number, "error": rms}
+    due = math.sqrt((2 * variance**2 + 4 * bias**2 * variance) / number) / (2 * rms)
+    assert figure._spread(row) == pytest.approx(due)
+
+
 def test_c_by_distance_is_drawn_for_each_method_and_quantity(rows, panels):
     looks = figure_by_radius.looks()
     for panel in ("dynamics", "strips", "rejection", "conditioned"):

@@ -40,6 +40,14 @@ def bins_of(edges, chances, intervals):
 EDGES = np.concatenate(([0.0], np.cumsum(0.3 * 1.1 ** np.arange(14)))) + 4
 
 
+def test_the_density_at_zero_has_the_error_of_multinomial_counts():
+    """Each interval adds 7/6 in the first bin, −1/6 in the second one."""
+    each = np.repeat([7 / 6, -1 / 6, 0], [30, 20, 50])
+    found = distributions.density_at_zero([30, 20], 100, 0.25)
+    due = each.mean() / 0.25, each.std() / 10 / 0.25
+    assert (found.value, found.stderr) == pytest.approx(due)
+
+
 # Fits ---------------------------------------------------------------------------------------------
 
 

@@ -12,6 +12,7 @@ import pytest
 import yaml
 from factory import EXPECTED, LONG_RUNS, deviation, empty, of
 
+import twodiscs as td
 from twodiscs.dynamics.two.hop_clusters import HOPS_PER_BLOCK
 from twodiscs.points.base import read_json
 from twodiscs_paper.pipeline.results.verify import long_run_tables
@@ -212,9 +213,11 @@ def test_errors_of_joined_runs_are_those_of_as_many_replicas():
     def counted(**given):
         return of(tails.long_run(falling, one | given), radius=0.3)
 
+    mean = td.mean_times(td.Scene(1.5, 1.0, 0.3))["vertical_hop_time"]
     many = counted(replicas=500, runs=16, seed=5)
     single = counted(replicas=8000, runs=1, seed=50)
     assert [row["quantity"] for row in many] == ["survival", "survival", "rate"]
+    assert [row["time"] for row in many[:2]] == [2 * mean, 4 * mean]
     for joined, alone in zip(many, single, strict=True):
         assert deviation(joined, alone) < 5
         # An error of 8000 replicas is itself known to some per cent.

@@ -6,8 +6,10 @@ Without these tests methods for more discs could disagree, or have the errors of
 import math
 import re
 
+import numpy as np
 import pytest
 
+from twodiscs.model.scene import Scene
 from twodiscs_paper.studies.more_discs import measure, tori
 from twodiscs_paper.studies.more_discs.study import MoreDiscsTable
 
@@ -28,6 +30,22 @@ def test_a_torus_has_the_aspect_that_its_name_says(aspect):
     assert scene.width / scene.height == pytest.approx(eval(width) / eval(height, vars(math)))
     assert scene.radius == 0.5
     assert scene.width * scene.height == pytest.approx(12 * math.pi / 4 / 0.5)
+
+
+def test_errors_of_rates_are_those_of_the_replicas(monkeypatch):
+    """Rates per time, and the virial sum with the covariances of its events."""
+    scene, replicas, duration = Scene(2.25, 1.0, 0.1, discs=3), 500, 4.0
+    classes = len(measure.CLASSES)
+    counts = np.random.default_rng(1).poisson(20, (replicas, 1)) + np.arange(classes)
+    counts += np.random.default_rng(2).poisson(9, counts.shape)
+    sums, products = counts.sum(axis=0), np.triu(counts.T @ counts)
+    monkeypatch.setattr(measure, "counted", lambda *_: (sums, products, replicas, duration))
+    rates, errors, error = measure.dynamics_rates(scene, 1, 1)
+    assert [*rates.values()] == pytest.approx(counts.mean(axis=0) / duration)
+    root = math.sqrt(replicas) * duration
+    assert [*errors.values()] == pytest.approx(counts.std(axis=0) / root)
+    weights = [measure.virial_weights(scene).get(event, 0.0) for event in measure.CLASSES]
+    assert error == pytest.approx((counts @ weights).std() / root)
 
 
 def test_scores_are_deviations_over_the_errors_of_both(rows):

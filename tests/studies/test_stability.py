@@ -214,6 +214,18 @@ def test_everything_is_conserved_at_every_hard_radius(box):
     assert all(row["passed"] is True and row["count"] >= 2_000_000 for row in rows)
 
 
+def test_the_errors_of_a_run_are_those_of_its_worst_lane(monkeypatch):
+    nearest = (PAPER.contact_distance * np.array([1.5, 1.25])) ** 2
+    far_x, far_y = PAPER.range_x / 2 + np.zeros(2), PAPER.range_y / 2 + np.array([0.5, 0.125])
+    found = nearest, np.array([2e-15, 6e-15]), far_x, far_y, np.ones(2)
+    monkeypatch.setattr(stability, "audit", lambda *_: found)
+    row = stability.run(PAPER, 1000, 1)
+    assert (row["energy_error"], row["lanes_lost"]) == (3e-15, 2)
+    unit_x, unit_y = stability.box_units(PAPER)
+    assert row["excess"] == pytest.approx(0.5 / unit_y)
+    assert row["smallest_gap"] == pytest.approx(PAPER.contact_distance / 4 / max(unit_x, unit_y))
+
+
 def test_energy_error_grows_like_a_random_walk():
     """A drift would grow in proportion to the events, a walk like their square root.
 
@@ -305,6 +317,12 @@ def test_scores_of_values_with_errors_that_are_right_and_wrong():
         assert withheld == 0
     z, withheld = calibration.scored([(4.0, 1.0, 3.0), (4.0, None, 3.0), (None, None, 3.0)])
     assert (z.tolist(), withheld) == ([1.0], 2)
+    # About their mean two values are certain to be nearer by √(1/2).
+    z, _ = calibration.scored([(1.0, 1.0, None), (3.0, 1.0, None)])
+    assert z.tolist() == pytest.approx([-math.sqrt(2), math.sqrt(2)])
+    kept = calibration.score_cells(np.array([1.0, -2.0, 3.5]), 0)
+    assert (kept["mean_square"], kept["beyond_three"]) == (5.75, 1)
+    assert kept["stderr"] == pytest.approx(np.std([1, 4, 12.25], ddof=1) / math.sqrt(3))
 
 
 def test_a_row_of_calibration_counts_what_the_face_prints(monkeypatch):
