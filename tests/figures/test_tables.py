@@ -358,6 +358,9 @@ def test_every_figure_of_a_study_is_compared():
     assert {name for name, *_ in CASES} | {*elsewhere.split()} >= STUDY_FIGURES.keys()
 
 
+#: The figures of tables that the repository has.
+OF_TABLES = sorted({*STUDY_FIGURES} - {"accuracy_cost_by_radius", "accuracy_cost"})
+
 #: The fast half compares the texts of these figures: the fullest ones.
 FAST = {"passages", "brownian", "transmission", "tails"}
 
@@ -366,13 +369,35 @@ FAST = {"passages", "brownian", "transmission", "tails"}
     ("name", "faults"),
     [
         case
-        for name in sorted({*STUDY_FIGURES} - {"accuracy_cost_by_radius", "accuracy_cost"})
+        for name in OF_TABLES
         for case in ((name, misnamed), ((name, unclear) if name in FAST else slow(name, unclear)))
     ],
 )
 def test_texts_of_studies_stand_clear_and_symbols_are_named(name, faults):
     (axes, *_) = drawn(name).values()
     assert faults(axes.get_figure(root=True)) == []
+
+
+def spans_decades(axes, k):
+    """Return whether the lines of a panel have positive numbers ``k`` over two decades."""
+    lines = [n for n in axes.lines if n.get_transform() == axes.transData and len(n.get_xdata())]
+    numbers = [np.asarray(getattr(line, f"get_{k}data")(), float) for line in lines]
+    numbers = np.concatenate([[1.0], *numbers])
+    return np.nanmin(numbers) > 0 and np.nanmax(numbers) > 100 * np.nanmin(numbers)
+
+
+@pytest.mark.parametrize("name", OF_TABLES)
+def test_axes_with_numbers_are_named_and_decades_are_logarithmic(name):
+    """An axis that begins at 0 may be linear."""
+    for axes in drawn(name).values():
+        for k, side in (("x", "labelbottom"), ("y", "labelleft")):
+            axis = getattr(axes, f"{k}axis")
+            texts = "".join(text.get_text() for text in axis.get_ticklabels())
+            has_numbers = texts and not re.search("[a-z=]", texts.replace(r"\mathdefault", ""))
+            if axes.lines and has_numbers and axis.get_tick_params().get(side, True):
+                assert axis.get_label_text()
+            begins_at_0 = axis.get_view_interval()[0] == 0
+            assert axis.get_scale() == "log" or begins_at_0 or not spans_decades(axes, k)
 
 
 #: The values that panels are compared with: lines at one value of x or y.
