@@ -165,6 +165,11 @@ def test_too_few_events_show_no_error():
     for factor, status in ((1.001, "reached"), (0.999, "budget")):
         target = {"vertical_hop": factor * row["relative_stderr"]}
         assert time_row(300, 350, 20480 / 300, target=target)["status"] == status
+    # The error that was asked for is that of the strip.
+    beside = counts_point(total=300, squares=350, strips={"vertical_hop": None})
+    with as_theory({(0.37, "vertical_hop_time"): 20480 / 300}):
+        (row,) = MeanTimesTable.rows([beside], without_strips=True)
+    assert row["status"] == "counted"
     assert time_row(3000, 9000, 20480 / 3000)["test"] == "normal"
     assert time_row(10**6, 2 * 10**10, replicas=99)["status"] == "too-few"
 
