@@ -100,6 +100,7 @@ def test_the_hop_is_a_frame_and_the_only_one_that_stops(rows, tmp_path, monkeypa
     frames, png = map(unpacked, paths[:2])
     text = paths[2].read_text(encoding="utf-8")
     assert "http" not in text
+    assert f'max="{len(motion.frames) - 1}"' in text
     pictures, times = re.search(r"pictures = (\[.*\]), milliseconds = (\[.*\]);", text).groups()
     shown = [Image.open(BytesIO(b64decode(one))).convert("RGB") for one in json.loads(pictures)]
     page = [*zip(json.loads(times), (np.asarray(image, int) for image in shown), strict=True)]
@@ -141,14 +142,16 @@ def test_discs_are_where_the_trajectory_has_them(scene):
         np.testing.assert_allclose(places, due, atol=1e-12)
         assert (np.abs(motion.fold(places)) <= [0.7501, 0.5001]).all()
     hops = path["time"][(path["event"] == motion.hop) & (path["time"] >= motion.frames[0])]
-    assert set(circles[1][0][0].figure.axes[1].lines[0].get_ydata()) == {0}
-    for time in motion.frames[::20]:
+    zero, whole, *_ = circles[1][0][0].figure.axes[1].lines
+    assert set(zero.get_ydata()) == {0}
+    for time in (*motion.frames[::20], motion.frames[-1]):
         show(time, circles, others)
-        past, apart = others["past"][0].get_data()
-        due = [now[f"{motion.axis}2"] - now[f"{motion.axis}1"] for now in path.states_at(past)]
-        np.testing.assert_allclose(apart, due, atol=1e-12)
-        assert (past[0], past[-1]) == (motion.frames[0], time)
-        assert others["present"][0].get_data() == ([time], apart[-1])
+        for line, end in ((others["past"][0], time), (whole, motion.frames[-1])):
+            past, apart = line.get_data()
+            due = [now[f"{motion.axis}2"] - now[f"{motion.axis}1"] for now in path.states_at(past)]
+            np.testing.assert_allclose(apart, due, atol=1e-12)
+            assert (past[0], past[-1]) == (motion.frames[0], end)
+        assert others["present"][0].get_data() == ([time], others["past"][0].get_ydata()[-1])
         assert [*others["hops"][0].get_xdata()] == [*hops[hops <= time]]
         for disc, radius in enumerate(scene.radii, 1):
             (due,) = motion.fold(motion.places(disc, [time]))
