@@ -152,6 +152,11 @@ def test_misses_and_false_hits_are_infinite_errors(apart, formula, error):
     assert stability.contact_error(dx, dy, 1.2, 1.6, 0.4, *others) == error
 
 
+def test_the_textbook_is_right_where_nothing_cancels():
+    found = stability.contact_error(-1.0, 0.25, 1.0, 0.125, 0.5, stability.textbook_quotient)
+    assert found < 4
+
+
 # Extreme scenes -----------------------------------------------------------------------------------
 
 
