@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from figure_cases import BOXES, PAPER, draw, shown_texts
-from matplotlib.patches import Arc, Circle, Rectangle, Wedge
+from matplotlib.patches import Arc, Circle, Polygon, Rectangle, Wedge
 from scipy.spatial.distance import cdist
 
 from twodiscs.figures import configuration_space, style
@@ -23,6 +23,8 @@ def test_the_largest_discs_touch_each_other_and_walls(box):
     np.testing.assert_allclose([-one, two], [room, room], rtol=1e-12)
     longer = max(box.width, box.height) >= 2 * min(box.width, box.height)
     assert longer or math.dist(one, two) == pytest.approx(2 * radius, rel=1e-12)
+    if min(room) > 0:
+        assert [[*one], [*two]] in [line.get_xydata().tolist() for line in jammed.lines]
     # The map: all limits at every shape, and this box.
     either, passing, largest, *_ = (line.get_data() for line in regimes.lines)
     high = box.width < box.height
@@ -54,6 +56,8 @@ def test_the_regimes_have_the_areas_of_their_hops(box):
             assert (x if along_x else y) == pytest.approx(0, abs=1e-12) or (
                 y / high if along_x else x / wide
             ) == pytest.approx(1, rel=1e-12)
+        for cut in (patch for patch in axes.patches if type(patch) is Polygon):
+            assert np.hypot(*cut.xy.T).max() == pytest.approx(sigma, rel=1e-12)
         lines = {line.get_color(): line.get_data() for line in axes.lines}
         for colour, hop, across in (
             (style.BLUE, "vertical_hop", high), (style.VERMILLION, "horizontal_hop", wide)
@@ -80,6 +84,8 @@ def test_both_shells_are_equally_thick(box):
     np.testing.assert_allclose(np.abs(np.dot(edges, (1, -1))) / math.sqrt(2), shell.width, 1e-12)
     assert shell.r - shell.width == pytest.approx(rim.r, rel=1e-12)
     assert {(one.center, one.theta1, one.theta2) for one in (rim, shell)} == {((0, 0), 0, 90)}
+    arcs = [(one.width / 2, one.height / 2) for one in collision.patches if isinstance(one, Arc)]
+    assert sorted(arcs) == [(rim.r, rim.r), (shell.r, shell.r)]
     across, around = (np.vstack(arrows(axes)) for axes in (hop, collision))
     depths = abs(across @ (1, -1)) / math.sqrt(2)
     assert depths == pytest.approx([0, shell.width, 0, shell.width])

@@ -592,6 +592,10 @@ def test_tails_are_those_of_the_table_with_their_laws():
             end = np.array([rate["time"], rate["until"]])
             np.testing.assert_allclose(times * rate["exact_mean"], end, rtol=1e-12)
             assert np.log(values) + rate["estimate"] * end == pytest.approx(np.mean(log), rel=1e-12)
+            number, digits, error = re.search(r"(\d\.(\d*))\((\d+)\)/", line.get_label()).groups()
+            of_unit = 10 ** len(digits) * rate["exact_mean"]
+            assert float(number) == round(rate["estimate"] * rate["exact_mean"], len(digits))
+            assert int(error) == round(rate["stderr"] * of_unit)
         else:
             laws = {row["time"] / row["exact_mean"]: row["law"] for row in own}
             assert [laws[t] for t in times] == [*values]

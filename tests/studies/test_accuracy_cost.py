@@ -284,6 +284,15 @@ def test_the_bar_of_a_root_mean_square_is_that_of_normal_errors():
     assert figure._spread(row) == pytest.approx(due)
 
 
+@pytest.mark.parametrize("floor", [0.0, 1e-4])
+def test_the_curve_of_a_method_goes_to_its_floor(floor):
+    errors, seconds = figure._law(2.0, floor)
+    low, high = sorted(figure.ERROR_RANGE)
+    assert errors.max() == pytest.approx(high)
+    assert errors.min() == pytest.approx(floor or low, rel=1e-13)
+    np.testing.assert_allclose(seconds * (errors**2 - floor**2), 2.0)
+
+
 def test_c_by_distance_is_drawn_for_each_method_and_quantity(rows, panels):
     looks = figure_by_radius.looks()
     for panel in ("dynamics", "strips", "rejection", "conditioned"):
