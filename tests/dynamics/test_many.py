@@ -18,7 +18,7 @@ from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import all_pairs as many
 from twodiscs.dynamics.many import class_counts, many_rates
 from twodiscs.dynamics.runs import DynamicsRun, relative_errors
-from twodiscs.model.events import HOPS, SHELL_EVENTS
+from twodiscs.model.events import EVENT_AXES, EVENTS, HOPS, SHELL_EVENTS, WALLS
 from twodiscs.model.many_geometry import CELL_DISCS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import insertions, many_initial_states
@@ -91,6 +91,20 @@ def test_monte_carlo_and_another_program_have_the_same_rates(scene):
         other, spread = scalar_many.rates(scene, 400_000, 6)
         named = dict(zip(SHELL_EVENTS, other, strict=True))
         check(found, errors, named, dict(zip(SHELL_EVENTS, spread, strict=True)))
+
+
+def test_counts_of_events_are_those_of_their_classes():
+    """Replica by replica: hits of all walls are those of both classes of them."""
+    by_class = np.random.default_rng(1).integers(0, 50, (100, len(SHELL_EVENTS)))
+    columns = dict(zip(SHELL_EVENTS, by_class.T, strict=True))
+    columns["any_wall"] = columns["right_wall"] + columns["top_wall"]
+    of_axis = {"x": columns["right_wall"], "y": columns["top_wall"]}
+    columns |= {wall: of_axis[EVENT_AXES[wall]] for wall in WALLS}
+    by_event = np.array([columns[event] for event in EVENTS]).T
+    given = by_class.sum(axis=0), np.triu(by_class.T @ by_class)
+    sums, products = class_counts.combine_classes(*given)
+    assert np.array_equal(sums, by_event.sum(axis=0))
+    assert np.array_equal(products, np.triu(by_event.T @ by_event))
 
 
 RINGS = [Scene(3.0, 0.6, radius, discs=4, periodic="x") for radius in (0.14, 0.2)]

@@ -287,6 +287,8 @@ def test_the_table_is_written(rough, tmp_path, small, monkeypatch):
     names = "event", "width", "height", "discs", "radius", "distance", "friction", "quantity"
     pores, kept_pores = of(rows, scene="pore"), of(kept, scene="pore")
     assert cells(pores, *names) == cells(kept_pores, *names)
+    limit, kept_limit = (of(some, quantity="amplitude") for some in (rows, kept))
+    assert cells(limit, *names) == cells(kept_limit, *names)
     for row, other in zip(pores, kept_pores, strict=True):
         assert row["exact_mean"] == pytest.approx(other["exact_mean"], rel=1e-12)
         assert deviation(row, other) < 5
