@@ -217,6 +217,17 @@ def test_long_files_have_the_law_of_their_density(inertia, small, monkeypatch):
     moved, place = (of(rows, quantity=name, radius=0.28) for name in ("displacement", "file"))
     for one, other in zip(moved, place, strict=True):
         assert one["estimate"] == pytest.approx(other["estimate"], rel=1e-9)
+    # F √t between two times, from squares of the file; their law is that of the kicks.
+    for row in judged:
+        own = {one["time"]: one for one in of(rows, quantity="file", radius=row["radius"])}
+        late, early = (own[row["time"] / share] for share in (1, 4))
+        for name in ("estimate", "reference"):
+            slope = (late[name] - early[name]) / math.sqrt(early["time"])
+            assert row[name] == pytest.approx(slope, rel=1e-9)
+        if row["distance"] < 0:
+            scene = Scene(0.75 * 18, 1.0, row["radius"], discs=18, periodic="x")
+            due = file.law(scene, row["friction"], row["time"])
+            assert late["reference"] == pytest.approx(due, rel=1e-12)
     # F is ∝ √S.
     (bulk,) = of(rows, quantity="density")
     (law,) = (row for row in judged if row["distance"] > 0)
@@ -228,9 +239,11 @@ def test_hops_of_a_disc_are_correlated_with_the_same_disc_and_with_others():
     """On a ring of four 0 passes 1, comes back, passes 1 and 2; 1 and 3 hop over the seam twice."""
     times, pairs = np.array([1.0, 1.5, 3.0, 4.0, 6.0, 6.5]), np.array([1, 1, 1, 2, 4 + 3, 4 + 3])
     places = np.array([0.1, 1.0, 2.0, 3.9])
-    found = file.hop_correlations(places, times, pairs, [0.6, 2.2, 9.0], 5.0)
+    found = file.hop_correlations(places, times, pairs, [0.6, 2.2, 2.7, 9.0], 5.0)
     # 0: + − + and + with 2; 1: − + − and − + with 3; 2: −; 3: + −, too late to count.
-    assert found == [8, [-2, -2, -2], [0, 1, 1]]
+    assert found == [8, [-2] * 4, [0, 1, 0, 1]]
+    found = file.hop_correlations(places, times, pairs, [0.6, 2.7], 5.0)
+    assert found == [8, [-2, -2], [0, 0]]
 
 
 def test_the_measured_density_is_exact_in_an_ordered_channel():
