@@ -243,6 +243,8 @@ def test_rough_collisions_reverse_what_slides_and_what_approaches(seed, mass, in
     # Forces at the point of contact turn either disc there by as much as the other, r n × impulse.
     turned = inertia * np.array([t1 - s1, mass * (t2 - s2)])
     assert turned == pytest.approx(turned[::-1], abs=1e-11 * size * (1 + mass))
+    again = after_event((*after[:4], *after[4:]), 0.0, DISC, two_disc_law(scene))
+    assert again[4:] == pytest.approx(state[4:], abs=1e-12 * size)
 
 
 def test_the_worked_example_is_true():
