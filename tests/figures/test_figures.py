@@ -303,10 +303,3 @@ def test_ticks_between_powers_of_ten_have_numbers_if_these_are_few(ratio, named)
     axis = style.new_figure(1.0).subplots(subplot_kw={"ylim": (10, 10 * ratio)}).yaxis
     panels.label_decades(axis, ratio)
     assert [x for x in range(20, 100, 10) if axis.get_minor_formatter()(x)] == named
-
-
-@pytest.mark.parametrize("box", ["paper", "five"])
-def test_a_pressure_of_1_is_that_of_an_ideal_gas(box):
-    main = drawn("pressure", box).axes[0]
-    across = main.get_yaxis_transform("grid")
-    assert {n.get_ydata()[0] for n in main.lines if n.get_transform() == across} == {1}

@@ -52,7 +52,9 @@ def rough_curves():
     """Exact curves have every eighth of their nodes: with effects each takes milliseconds."""
     fine = curves.branches
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(curves, "branches", lambda *given: [one[::8] for one in fine(*given)])
+        patch.setattr(
+            curves, "branches", lambda *given, **how: [one[::8] for one in fine(*given, **how)]
+        )
         yield
 
 
@@ -402,6 +404,7 @@ def test_axes_with_numbers_are_named_and_decades_are_logarithmic(name):
 
 #: The values that panels are compared with: lines at one value of x or y.
 RULES = {
+    ("pressure", "main", "y"): [1],
     ("tails", "ratio", "y"): [1],
     ("distributions", "rates", "y"): [1],
     ("distributions", "passages", "y"): [1],

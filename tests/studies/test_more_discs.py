@@ -67,7 +67,7 @@ def test_scores_are_deviations_over_the_errors_of_both(rows):
 @pytest.mark.parametrize(("discs", "share"), [(3, 1), (16, 1 / 8)])
 def test_rates_are_from_the_events_that_were_asked_for(discs, share):
     """Whole blocks of few discs, and an eighth of many, whose rate is a guess."""
-    sums, _, replicas, duration = measure.counted(Scene(0.75 * discs, 1.0, 0.1, discs=discs), 10**6, 1)
+    sums, *_ = measure.counted(Scene(0.75 * discs, 1.0, 0.1, discs=discs), 10**6, 1)
     assert share * 0.5 < measure.class_counts.simulated_events(sums) / 10**6 < share * 1.5
 
 

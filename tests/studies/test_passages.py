@@ -219,7 +219,8 @@ def test_long_files_have_the_law_of_their_density(inertia, small, monkeypatch):
         assert one["estimate"] == pytest.approx(other["estimate"], rel=1e-9)
     # F √t between two times, from squares of the file; their law is that of the kicks.
     for row in judged:
-        own = {one["time"]: one for one in of(rows, quantity="file", radius=row["radius"])}
+        same = {name: row[name] for name in ("radius", "friction")}
+        own = {one["time"]: one for one in of(rows, quantity="file", **same)}
         late, early = (own[row["time"] / share] for share in (1, 4))
         for name in ("estimate", "reference"):
             slope = (late[name] - early[name]) / math.sqrt(early["time"])
