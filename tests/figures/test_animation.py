@@ -78,6 +78,7 @@ TWO = [(3.0, "vertical_hop"), (4.0, "vertical_hop")]
         # Hops that are never alone, and a trajectory that is too short.
         (at(*TWO), 2, "vertical_hop", 3.0, range(4 + animation.FRAMES_AFTER)),
         (at((3.0, "disc_collision"), end=9.5), 2, None, 0.0, range(10)),
+        (at((0.5, "disc_collision"), end=1.0), 2, None, 0.0, range(2)),
     ],
 )  # fmt: skip
 def test_the_first_lone_hop_of_the_rarer_kind_is_shown(rows, discs, hop, centre, frames):
@@ -144,6 +145,11 @@ def test_discs_are_where_the_trajectory_has_them(scene):
     hops = path["time"][(path["event"] == motion.hop) & (path["time"] >= motion.frames[0])]
     zero, whole, *_ = circles[1][0][0].figure.axes[1].lines
     assert set(zero.get_ydata()) == {0}
+    apart = np.diff(whole.get_xdata())
+    if scene.field or scene.periodic:
+        assert apart.max() < 1.01 * animation.TRACE_FRAMES / 100 * motion.step
+    else:
+        assert apart.size == path["time"].between(motion.frames[0], motion.frames[-1]).sum() + 1
     for time in (*motion.frames[::20], motion.frames[-1]):
         show(time, circles, others)
         for line, end in ((others["past"][0], time), (whole, motion.frames[-1])):

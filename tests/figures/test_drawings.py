@@ -24,7 +24,9 @@ def test_the_largest_discs_touch_each_other_and_walls(box):
     longer = max(box.width, box.height) >= 2 * min(box.width, box.height)
     assert longer or math.dist(one, two) == pytest.approx(2 * radius, rel=1e-12)
     if min(room) > 0:
-        assert [[*one], [*two]] in [line.get_xydata().tolist() for line in jammed.lines]
+        lines = [line.get_xydata().tolist() for line in jammed.lines]
+        assert [[*one], [*two]] in lines
+        assert [[*one], [two[0], one[1]], [*two]] in lines
     # The map: all limits at every shape, and this box.
     either, passing, largest, *_ = (line.get_data() for line in regimes.lines)
     high = box.width < box.height

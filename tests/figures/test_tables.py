@@ -339,6 +339,9 @@ def test_a_table_without_a_figure_or_alone_is_one_sentence(tmp_path):
     alone = td.load(tmp_path)["distributions"]
     with pytest.raises(td.InputError, match="a build with a scene of two plain discs for the fig"):
         td.plot(alone, figure="thresholds")
+    (tmp_path / "volume.csv").write_bytes((EXPECTED / "paper" / "volume.csv").read_bytes())
+    with pytest.raises(td.InputError, match="beside the configuration.json of its build, but 'vol"):
+        td.plot(td.load(tmp_path)["volume"])
 
 
 def test_a_study_whose_hops_are_rare_or_do_not_end_has_a_figure():

@@ -275,8 +275,12 @@ def test_times_by_monte_carlo_know_the_conserved_momenta(effects, tmp_path):
     page = explorer.explorer(PARTS, [*TABLES, *tmp_path.glob("*.csv")], [own], seed=1)
     times = exact.mean_times(scene)
     for event, by in shown_scenes(page)[0]["points"].items():
-        found = [row[1] for row in by["monte_carlo"]]
-        assert found == pytest.approx([times[event]] if times[event] else [])
+        assert len(by["monte_carlo"]) == (times[event] is not None)
+        for _, time, error in by["monte_carlo"]:
+            assert time == pytest.approx(times[event])
+            area = exact.areas(scene)[event]
+            relative = math.hypot(1e-3 / exact.volume(scene), 1e-3 / area)
+            assert error == pytest.approx(time * relative)
 
 
 @pytest.mark.parametrize(("some", "shown"), [((0, 1, 2), (0, 2)), ((0,), (0,)), ((1,), ())])

@@ -292,6 +292,11 @@ def test_events_retraced_are_those_the_exponent_allows(monkeypatch):
     assert all(row["value"] > 0 for row in rows)
     # Logarithms of errors scatter by less than ten, and there are 1000 of them.
     assert all(row["stderr"] < 0.3 * row["value"] for row in of(rows, quantity="return_error"))
+    for row in of(rows, quantity="events_retraced"):
+        (grown, _) = of(rows, quantity="exponent", radius=row["radius"])
+        lengths = np.array([row[name] for name in ("exact", "low", "high")]) * grown["value"]
+        due = np.array([1.0, 1.0 / 1.3 / 32, 32.0]) * stability.RETURN_ERROR * 2**53
+        np.testing.assert_allclose(np.exp(lengths), due, rtol=1e-9)
     # In a box of 1e6 × 1e-6 the discs do not meet for millions of events.
     for row in stability.reversal_rows(td.Box(1e6, 1e-6), seed=3):
         assert (row["status"], row["value"], row["passed"]) == ("long", None, None)
