@@ -340,7 +340,7 @@ def test_a_table_without_a_figure_or_alone_is_one_sentence(tmp_path):
     with pytest.raises(td.InputError, match="a build with a scene of two plain discs for the fig"):
         td.plot(alone, figure="thresholds")
     (tmp_path / "volume.csv").write_bytes((EXPECTED / "paper" / "volume.csv").read_bytes())
-    with pytest.raises(td.InputError, match="beside the configuration.json of its build, but 'vol"):
+    with pytest.raises(td.InputError, match=r"beside the configuration\.json of its build, but"):
         td.plot(td.load(tmp_path)["volume"])
 
 

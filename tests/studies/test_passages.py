@@ -236,6 +236,24 @@ def test_long_files_have_the_law_of_their_density(inertia, small, monkeypatch):
     assert law["reference_stderr"] == pytest.approx(relative * law["reference"], rel=1e-12)
 
 
+@pytest.mark.parametrize("friction", [None, 0.5])
+def test_logged_hops_are_those_of_the_recorded_motion(friction):
+    """Another loop has the same places to roundings, and the time and the discs of each hop."""
+    given = Scene(2.25, 1.0, 0.2, discs=3, periodic="x"), 0.5, 8, 40, 3, friction
+    places, hops = file.recorded(*given)
+    logs, n_alone = [*file.logged(*given)], 0
+    for k, (own, times, pairs) in enumerate(logs):
+        np.testing.assert_allclose(own[:, :, 0], places[:, :, k], atol=1e-9)
+        assert times.size == pairs.size == hops[k] * 3 / 2
+        changed = np.diff(file.order(own, 2.25)[:, :, 0], axis=0) != 0
+        interval, count = np.unique((times // 0.5).astype(int), return_counts=True)
+        for alone in interval[count == 1]:
+            (pair,) = pairs[times // 0.5 == alone]
+            assert [*np.flatnonzero(changed[alone])] == [*divmod(pair, 3)]
+            n_alone += 1
+    assert n_alone > 20
+
+
 def test_hops_of_a_disc_are_correlated_with_the_same_disc_and_with_others():
     """On a ring of four 0 passes 1, comes back, passes 1 and 2; 1 and 3 hop over the seam twice."""
     times, pairs = np.array([1.0, 1.5, 3.0, 4.0, 6.0, 6.5]), np.array([1, 1, 1, 2, 4 + 3, 4 + 3])
