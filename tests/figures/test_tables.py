@@ -357,6 +357,19 @@ def test_a_place_with_rows_of_a_build_and_of_a_long_run_is_named_once():
     assert misnamed(DRAW["transmission"](PAPER, {"passages": table("passages"), "kept": run})) == []
 
 
+def test_residuals_of_stability_stand_upon_each_other():
+    axes, counts = drawn("stability")["d"], np.zeros(10)
+    for bar in axes.patches:
+        if not isinstance(bar, StepPatch):
+            k = math.floor(bar.get_x() + bar.get_width() / 2) + 5
+            assert bar.get_y() == counts[k]
+            counts[k] += bar.get_height()
+    rows = select(table("stability"), part="estimates", status="sampled")
+    z = [row["z"] for row in [*rows, *select(table("stability"), part="extremes")]]
+    due, _ = np.histogram([one for one in z if one is not None], 10, (-5, 5))
+    assert counts.tolist() == due.tolist()
+
+
 def test_every_figure_of_a_study_is_compared():
     """Costs are times, which no table of the repository has: tests of the study compare them."""
     elsewhere = "accuracy_cost accuracy_cost_by_radius calibration stability stability_of_runs tori"

@@ -60,6 +60,13 @@ def test_without_a_budget_the_events_of_a_radius_may_take_a_day():
     assert job_cost._seconds(request, most) == 86400
 
 
+@pytest.mark.parametrize(("discs", "event"), [(3, job_cost.DEAREST_EVENT), (64, 2048)])
+def test_an_event_of_many_discs_costs_as_much_as_their_pairs(discs, event):
+    request = scene(discs=discs, radii=[0.05], event_budget=1e9, monte_carlo={"samples": 1e6})
+    assert job_cost._most(request, "dynamics") == event * 1e9
+    assert job_cost._most(request, "monte_carlo") == job_cost.DRAW_COST * discs * 1e6
+
+
 @pytest.mark.parametrize("stage", ["monte_carlo", "dynamics", "intervals"])
 def test_shards_cover_all_blocks_once(stage):
     request = scene(

@@ -403,6 +403,7 @@ def test_the_kept_errors_are_what_they_say():
     """Each scene, call and study has errors, as the configuration of the long run says."""
     rows = [row for row in CalibrationTable.read(KEPT / "calibration.csv") if row["scores"] > 1]
     check_mean_squares(rows)
+    assert all(row["kind"] == calibration.kind(row["case"]) for row in rows)
     seeds = yaml.safe_load((KEPT / "config.yaml").read_text(encoding="utf-8"))["seeds"]
     made = {(case, call, size): number for case, call, size, number, _ in calibration.runs(seeds)}
     found = {(row["case"], row["call"], row["size"]): row["seeds"] for row in rows}
