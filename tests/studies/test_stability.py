@@ -350,6 +350,28 @@ def test_a_row_of_calibration_counts_what_the_face_prints(monkeypatch):
     assert row["mean_square"] == pytest.approx(np.mean(np.square(z)))
 
 
+ONCE = [(case, call) for case in ("r = 0.2", "periodic x") for call in calibration.STAGE_CALLS]
+#: Studies of plain discs take less than two seconds, except these.
+LONG = {"brownian", "stability"}
+for study, kind in calibration.STUDY_CASES:
+    is_fast = kind == "plain discs" and study not in LONG
+    ONCE.append((kind, study) if is_fast else slow(kind, study))
+
+
+@pytest.mark.parametrize(("case", "call"), ONCE)
+def test_one_seed_has_the_quantities_of_the_long_run(case, call, monkeypatch):
+    """Calls have their least size. Scores of exact values are within five sigma."""
+    least = {name: {"least": sizes["least"]} for name, sizes in calibration.CALL_SIZES.items()}
+    monkeypatch.setattr(calibration, "CALL_SIZES", least)
+    rows = [*calibration.rows(1, 990_000, (case,), (call,))]
+    kept = of(CalibrationTable.read(KEPT / "calibration.csv"), case=case, call=call)
+    kept = {row["quantity"] for row in kept if row["size"] in ("least", "study")}
+    found = {row["quantity"] for row in rows}
+    assert found <= kept
+    assert len(found) >= 0.9 * len(kept)
+    assert all(abs(row["mean"] or 0.0) < 5 for row in rows)
+
+
 #: Strata and clusters, a field, hits in corners, a ring, kicks, and more discs.
 SOME = (
     "r = 0.2", "r = 0.38", "r = 0.2499", "field 0.8", "moment_of_inertia 0.5", "periodic x",

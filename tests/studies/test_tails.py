@@ -206,6 +206,23 @@ def survival(hazards, n):
     ]
 
 
+def test_the_approach_to_a_law_has_a_power_and_a_mean_by_its_errors():
+    """Ratios 1 + c √(τ/t) with c = 2, and 3 at the last time; τ = 5."""
+    given = [(100.0, 2.0, 0.01), (1000.0, 2.0, 0.02), (4000.0, 2.0, 0.03), (9000.0, 3.0, 0.03)]
+    times, c, errors = np.array(given).T
+    values = zip(5 * times, 4 * (1 + c / np.sqrt(times)), 4 * errors, strict=True)
+    start = {"exact_mean": 5.0, "law": 4.0}
+    rows = [start | dict(zip(("time", "estimate", "stderr"), one, strict=True)) for one in values]
+    power = tails.approach_power(rows, rows[2])
+    assert (power["estimate"], power["until"]) == (pytest.approx(-0.5), rows[2]["time"])
+    weights = (2 / np.sqrt(times) / errors)[:3]
+    _, covariance = np.polyfit(np.log(times[:3]), np.zeros(3), 1, w=weights, cov="unscaled")
+    assert power["stderr"] == pytest.approx(math.sqrt(covariance[0, 0]))
+    mean, late = tails.mean_approach(rows[2:]), np.sqrt(times[2:]) * errors[2:]
+    assert mean["estimate"] == pytest.approx(np.average([2, 3], weights=late**-2.0))
+    assert (mean["stderr"], mean["until"]) == (pytest.approx(late[0]), rows[3]["time"])
+
+
 def test_one_hazard_at_all_times_is_tested_by_chi_square():
     """For two hazards χ² is the square of their difference over its error."""
     n, hazards = 10**6, (0.8, 0.79)
