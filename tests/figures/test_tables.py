@@ -11,6 +11,7 @@ from factory import EXPECTED, LONG_RUNS, empty
 from figure_cases import PAPER, bars, draw, misnamed, points, unclear
 from marks import slow
 from matplotlib.patches import StepPatch
+from matplotlib.ticker import FixedFormatter
 
 import twodiscs as td
 from twodiscs.analysis.tables import SCENE_TABLES
@@ -416,6 +417,15 @@ def test_axes_with_numbers_are_named_and_decades_are_logarithmic(name):
                 assert axis.get_label_text()
             begins_at_0 = axis.get_view_interval()[0] == 0
             assert axis.get_scale() == "log" or begins_at_0 or not spans_decades(axes, k)
+
+
+@pytest.mark.parametrize("name", OF_TABLES)
+def test_ticks_with_names_stand_in_the_panel(name):
+    for axes in drawn(name).values():
+        for axis in (axes.xaxis, axes.yaxis):
+            if isinstance(axis.get_major_formatter(), FixedFormatter):
+                low, high = sorted(axis.get_view_interval())
+                assert all(low < tick < high for tick in axis.get_majorticklocs())
 
 
 #: The values that panels are compared with: lines at one value of x or y.

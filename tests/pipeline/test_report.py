@@ -84,8 +84,12 @@ def test_pictures_are_in_their_sections_and_an_animation_stands_still_at_the_lon
     (tmp_path / "figures").mkdir()
     Image.new("RGB", (641, 1000)).save(tmp_path / "figures/thresholds.png")
     scene = {"name": "one", "box": "1.5 × 1", "width": 1.5, "height": 1.0, "effects": {}}
-    files = [str(path), "figures/thresholds.png"]
+    files = [str(path), "figures/thresholds.png", "one/volume.csv", "thresholds.csv"]
     one, of_all = report.contents(tmp_path, files, [scene], "run")["sections"]
+    assert [[str(path) for path in part["tables"]] for part in (one, of_all)] == [
+        [*files[2:3]],
+        [*files[3:]],
+    ]
     assert picture(one["animation"]["still"]).convert("RGB").tobytes() == frames[12].tobytes()
     (small,) = of_all["thumbnails"]
     assert (small["width"], picture(small["uri"]).size) == (641 // 2, (320, 499))
