@@ -11,7 +11,6 @@ from factory import EXPECTED, LONG_RUNS, empty
 from figure_cases import PAPER, bars, draw, misnamed, points, unclear
 from marks import slow
 from matplotlib.patches import StepPatch
-from matplotlib.ticker import FixedFormatter
 
 import twodiscs as td
 from twodiscs.analysis.tables import SCENE_TABLES
@@ -423,7 +422,8 @@ def test_axes_with_numbers_are_named_and_decades_are_logarithmic(name):
 def test_ticks_with_names_stand_in_the_panel(name):
     for axes in drawn(name).values():
         for axis in (axes.xaxis, axes.yaxis):
-            if isinstance(axis.get_major_formatter(), FixedFormatter):
+            texts = {tick.get_text() for tick in axis.get_majorticklabels()}
+            if any(re.search("[a-z] ", text) for text in texts):
                 low, high = sorted(axis.get_view_interval())
                 assert all(low < tick < high for tick in axis.get_majorticklocs())
 
