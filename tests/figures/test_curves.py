@@ -21,6 +21,15 @@ def test_curves_approach_every_limit_from_both_sides(box):
         assert high - branch[-1] <= 1e-8 * high
 
 
+@pytest.mark.parametrize(("discs", "joined"), [(3, True), (4, False)])
+def test_more_than_three_discs_have_no_curve(discs, joined):
+    """A radius may take minutes, so that each one of the table stands alone."""
+    rows = [{"radius": radius} for radius in (0.2, 0.1, 0.2)]
+    branches = curves.branches(Box(1.5, 1.0, discs=discs), rows=rows)
+    assert (max(map(len, branches)) > 1) == joined
+    assert joined or [*map(float, np.concatenate(branches))] == [0.1, 0.2]
+
+
 def test_curves_break_where_times_jump():
     radii, exact = curves.exact_curves(PAPER)
     gaps = np.flatnonzero(np.isnan(radii))
