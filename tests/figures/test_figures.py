@@ -298,7 +298,9 @@ def test_small_and_large_numbers_are_written_with_powers_of_ten(number, text):
     assert panels.numbers([number, 0.2]) == [text, "0.2" if number > 1 else r"2\times10^{-1}"]
 
 
-@pytest.mark.parametrize(("ratio", "named"), [(100, []), (99, [20, 50]), (2.9, [20, 30, 50, 70])])
+@pytest.mark.parametrize(
+    ("ratio", "named"), [(100, []), (99, [20, 50]), (3, [20, 50]), (2.9, [20, 30, 50, 70])]
+)
 def test_ticks_between_powers_of_ten_have_numbers_if_these_are_few(ratio, named):
     axis = style.new_figure(1.0).subplots(subplot_kw={"ylim": (10, 10 * ratio)}).yaxis
     panels.label_decades(axis, ratio)

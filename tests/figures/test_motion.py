@@ -21,6 +21,7 @@ def test_the_panels_beneath_show_most_hops_and_a_hop_that_is_not_undone():
     assert motion._loneliest_hop(hops, 10.0, 0.0, 92.0) is None
     assert motion._loneliest_hop(100 - hops[::-1], 10.0, 6.0, 200.0) == 97
     assert motion._loneliest_hop(hops[:1], 10.0, 0.0, 100.0) is None
+    assert motion._loneliest_hop(hops[1:4] - [20, 0, 0], 10.0, 0.0, 100.0) == 20
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,8 @@ import pytest
 from factory import EXPECTED, LONG_RUNS, empty
 from figure_cases import PAPER, bars, draw, misnamed, points, unclear
 from marks import slow
+from matplotlib.legend import Legend
+from matplotlib.lines import Line2D
 from matplotlib.patches import StepPatch
 
 import twodiscs as td
@@ -427,6 +429,23 @@ def test_ticks_with_names_stand_in_the_panel(name):
             if any(re.search("[a-z] ", text) for text in texts):
                 low, high = sorted(axis.get_view_interval())
                 assert all(low < tick < high for tick in axis.get_majorticklocs())
+
+
+def dashes(lines):
+    """Return the patterns of those ``lines`` that are neither full nor symbols alone."""
+    return {str(n._unscaled_dash_pattern) for n in lines if n.get_linestyle() not in ("-", "None")}
+
+
+@pytest.mark.parametrize("name", [*OF_TABLES, *OF_SCENES])
+def test_dashed_curves_are_named_in_a_legend(name):
+    """In two figures the caption names them."""
+    panels = [*drawn(name).values()]
+    keys = panels[0].get_figure(root=True).findobj(Legend)
+    named = dashes(line for key in keys for line in key.findobj(Line2D))
+    curves = [n for axes in panels for n in axes.lines if n.get_transform() == axes.transData]
+    own = dashes(n for n in curves if len(n.get_xdata()))
+    caption = STUDY_FIGURES[name].caption() if name in ("tori", "brownian") else ""
+    assert own <= named or re.search("Dashed|dotted", caption)
 
 
 #: The values that panels are compared with: lines at one value of x or y.

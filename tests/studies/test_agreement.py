@@ -48,6 +48,8 @@ def histogram_rows():
         empty(SCENE_TABLES["hop_histogram"], **bins | row)
         for row in (
             {"bins": "wide", "count": n // 2, "stderr": 3 * error, "density": 9.0},
+            {"bins": "wide", "count": 999, "stderr": 100 * error, "density": 9.0},
+            {"bins": "wide", "count": 1000, "stderr": error / 10, "density": 9.0},
             {"bins": "equal", "count": 10, "stderr": 100 * error, "density": 1.3},
             {"bins": "equal", "count": 9, "stderr": 10 * error, "density": 1.0},
             {"bins": "equal", "count": 9, "stderr": error, "density": 9.0},
@@ -85,7 +87,7 @@ def test_rows_are_as_by_hand():
     rows = [*AgreementTable.rows(tables | {"effects": effect_rows(), "b/check": check_rows()})]
     due = 32, np.mean(np.square([*SCORES.values()])), math.sqrt(2 / 32)
     assert one(rows, quantity="mean_square") == pytest.approx(due)
-    assert one(rows, quantity="error_ratio") == (1, pytest.approx(3), None)
+    assert one(rows, quantity="error_ratio") == (2, pytest.approx(3), None)
     error = math.hypot(7 * 100, 10) / 6 * 0.5 / math.sqrt(40_000) / 0.25
     assert one(rows, quantity="density_at_zero", scene="a") == pytest.approx((2, 1.35, error))
     assert one(rows, quantity="effects") == (2, 1.5, None)

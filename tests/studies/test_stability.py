@@ -155,6 +155,7 @@ def test_misses_and_false_hits_are_infinite_errors(apart, formula, error):
 def test_the_textbook_is_right_where_nothing_cancels():
     found = stability.contact_error(-1.0, 0.25, 1.0, 0.125, 0.5, stability.textbook_quotient)
     assert found < 4
+    assert stability.exact_contact(1.0, 0.25, 0.5, 0.0, 0.5) == (None, None)  # the discs part
 
 
 # Extreme scenes -----------------------------------------------------------------------------------

@@ -8,11 +8,14 @@ from twodiscs.measure.cost import blocks_wanted, timed, variances
 
 
 class Forecast(NamedTuple):
-    """The time and events of a run within its budget; ``reached`` are relative errors by event."""
+    """The time of a run within its budget; ``reached`` are relative errors by event.
+
+    ``events`` are those of dynamics.
+    """
 
     seconds: float
-    events: float
     reached: dict
+    events: float = 0.0
 
     def shortfall(self, run):
         """Return a sentence on the accuracy that a ``DynamicsRun`` will not reach, or None."""
@@ -41,7 +44,7 @@ def forecast_dynamics(run, pilots, planned=False):
         seconds, events = seconds + blocks * pilot.seconds, events + blocks * pilot.events
         own = (e for e in pilot.errors if name != "all" or e not in pilots)
         reached |= {event: pilot.errors[event] / math.sqrt(blocks) for event in own}
-    return Forecast(seconds, events, reached)
+    return Forecast(seconds, reached, events)
 
 
 def forecast_samples(run, seconds):
@@ -54,4 +57,4 @@ def forecast_samples(run, seconds):
         for quantity in run.quantities
         if quantity in found
     }
-    return Forecast(each * one.planned, one.planned * one.block_events, errors)
+    return Forecast(each * one.planned, errors)

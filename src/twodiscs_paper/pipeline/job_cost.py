@@ -188,7 +188,7 @@ def forecast(scene, stage, radius):
         return forecast_samples(run, FORECAST_SECONDS), run
     one = run.components["all"]
     each = cost.timed(one.work, FORECAST_SECONDS)[-1]
-    return Forecast(each * one.planned, one.planned * one.block_events, {}), run
+    return Forecast(each * one.planned, {}), run
 
 
 def _is_short(scene, radius):
