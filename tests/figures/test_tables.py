@@ -431,6 +431,30 @@ def test_ticks_with_names_stand_in_the_panel(name):
                 assert all(low < tick < high for tick in axis.get_majorticklocs())
 
 
+#: Panels that do not show all of their symbols: small ones of long runs, or of other scenes.
+CUT = {
+    ("diffusion", "residuals"), ("distributions", "rates"), ("effects", "z of a"),
+    ("effects", "z of b"), ("effects", "z of c"), ("stability", "a"), ("stability", "c"),
+    ("pressure", "beneath"), ("tails", "tails"), ("tails", "ratio"), ("thresholds", "ratios"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", [*OF_TABLES, *OF_SCENES])
+def test_panels_show_all_of_their_symbols(name):
+    for label, axes in drawn(name).items():
+        lines = [n for n in axes.lines if n.get_transform() == axes.transData]
+        shown = [n.get_xydata() for n in lines if n.get_marker() != "None"]
+        places = np.concatenate([np.empty((0, 2)), *shown])
+        places = places[np.isfinite(places).all(axis=1)]
+        inside = [
+            (low <= x) & (x <= high)
+            for x, (low, high) in zip(
+                places.T, (sorted(axes.get_xlim()), sorted(axes.get_ylim())), strict=True
+            )
+        ]
+        assert np.all(inside) == ((name, label) not in CUT)
+
+
 def dashes(lines):
     """Return the patterns of those ``lines`` that are neither full nor symbols alone."""
     return {str(n._unscaled_dash_pattern) for n in lines if n.get_linestyle() not in ("-", "None")}

@@ -91,7 +91,9 @@ def test_pictures_are_in_their_sections_and_an_animation_stands_still_at_the_lon
         [*files[3:]],
     ]
     assert picture(one["animation"]["still"]).convert("RGB").tobytes() == frames[12].tobytes()
+    named = "The box is 1.5 × 1 (scene “one” of the configuration)."
     (small,) = of_all["thumbnails"]
+    assert (named in one["animation"]["caption"], named in small["caption"]) == (True, False)
     assert (small["width"], picture(small["uri"]).size) == (641 // 2, (320, 499))
 
 

@@ -18,6 +18,9 @@ from twodiscs.theory.laws import small_radius_time, threshold_time
 #: this relative distance to the end of a hop on.
 SMALL_RANGE, LAW_RANGE = 0.4, 0.3
 
+#: The relative distance to the end of a hop at which the panel of distances begins.
+NEAREST_END = 5e-7
+
 
 def _every(kind, label):
     """Return the ``Curves`` of one kind of quantity, "time" or "area", for all events."""
@@ -174,7 +177,7 @@ def _laws(axes, box, event, laws):
 
 def _approach(axes, box, by_quantity):
     """Draw the times over the distance from the radius at which the hop ends."""
-    distances = np.geomspace(1e-5, 0.99, 70)
+    distances = np.geomspace(NEAREST_END, 0.99, 80)
     ends = hop_ends(box)
     shown, handles = [], []
     for (colour, marker), (quantity, part) in zip(SERIES, by_quantity.items(), strict=False):
@@ -193,7 +196,7 @@ def _approach(axes, box, by_quantity):
         rows = [row | {"radius": 1 - row["radius"] / end} for row in part.rows]
         panels.draw_estimates(axes, [row for row in rows if row["radius"] > 0], colour, marker)
     low, high = min(shown) / 3, 3 * max(shown)
-    axes.set(xscale="log", yscale="log", xlim=(1e-5, 1), ylim=(low, high))
+    axes.set(xscale="log", yscale="log", xlim=(NEAREST_END, 1), ylim=(low, high))
     panels.label_decades(axes.yaxis, high / low)
     axes.set_xlabel(r"relative distance from the end, $1-r/r_{\mathrm{c}}$")
     axes.set_ylabel(r"mean time $\tau$ (length/speed)")

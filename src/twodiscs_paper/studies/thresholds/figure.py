@@ -11,7 +11,7 @@ from twodiscs_paper.studies.thresholds.measure import leading_law, near, passage
 from twodiscs_paper.study import select
 
 #: The least distance below the limit, relative to it, and points on a curve.
-NEAREST_DISTANCE, CURVE_POINTS = 2e-5, 80
+NEAREST_DISTANCE, CURVE_POINTS = 5e-7, 80
 
 
 def draw(box, tables):
