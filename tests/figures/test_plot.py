@@ -57,6 +57,13 @@ def test_all_events_of_a_scan_are_drawn_with_their_errors():
     assert all(points(loaded, *look) for look in style.EVENT_LOOKS.values())
 
 
+def test_all_areas_stand_first_if_there_are_several():
+    areas = td.load(EXPECTED / "paper")["areas"]
+    for rows, first in ((areas, "areas, v"), (areas.iloc[[-1]], "wall_area, ")):
+        with pytest.raises(td.InputError, match=f"figure must be one of {first}"):
+            td.plot(rows, figure="x")
+
+
 def test_a_warning_names_what_is_not_drawn():
     found = td.sample(PAPER, 2**20)
     said = r"volume does not show vertical_hop_area, .*areas"

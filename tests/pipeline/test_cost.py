@@ -119,6 +119,8 @@ def test_the_bound_on_the_events_of_an_accuracy_is_not_below_the_plan(radius):
     assert job_cost._events(request, radius) < float("inf")
     for effects in ({"discs": 3}, {"effects": {"moment_of_inertia": 0.5}}):
         assert job_cost._events(scene(radii=[0.1], **effects), 0.1) == float("inf")
+    channel = {"box": {"width": 4.0, "height": 1.0}, "radii": [0.28], "discs": 4}
+    assert job_cost._interval_events(scene(**channel), 0.28) == float("inf")
     for discs in (2, 3) if radius < 0.25 else ():
         histogram = {"hop_histogram": {"radii": [radius], "intervals": 1e5}}
         request = scene(radii=[radius], discs=discs, watch=histogram)

@@ -261,6 +261,11 @@ def test_symbols_are_errors_and_times_and_lines_are_c_over_the_square(rows, pane
         assert any(np.allclose(c / y, x**2 - floor**2, rtol=1e-9) for x, y in far)
 
 
+def test_errors_times_and_distances_are_logarithmic(panels):
+    scales = {(axes.get_xscale(), axes.get_yscale()) for axes in panels.values()}
+    assert scales == {("log", "log")}
+
+
 def test_texts_stand_clear_and_symbols_are_named(panels):
     assert [unclear(figure) for figure in {axes.figure for axes in panels.values()}] == [[], []]
 
