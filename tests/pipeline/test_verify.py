@@ -97,6 +97,7 @@ def test_renewed_results_are_as_expected(results, expected):
         ("areas", "0.3,", f"{0.3 * (1 + 0.9e-12)!r},", ""),
         ("areas", "0.3,", f"{0.3 * (1 + 1.1e-12)!r},", "estimate in row 1"),
         ("areas", "1e-4", "", "stderr in row 1 is <NA>"),
+        ("areas", "0.0123", "none", "z in row 1 is none, expected 0.0123"),
         # Columns that lose digits.
         ("areas", "0.0123", f"{0.0123 + 0.9e-8!r}", ""),
         ("areas", "0.0123", f"{0.0123 + 1.2e-8!r}", "z in row 1"),

@@ -8,8 +8,10 @@ import re
 
 import numpy as np
 import pytest
+from factory import of
 
 from twodiscs.model.scene import Scene
+from twodiscs.theory import exact
 from twodiscs_paper.studies.more_discs import measure, tori
 from twodiscs_paper.studies.more_discs.study import MoreDiscsTable
 
@@ -69,6 +71,19 @@ def test_rates_are_from_the_events_that_were_asked_for(discs, share):
     """Whole blocks of few discs, and an eighth of many, whose rate is a guess."""
     sums, *_ = measure.counted(Scene(0.75 * discs, 1.0, 0.1, discs=discs), 10**6, 1)
     assert share * 0.5 < measure.class_counts.simulated_events(sums) / 10**6 < share * 1.5
+
+
+@pytest.mark.parametrize("discs", [2, 3])
+def test_exact_times_are_those_of_theory_at_the_energy_of_two_discs(discs, rows):
+    scene = Scene(0.75 * discs, 1.0, 0.1, discs=discs)
+    times = exact.mean_times(scene)
+    known = {
+        row["event"]: row["exact"] for row in of(rows, discs=discs, radius=0.1) if row["exact"]
+    }
+    assert len(known) > 4
+    for event, time in known.items():
+        due = 1.0 if event == "virial" else times[event] / math.sqrt(discs / 2)
+        assert time == pytest.approx(due, rel=1e-12)
 
 
 def test_no_exact_value_is_not_impossible(rows):
