@@ -19,6 +19,9 @@ def test_curves_approach_every_limit_from_both_sides(box):
         assert (np.diff([low, *branch, high]) > 0).all()
         assert branch[0] - low <= 1.01e-4 * (high - low)
         assert high - branch[-1] <= 1e-8 * high
+    # Limits of other boxes below its largest radius are limits too.
+    others = (ends[-2] + ends[-1]) / 2, 2 * ends[-1]
+    assert len(curves.branches(box, others)) == len(ends)
 
 
 @pytest.mark.parametrize(("discs", "joined"), [(3, True), (4, False)])

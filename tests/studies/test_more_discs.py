@@ -60,6 +60,7 @@ def test_scores_are_deviations_over_the_errors_of_both(rows):
         error = math.hypot(row["dynamics_stderr"], 0 if known else row["monte_carlo_stderr"])
         assert row["z"] == pytest.approx((row["dynamics"] - due) / error, rel=1e-9)
         assert abs(row["z"]) < 5
+        assert row["dynamics_stderr"] < 0.1 * row["dynamics"]
         if row["monte_carlo_z"] is not None:
             due = (row["monte_carlo"] - row["exact"]) / row["monte_carlo_stderr"]
             assert row["monte_carlo_z"] == pytest.approx(due, rel=1e-9)
