@@ -173,6 +173,7 @@ def test_the_histogram_has_the_densities_of_its_bins(box):
     marked = [line.get_ydata()[0] for line in short.lines if not line.get_clip_on()]
     np.testing.assert_allclose(sorted(marked), sorted(exact_values) if sides.is_plain else [])
     assert (short.get_legend() is not None) == bool(marked)
+    assert short.get_ylim()[0] == 0
 
 
 # Which figures ------------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 import math
 import re
+from fractions import Fraction
 from functools import cache
 from itertools import pairwise
 
@@ -493,6 +494,15 @@ def test_a_line_through_a_panel_is_at_the_value_that_is_due(name, panel, axis):
     own = getattr(axes, f"get_{axis}axis_transform")("grid")
     lines = [line for line in axes.lines if line.get_transform() == own]
     assert [getattr(n, f"get_{axis}data")()[0] for n in lines] == RULES[name, panel, axis]
+
+
+@pytest.mark.parametrize("name", ["friction", "brownian"])
+def test_exponents_stand_beside_their_lines(name):
+    axes, found = drawn(name)["exponent"], {}
+    for text in axes.texts:
+        number = re.sub(r"\\frac\{(\d)\}\{(\d)\}", r"\1/\2", text.get_text().split("$")[1])
+        found[text.xy[1]] = float(Fraction(number))
+    assert [*found] == [*found.values()] == RULES[name, "exponent", "y"]
 
 
 hop_time = np.vectorize(lambda d: td.mean_times(PAPER.scene(0.25 - d / 4))["horizontal_hop_time"])
