@@ -6,15 +6,19 @@ Without these tests a job could fail by what its study hands to it, or reads.
 import dataclasses
 import inspect
 import json
+import math
 
 import pytest
 from checkout import REPOSITORY, one_scene
 from factory import EXPECTED, of
 
 from twodiscs.model.effects import EFFECTS
-from twodiscs_paper.catalogue import STUDIES, TABLES, is_reproducible
+from twodiscs_paper.catalogue import STUDIES, TABLES, is_reproducible, read_table
 from twodiscs_paper.configuration.yaml_files import load, read
 from twodiscs_paper.draw import DRAW
+from twodiscs_paper.studies.distributions import measure as distributions
+from twodiscs_paper.studies.more_discs import measure as more_discs
+from twodiscs_paper.studies.tails import measure as tails
 
 CONFIG = REPOSITORY / "config"
 every_study = pytest.mark.parametrize("study", STUDIES.values(), ids=STUDIES)
@@ -47,6 +51,36 @@ def test_parameters_are_plain_values_that_its_table_takes(study, default):
     takes_tables = "tables" in signature.parameters
     signature.bind(**given, **{"tables": {}} if takes_tables else {})
     assert bool(study.reads(default) or study.parts(default)) == takes_tables
+
+
+def same(row, other):
+    """Return whether two rows have the same cells, floats to 1e-9."""
+    pairs = [(value, other[name]) for name, value in row.items()]
+    close = (isinstance(a, float) and b and math.isclose(a, b, rel_tol=1e-9) for a, b in pairs)
+    return all(near or a == b for near, (a, b) in zip(close, pairs, strict=True))
+
+
+def test_some_rows_are_the_expected_ones(default, monkeypatch):
+    """``verify`` compares all of them; these take seconds, with the parameters of all."""
+    monkeypatch.setattr(tails, "cases", lambda box, all_=tails.cases: all_(box)[:1])
+    near = distributions.near_threshold
+    monkeypatch.setattr(distributions, "near_threshold", lambda *of: near(*of)[:1])
+    given = {name: study.parameters(default) for name, study in STUDIES.items()}
+    given["distributions"]["scenes"] = [given["distributions"]["scenes"][0] | {"radii": []}]
+    given["tails"]["box"] = default.main.box
+    scenes = {"discs": (2,), "radii": (0.28,), "on_tori": ((3, 0.1),)}
+    read = STUDIES["thresholds"].reads(default).items()
+    paths = {name: EXPECTED / (scene or "") / f"{table}.csv" for name, (scene, table) in read}
+    tables = {name: read_table(path) for name, path in paths.items()}
+    for name, rows in {
+        "more_discs": more_discs.rows(**given["more_discs"], **scenes),
+        "distributions": distributions.rows(**given["distributions"]),
+        "tails": tails.rows(**given["tails"]),
+        "thresholds": TABLES["thresholds"].rows(tables, **given["thresholds"]),
+    }.items():
+        made, kept = list(rows), read_table(EXPECTED / f"{name}.csv")
+        assert len(made) > 5
+        assert [sum(same(row, other) for other in kept) for row in made] == [1] * len(made)
 
 
 def test_studies_read_only_what_there_is(default):
