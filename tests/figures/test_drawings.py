@@ -40,6 +40,7 @@ def test_the_largest_discs_touch_each_other_and_walls(box):
     shape = max(box.width, box.height) / min(box.width, box.height)
     marks = [line.get_data() for line in regimes.lines if line.get_marker() == "o"]
     assert marks == [([shape], [radius / min(box.width, box.height)])] * (shape < 3.4)
+    assert bool(regimes.get_legend()) == (shape < 3.4)
     assert ("$2r$" in {text.get_text() for text in jammed.texts}) == (shape < 2)
 
 

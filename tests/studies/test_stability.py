@@ -455,6 +455,8 @@ def test_table_and_figure_of_any_box(tmp_path, monkeypatch):
     rows = written(tmp_path, StabilityTable, box=box, seed=1, ordinary=2000, hard=1000)
     parts = {"theory", "sampling", "estimates", "times", "dynamics", "extremes", "reversal"}
     assert {row["part"] for row in rows} == parts
+    followed = of(rows, part="dynamics")
+    assert all((row["count"] >= 2000) == (row["case"] == "ordinary") for row in followed)
     with style.context():
         for module in (figure, figure_runs):
             for some in (rows, []):
