@@ -306,3 +306,10 @@ def test_ticks_between_powers_of_ten_have_numbers_if_these_are_few(ratio, named)
     axis = style.new_figure(1.0).subplots(subplot_kw={"ylim": (10, 10 * ratio)}).yaxis
     panels.label_decades(axis, ratio)
     assert [x for x in range(20, 100, 10) if axis.get_minor_formatter()(x)] == named
+
+
+def test_a_power_of_ten_of_all_ticks_is_at_the_end_of_the_axis():
+    axis = style.new_figure(1.0).subplots(subplot_kw={"ylim": (1e-8, 9e-8)}).yaxis
+    panels.label_decades(axis, 9)
+    assert axis.get_major_formatter().get_offset() == r"$\times10^{-8}$"
+    assert (axis.get_major_formatter()(1e-8), axis.get_minor_formatter()(5e-8)) == ("1", "5")

@@ -496,6 +496,16 @@ def test_a_line_through_a_panel_is_at_the_value_that_is_due(name, panel, axis):
     assert [getattr(n, f"get_{axis}data")()[0] for n in lines] == RULES[name, panel, axis]
 
 
+def test_first_passages_of_brownian_discs_are_full_symbols():
+    rows = select(read_table(LONG_RUNS / "brownian" / "brownian.csv"), quantity="coefficient")
+    lines = [n for n in drawn("brownian")["kappa"].lines if n.get_marker() != "None"]
+    for program, (colour, _) in brownian.PROGRAM_LOOKS.items():
+        full = [n for n in lines if n.get_markerfacecolor() == n.get_color() == colour]
+        found = {tuple(place) for line in full for place in line.get_xydata().tolist()}
+        own = select(rows, program=program, method="passages")
+        assert found == {(row["neck"], row["estimate"]) for row in own if row["room"] <= 1 / 4}
+
+
 @pytest.mark.parametrize("name", ["friction", "brownian"])
 def test_exponents_stand_beside_their_lines(name):
     axes, found = drawn(name)["exponent"], {}

@@ -124,6 +124,9 @@ def test_sampling_and_estimates_hold(box, monkeypatch):
             assert row["z"] == pytest.approx(z, rel=1e-6)
     estimates = compared(box, stability.estimate_rows(box, seed=1))
     assert failed(estimates) == []
+    volumes = of(estimates, quantity="volume")
+    assert all(row["exact"] == exact.volume(box.scene(row["radius"])) for row in volumes)
+    assert all(row["count"] >= 2**18 for row in estimates)
     assert all(0 < row["value"] < math.inf for row in of(estimates, quantity="volume"))
 
 
