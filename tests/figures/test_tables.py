@@ -360,6 +360,14 @@ def test_a_place_with_rows_of_a_build_and_of_a_long_run_is_named_once():
     assert misnamed(DRAW["transmission"](PAPER, {"passages": table("passages"), "kept": run})) == []
 
 
+def test_cases_of_predicted_times_have_their_names():
+    rows = select(table("stability"), part="times", method="stable")
+    due = {f"{'wall, ' * (row['quantity'] == 'wall_time')}{row['case']}" for row in rows}
+    shown = [text.get_text() for text in drawn("stability_of_runs")["b"].get_yticklabels()]
+    assert len(shown) == len(due)
+    assert {*shown} == due
+
+
 def test_residuals_of_stability_stand_upon_each_other():
     axes, counts = drawn("stability")["d"], np.zeros(10)
     for bar in axes.patches:

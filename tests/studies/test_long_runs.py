@@ -240,6 +240,16 @@ def test_a_small_run_counts_every_hop_once():
     assert counts[1]["events"] > counts[0]["events"]
 
 
+def test_a_falling_tail_is_compared_with_its_law_from_1000_mean_times_on():
+    one = {"width": 1.5, "height": 1.0, "event": "vertical_hop", "seed": 1}
+    falling = one | {"radius": 0.1, "times": [50, 1000, 2000], "samples": 2}
+    rows = tails.long_run(falling, one | {"radius": 0.3, "times": [1], "replicas": 10, "runs": 1})
+    _, late, later = survival = of(rows, quantity="survival", radius=0.1)
+    assert late["time"] == 1000 * td.mean_times(td.Scene(1.5, 1.0, 0.1))["vertical_hop_time"]
+    follow = [tails.approach_power(survival, late), *map(tails.approach, (late, later))]
+    assert rows[3:7] == [*follow, tails.mean_approach([late, later])]
+
+
 def test_errors_of_joined_runs_are_those_of_as_many_replicas():
     one = {"width": 1.5, "height": 1.0, "event": "vertical_hop", "radius": 0.3, "times": [2, 4]}
     falling = one | {"radius": 0.1, "times": [5], "samples": 1, "seed": 1}
