@@ -264,8 +264,10 @@ sys.exit({status})
 def test_an_mp4_is_written_by_ffmpeg(rows, tmp_path, monkeypatch):
     path, folder = tmp_path / "a.mp4", tmp_path / "bin"
     monkeypatch.setenv("PATH", str(folder))
-    with pytest.raises(td.InputError, match="because the program ffmpeg is missing"):
-        animation.animate(BOX, RADIUS, rows, [path])
+    with monkeypatch.context() as patch:
+        patch.setattr(animation, "MovingDiscs", None)  # before anything is drawn
+        with pytest.raises(td.InputError, match="because the program ffmpeg is missing"):
+            animation.animate(BOX, RADIUS, rows, [path])
     folder.mkdir()
     program = folder / "ffmpeg"
     program.write_text(RECORDER.format(python=sys.executable, status=0))

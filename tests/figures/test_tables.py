@@ -360,6 +360,11 @@ def test_a_place_with_rows_of_a_build_and_of_a_long_run_is_named_once():
     assert misnamed(DRAW["transmission"](PAPER, {"passages": table("passages"), "kept": run})) == []
 
 
+def test_ratios_of_costs_are_logarithmic_and_go_down_the_list():
+    axes = drawn("effects")["d"]
+    assert (axes.get_xscale(), axes.yaxis_inverted()) == ("log", True)
+
+
 def test_cases_of_predicted_times_have_their_names():
     rows = select(table("stability"), part="times", method="stable")
     due = {f"{'wall, ' * (row['quantity'] == 'wall_time')}{row['case']}" for row in rows}

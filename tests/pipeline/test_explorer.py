@@ -293,6 +293,12 @@ def test_the_page_is_one_file_and_names_the_scenes_that_are_left_out(tmp_path, s
     assert ("because of their effects: balls." in text) == ("balls" in text) == (1 in some)
 
 
+def test_a_scene_with_all_effects_of_the_page_is_shown():
+    effects = {"periodic": "x", "field": 0.5, "friction": 0.2}
+    page = explorer.explorer(PARTS, [], [SCENES[0] | {"effects": effects}], seed=1)
+    assert effects.items() <= shown_scenes(page)[0].items()
+
+
 # In a browser -------------------------------------------------------------------------------------
 
 
