@@ -360,6 +360,17 @@ def test_a_place_with_rows_of_a_build_and_of_a_long_run_is_named_once():
     assert misnamed(DRAW["transmission"](PAPER, {"passages": table("passages"), "kept": run})) == []
 
 
+def test_the_rate_of_a_fit_is_named_with_the_digits_of_its_error():
+    labels = drawn("tails")["exponential"].get_legend_handles_labels()[1]
+    found = re.findall(r"rate \$(\d\.(\d+))\((\d+)\)", " ".join(labels))
+    rates = select(table("tails"), quantity="rate")
+    for (rate, digits, error), row in zip(found, rates, strict=True):
+        assert 0.95 <= int(error) < 10.5
+        for text, name in ((rate, "estimate"), (error + f"e-{len(digits)}", "stderr")):
+            due = row[name] * row["exact_mean"]
+            assert abs(float(text) - due) <= 0.501 * 10.0 ** -len(digits)
+
+
 def test_ratios_of_costs_are_logarithmic_and_go_down_the_list():
     axes = drawn("effects")["d"]
     assert (axes.get_xscale(), axes.yaxis_inverted()) == ("log", True)
