@@ -229,6 +229,18 @@ def test_what_leaves_a_ring_comes_in_at_the_other_end():
     assert circles[1][0][0].figure.axes[1].get_ylim() == (-0.75, 0.75)
 
 
+def test_no_trace_goes_across_the_shorter_side():
+    box, beyond = td.Box(3.0, 1.0, periodic="y"), 0
+    motion, circles, others = drawn(box, 0.1, TrajectoryTable.rows(box, 0.1, 1))
+    for time in motion.frames[::8]:
+        show(time, circles, others)
+        for disc in (1, 2):
+            beyond += abs(motion.places(disc, [time])[0, 1]) > 0.5
+            for (_, y1), (_, y2) in others[f"trace {disc}"][0].get_segments():
+                assert abs(y1 - y2) < 0.5
+    assert beyond
+
+
 # Effects and other files --------------------------------------------------------------------------
 
 

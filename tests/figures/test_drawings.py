@@ -8,7 +8,7 @@ from figure_cases import BOXES, PAPER, draw, shown_texts
 from matplotlib.patches import Arc, Circle, Polygon, Rectangle, Wedge
 from scipy.spatial.distance import cdist
 
-from twodiscs.figures import configuration_space, style
+from twodiscs.figures import configuration_space, drawing, style
 from twodiscs.model.scene import Box
 from twodiscs.theory import exact
 
@@ -163,6 +163,16 @@ def test_a_drawing_names_its_lengths(name):
     formulas = {t for t in texts if t.startswith("$") and not t.startswith(r"$\mathdefault")}
     letters = {t[:3] for t in texts if t.startswith("(")}
     assert formulas | letters == {n if n[0] == "(" else f"${n}$" for n in NAMED[name].split()}
+
+
+def test_marks_of_a_dimension_begin_beside_its_side_and_go_on_beyond_its_arrow():
+    axes = style.new_figure(2.0).subplots(subplot_kw={"xlim": (0, 2)})
+    drawing.dimensions(axes, lambda x, away: (x, -away), (0, 0.5, 1), "ab", (0, -6), beyond=4)
+    point = drawing.points(axes)
+    assert [line.get_xdata().tolist() for line in axes.lines] == [[0, 0], [0.5, 0.5], [1, 1]]
+    for line in axes.lines:
+        assert line.get_ydata() == pytest.approx([-4 * point, -15 * point])
+    assert [text.get_text() for text in axes.texts if text.get_text()] == ["$a$", "$b$"]
 
 
 @pytest.mark.parametrize(("name", "panels"), [*zip(NAMED, (1, 2, 1, 3, 2), strict=True)])

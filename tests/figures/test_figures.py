@@ -216,6 +216,12 @@ def test_limiting_laws_run_into_the_curves():
     assert last[1][-1] == pytest.approx(time, rel=1e-3)
 
 
+def test_laws_of_pressures_begin_where_no_hop_is_left():
+    laws = laws_in(drawn("pressure", "paper").axes[0])
+    assert {law[0].min() >= 0.375 for law in laws} == {True}
+    assert min(law[0].min() for law in laws) < 0.376
+
+
 def test_times_approach_the_end_of_their_hop():
     """The panel beneath: curves, estimates and laws over the distance from w/4 or h/4."""
     lower = drawn("mean_hop_time", "paper").axes[2]
