@@ -3,6 +3,7 @@
 import numpy as np
 
 from twodiscs.figures import drawing, panels
+from twodiscs.figures.radius import NEAREST_END
 from twodiscs.figures.style import BLACK, EVENT_LOOKS, GREY, event_name
 from twodiscs.model.events import HOPS, SHELL_EVENTS
 from twodiscs.theory.exact import mean_times
@@ -10,8 +11,8 @@ from twodiscs_paper.studies.estimates import columns
 from twodiscs_paper.studies.thresholds.measure import leading_law, near, passages, start
 from twodiscs_paper.study import select
 
-#: The least distance below the limit, relative to it, and points on a curve.
-NEAREST_DISTANCE, CURVE_POINTS = 5e-7, 80
+#: The number of points on a curve.
+CURVE_POINTS = 80
 
 
 def draw(box, tables):
@@ -23,7 +24,7 @@ def draw(box, tables):
             continue
         rows = near(box, law, select(_mean_times(tables), event=event))
         end = 1 - start(box, law) / law.limit
-        distances = np.geomspace(NEAREST_DISTANCE, 0.999 * end, CURVE_POINTS)
+        distances = np.geomspace(NEAREST_END, 0.999 * end, CURVE_POINTS)
         radii = law.limit * (1 - distances)
         exact = np.array([mean_times(box.scene(r))[event] for r in radii])
         style = panels.open_symbol(colour, marker)
@@ -46,7 +47,7 @@ def draw(box, tables):
     _slopes(hops)
     ratios.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)))
     for axes in (hops, ratios):
-        axes.set(xscale="log", yscale="log", xlim=(NEAREST_DISTANCE, 0.25))
+        axes.set(xscale="log", yscale="log", xlim=(NEAREST_END, 0.25))
     ratios.set(ylim=(0.7, 5))
     ratios.set_yticks([1, 2, 5], ["1", "2", "5"])
     ratios.yaxis.set_minor_formatter("")
